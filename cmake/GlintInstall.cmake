@@ -1,0 +1,27 @@
+# Install, and export as the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler and Glint::glint.
+include(CMakePackageConfigHelpers)
+
+set(glint_targets glint_runtime)
+if(GLINT_BUILD_COMPILER)
+  list(APPEND glint_targets glint_compiler glint)
+endif()
+install(TARGETS ${glint_targets} EXPORT GlintTargets
+        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
+if(GLINT_BUILD_COMPILER)
+  foreach(folder plan gltf emit spirv base)
+    install(DIRECTORY tool/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler
+            FILES_MATCHING PATTERN "*.h")
+  endforeach()
+endif()
+install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)
+
+configure_package_config_file(cmake/GlintConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/GlintConfig.cmake"
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)
+write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/GlintConfigVersion.cmake"
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/GlintConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/GlintConfigVersion.cmake"
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)

@@ -1,0 +1,78 @@
+// The Vulkan device that Glint works on: the caller's, or a headless one of its own.
+#pragma once
+
+#include <glint/result.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Handles that the caller owns and keeps alive as long as the Context.
+struct DeviceHandles {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;  // graphics, compute and transfer
+    std::uint32_t queueFamily = 0;
+    PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
+};
+
+enum class Validation { Off, On, Synchronization };
+
+struct HeadlessOptions {
+    // Anything but Off requires the Khronos validation layer and collects its messages.
+    Validation validation = Validation::Off;
+    std::string deviceName;  // part of the wanted device's name; empty: the first that has all features
+};
+
+// What a device must be created with for Glint to use it: chain `features.pNext` into VkDeviceCreateInfo.
+// Points into static memory or itself; neither copy nor move.
+struct DeviceRequirements {
+    DeviceRequirements();
+    DeviceRequirements(const DeviceRequirements&) = delete;
+    DeviceRequirements& operator=(const DeviceRequirements&) = delete;
+
+    static constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;
+    std::vector<const char*> extensions;
+    VkPhysicalDeviceFeatures2 features;  // chain of everything below
+    VkPhysicalDeviceVulkan11Features vulkan11;
+    VkPhysicalDeviceVulkan12Features vulkan12;
+    VkPhysicalDeviceVulkan13Features vulkan13;
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure;
+    VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;
+};
+
+// Every extension and feature that `device` lacks, by name; empty if Glint runs on it.
+std::vector<std::string> missingRequirements(VkPhysicalDevice device);
+
+class Context {
+public:
+    // Uses the caller's device. The error names each missing feature or extension of the physical device.
+    static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
+    // Makes an instance, a device and a queue without a surface.
+    static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
+
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    const DeviceHandles& handles() const;
+    std::string deviceName() const;
+    std::string driverName() const;
+    // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
+    std::vector<std::string> validationMessages() const;
+
+    struct State;  // for the runtime's own sources
+    State& state();
+
+private:
+    explicit Context(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

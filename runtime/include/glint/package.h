@@ -1,0 +1,56 @@
+// A compiled package, read and checked. No Vulkan device needed.
+#pragma once
+
+#include <glint/package_format.h>
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+namespace gpu {
+struct MaterialRecord;
+}
+
+class Package {
+public:
+    // Reads tables.bin and every module of `folder`. The error says whether the folder is no package, of
+    // another version, truncated or altered.
+    static Result<Package> load(const std::filesystem::path& folder);
+
+    Package(Package&&) noexcept;
+    Package& operator=(Package&&) noexcept;
+    ~Package();
+
+    bool supports(package::Strategy strategy) const;
+    bool alphaTested() const;
+    std::uint32_t caseCount() const;
+    // Buckets of a visibility buffer: 0 for misses, 1 + shader ID for hits.
+    std::uint32_t bucketCount() const;
+
+    std::span<const package::CaseEntry> cases() const;
+    std::span<const package::ModuleEntry> modules() const;
+    std::span<const package::PrimitiveEntry> primitives() const;
+    std::span<const package::TextureEntry> textures() const;
+    std::span<const package::SamplerEntry> samplers() const;
+    std::span<const gpu::MaterialRecord> materials() const;
+
+    std::string_view string(package::StringRef ref) const;
+    // SPIR-V words of a module; shaderId matters for ShadeCase only. Empty if the package lacks it.
+    std::span<const std::uint32_t> spirv(package::ModuleRole role, std::uint32_t shaderId = 0) const;
+    // The entry for a primitive of a mesh, or null if the package does not know it.
+    const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
+
+private:
+    struct State;
+    explicit Package(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

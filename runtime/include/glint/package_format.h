@@ -1,0 +1,124 @@
+// The binary table of a package, tables.bin: the one contract between compiler and runtime. Little endian.
+//
+//   PackageHeader, PackageSection[sectionCount], then the sections' elements at their offsets (8-byte
+//   aligned).
+//
+// The runtime reads this file and the .spv files that it names; manifest.json says the same to people and
+// scripts.
+#pragma once
+
+#include <cstdint>
+
+namespace glint::package {
+
+inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr const char* kTablesFile = "tables.bin";
+inline constexpr const char* kManifestFile = "manifest.json";
+inline constexpr const char* kHeaderFile = "glint_tables.h";
+
+enum Strategy : std::uint32_t { kStrategyUber = 1, kStrategyVisibility = 2 };
+
+struct PackageHeader {
+    char magic[8];
+    std::uint32_t version;
+    std::uint32_t sectionCount;
+    std::uint64_t fileBytes;    // of the whole file
+    std::uint64_t contentHash;  // XXH3, 64 bits, of every byte after this header
+    std::uint32_t strategies;   // Strategy bits
+    std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
+    std::uint32_t caseCount;
+    std::uint32_t interopHash;  // low 32 bits of the hash of the interop headers the shaders were built with
+};
+
+enum class SectionKind : std::uint32_t {
+    Modules = 1,     // ModuleEntry
+    Materials = 2,   // glint::gpu::MaterialRecord
+    Primitives = 3,  // PrimitiveEntry
+    Textures = 4,    // TextureEntry: the bindless images that MaterialRecord refers to
+    Samplers = 5,    // SamplerEntry
+    Strings = 6,     // bytes, UTF-8
+    Cases = 7,       // CaseEntry
+};
+
+struct PackageSection {
+    SectionKind kind;
+    std::uint32_t elementBytes;
+    std::uint64_t offset;  // from the start of the file
+    std::uint64_t count;   // elements
+};
+
+struct StringRef {
+    std::uint32_t offset;  // into the Strings section
+    std::uint32_t length;
+};
+
+// What a SPIR-V module is for. Values are stable.
+enum class ModuleRole : std::uint32_t {
+    GBufferVertex = 1,
+    GBufferFragment = 2,
+    Lighting = 3,
+    ReflectionRays = 4,
+    RayDispatch = 5,
+    UberShade = 6,
+    Trace = 7,
+    BucketCount = 8,
+    BucketOffset = 9,
+    BucketCopy = 10,
+    ShadeMiss = 11,
+    ShadeCase = 12,  // one entry a case
+    Compose = 13,
+};
+
+struct ModuleEntry {
+    ModuleRole role;
+    std::uint32_t shaderId;  // ShadeCase only
+    StringRef file;          // relative to the package's folder; several entries may name one file
+    std::uint64_t bytes;
+    std::uint64_t hash;  // XXH3, 64 bits
+};
+
+struct CaseEntry {
+    std::uint64_t always;
+    std::uint64_t sometimes;
+    StringRef name;
+    std::uint32_t keyCount;
+    std::uint32_t pad;
+};
+
+// One primitive of one mesh; sorted by (mesh, primitive).
+struct PrimitiveEntry {
+    std::uint32_t mesh;
+    std::uint32_t primitive;
+    std::uint32_t shaderId;
+    std::uint32_t materialIndex;
+    std::uint32_t featureLobes;
+    std::uint32_t featureInputs;
+    std::uint32_t geometryFlags;  // kGeometry* of shaders/interop/scene.h
+    std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
+};
+
+// An image viewed in one colour space: a glTF image used as colour and as data is two of these.
+struct TextureEntry {
+    std::uint32_t image;  // index into the scene's images
+    std::uint32_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
+};
+
+struct SamplerEntry {
+    std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
+    std::uint32_t wrapV;
+    std::uint32_t magnification;  // 0 nearest, 1 linear
+    std::uint32_t minification;
+    std::uint32_t mip;
+    std::uint32_t mipmapped;
+};
+
+static_assert(sizeof(PackageHeader) == 48);
+static_assert(sizeof(PackageSection) == 24);
+static_assert(sizeof(ModuleEntry) == 32);
+static_assert(sizeof(CaseEntry) == 32);
+static_assert(sizeof(PrimitiveEntry) == 32);
+static_assert(sizeof(TextureEntry) == 8);
+static_assert(sizeof(SamplerEntry) == 24);
+
+}  // namespace glint::package

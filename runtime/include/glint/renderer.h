@@ -1,0 +1,132 @@
+// Scenes on the device, and the passes that shade them with a package.
+#pragma once
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Geometry, acceleration structures, materials, textures and lights on the device.
+// The Context must outlive it.
+class GpuScene {
+public:
+    // Uploads and builds: BLASes (fast trace, compacted), then the TLAS; waits for the queue. Errors:
+    // attributes that disagree with the package, more than 2^24 geometry records, a mesh or structure above a
+    // limit of the device.
+    static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
+                                                    const SceneView& scene);
+    ~GpuScene();
+    GpuScene(const GpuScene&) = delete;
+    GpuScene& operator=(const GpuScene&) = delete;
+
+    struct Statistics {
+        std::uint64_t triangles = 0;  // of all instances
+        std::uint32_t geometries = 0;
+        std::uint32_t instances = 0;
+        std::uint32_t blasCount = 0;
+        std::uint64_t blasBytes = 0;  // after compaction
+        std::uint64_t blasUncompactedBytes = 0;
+        double blasBuildMs = 0.0;  // device time
+        double tlasBuildMs = 0.0;
+    };
+    const Statistics& statistics() const;
+
+    struct State;
+    State& state();
+
+private:
+    explicit GpuScene(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+struct RendererOptions {
+    package::Strategy strategy = package::kStrategyVisibility;
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+};
+
+// A linear gradient: zenith above, ground below, horizon between. Radiance in the units of the lights.
+struct SkyView {
+    std::array<float, 3> zenith{0.25F, 0.45F, 0.85F};
+    std::array<float, 3> horizon{0.75F, 0.80F, 0.85F};
+    std::array<float, 3> ground{0.20F, 0.18F, 0.16F};
+};
+
+struct FrameOptions {
+    CameraView camera;
+    SkyView sky;
+    // Surfaces with a greater roughness send no reflection ray.
+    float maxReflectionRoughness = 0.3F;
+    bool reflections = true;
+    std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
+    std::uint32_t seed = 0;
+};
+
+struct PassTiming {
+    std::string name;  // also the debug label of the pass
+    double milliseconds = 0.0;
+};
+
+struct FrameCounters {
+    std::uint32_t rays = 0;
+    std::uint32_t skippedSky = 0;
+    std::uint32_t skippedRough = 0;
+    std::uint32_t skippedUnlit = 0;
+    std::uint32_t unknownShader = 0;
+    std::vector<std::uint32_t> bucketCounts;  // visibility only: misses, then hits by shader ID
+};
+
+// RGBA, 32-bit float, linear, first row on top.
+struct LinearImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::array<float, 4>> pixels;
+};
+
+// Pipelines and per-frame resources for one package, one scene, one size. Context and GpuScene must outlive
+// it.
+class Renderer {
+public:
+    static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
+                                                    const RendererOptions& options);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // Records one sample into a command buffer of the caller's, in the recording state, outside a render
+    // pass. One recording may be in flight at a time: frame constants are written to host-visible memory
+    // here. Afterwards output() holds the mean over samples 0..sampleIndex.
+    Status record(VkCommandBuffer commands, const FrameOptions& frame);
+
+    // The accumulated linear image: VK_FORMAT_R32G32B32A32_SFLOAT, layout GENERAL, last written by a compute
+    // shader.
+    VkImage output() const;
+    VkImageView outputView() const;
+
+    // Records, submits and waits: samples [0, sampleCount) of the frame; then reads back. For tools and
+    // tests.
+    Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1);
+
+    // Of the last recording that has completed on the device; the caller has waited for it.
+    Result<std::vector<PassTiming>> timings();
+    Result<FrameCounters> counters();
+
+    double pipelineCreationMs() const;
+
+private:
+    struct State;
+    explicit Renderer(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

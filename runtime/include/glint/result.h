@@ -1,0 +1,98 @@
+// Errors as values, shared by the runtime and the tool. Standard library only.
+#pragma once
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace glint {
+
+enum class Severity { Note, Warning, Error };
+
+// One message to the user: what is wrong, where, and what to do about it.
+struct Diagnostic {
+    Severity severity = Severity::Error;
+    std::string id;       // stable kebab-case name of the kind of message, for instance "accessor-range"
+    std::string where;    // file, file#/json/pointer or file:line; empty when there is no place
+    std::string message;  // one sentence, no final full stop
+    std::string hint;     // what the user can do; may be empty
+};
+
+// Formats as "scene.gltf#/materials/3: error: message; hint [id]".
+inline std::string toString(const Diagnostic& diagnostic) {
+    static constexpr const char* kNames[] = {"note", "warning", "error"};
+    std::string text;
+    if (!diagnostic.where.empty()) {
+        text += diagnostic.where + ": ";
+    }
+    text += std::string(kNames[static_cast<int>(diagnostic.severity)]) + ": " + diagnostic.message;
+    if (!diagnostic.hint.empty()) {
+        text += "; " + diagnostic.hint;
+    }
+    if (!diagnostic.id.empty()) {
+        text += " [" + diagnostic.id + "]";
+    }
+    return text;
+}
+
+// A value, or the error that stood in the way of it.
+template <typename T>
+class [[nodiscard]] Result {
+public:
+    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+    Result(Diagnostic error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+    bool ok() const {
+        return state_.index() == 0;
+    }
+    explicit operator bool() const {
+        return ok();
+    }
+    // Each accessor requires the matching state.
+    T& value() {
+        assert(ok());
+        return std::get<0>(state_);
+    }
+    const T& value() const {
+        assert(ok());
+        return std::get<0>(state_);
+    }
+    const Diagnostic& error() const {
+        assert(!ok());
+        return std::get<1>(state_);
+    }
+    T* operator->() {
+        return &value();
+    }
+    const T* operator->() const {
+        return &value();
+    }
+    T& operator*() {
+        return value();
+    }
+    const T& operator*() const {
+        return value();
+    }
+
+private:
+    std::variant<T, Diagnostic> state_;
+};
+
+// The result of work that yields nothing but may fail.
+using Status = Result<std::monostate>;
+
+inline Status okStatus() {
+    return Status(std::monostate{});
+}
+
+inline Diagnostic makeError(std::string id, std::string where, std::string message, std::string hint = {}) {
+    return {Severity::Error, std::move(id), std::move(where), std::move(message), std::move(hint)};
+}
+
+inline Diagnostic makeWarning(std::string id, std::string where, std::string message, std::string hint = {}) {
+    return {Severity::Warning, std::move(id), std::move(where), std::move(message), std::move(hint)};
+}
+
+}  // namespace glint

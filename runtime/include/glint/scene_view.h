@@ -1,0 +1,67 @@
+// A scene as the runtime takes it: spans over the caller's memory, read during upload and not kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace glint {
+
+// A triangle list. Attribute spans are empty or as long as positions; a missing span must agree with the
+// package's key for this primitive (upload reports where it does not).
+struct PrimitiveView {
+    std::uint32_t mesh = 0;       // as in the package's PrimitiveEntry
+    std::uint32_t primitive = 0;  // within the mesh
+    std::span<const std::array<float, 3>> positions;
+    std::span<const std::array<float, 3>> normals;
+    std::span<const std::array<float, 4>> tangents;
+    std::span<const std::array<float, 2>> texCoords0;
+    std::span<const std::array<float, 2>> texCoords1;
+    std::span<const std::array<float, 4>> colors;  // linear RGBA
+    std::span<const std::uint32_t> indices;        // 3 a triangle
+};
+
+// A mesh placed in the world.
+struct InstanceView {
+    std::uint32_t mesh = 0;
+    std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
+};
+
+// 8-bit RGBA, first row on top.
+struct ImageView {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::span<const std::uint8_t> rgba8;  // 4 * width * height bytes
+};
+
+struct LightView {
+    enum class Type : std::uint32_t { Directional, Point, Spot };
+    Type type = Type::Directional;
+    std::array<float, 3> intensity{1, 1, 1};  // colour times intensity, lux or candela
+    std::array<float, 3> position{};
+    std::array<float, 3> direction{0, -1, 0};  // unit, the way the light travels
+    float range = 0.0F;                        // metres; 0 means unlimited
+    float innerConeAngle = 0.0F;               // radians
+    float outerConeAngle = 0.7853982F;
+};
+
+struct SceneView {
+    std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive), all meshes that instances use
+    std::span<const InstanceView> instances;
+    std::span<const ImageView> images;  // by the package's TextureEntry::image
+    std::span<const LightView> lights;
+};
+
+// Where a frame is seen from, in world space, right-handed.
+struct CameraView {
+    std::array<float, 3> position{};
+    std::array<float, 3> forward{0, 0, -1};  // unit
+    std::array<float, 3> up{0, 1, 0};        // unit, orthogonal to forward
+    bool orthographic = false;
+    float halfHeight = 0.4F;  // tan(yfov / 2), or half the height of the view in metres
+    float halfWidth = 0.4F;   // likewise; halfWidth / halfHeight should be width / height
+    float near = 0.01F;       // metres
+    float far = 0.0F;         // metres; 0 means infinite (perspective only)
+};
+
+}  // namespace glint

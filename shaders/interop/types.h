@@ -1,0 +1,41 @@
+// Scalar types that C++ and GLSL both see. Every shared structure uses the `scalar` block layout, in which a
+// member is aligned to its component, so that the C++ structure below it has the same offsets without
+// padding.
+#ifndef GLINT_INTEROP_TYPES_H
+#define GLINT_INTEROP_TYPES_H
+
+#ifdef __cplusplus
+
+#include <cstdint>
+
+namespace glint::gpu {
+using uint = std::uint32_t;
+struct vec2 {
+    float x, y;
+};
+struct vec3 {
+    float x, y, z;
+};
+struct vec4 {
+    float x, y, z, w;
+};
+struct uvec2 {
+    std::uint32_t x, y;
+};
+}  // namespace glint::gpu
+
+// A pointer on the device: the address of an array of T.
+#define GLINT_ADDRESS(T) std::uint64_t
+#define GLINT_INTEROP_BEGIN namespace glint::gpu {
+#define GLINT_INTEROP_END }
+#define GLINT_CONSTANT(name, value) inline constexpr std::uint32_t name = value
+
+#else
+
+#define GLINT_ADDRESS(T) T##Array
+#define GLINT_INTEROP_BEGIN
+#define GLINT_INTEROP_END
+#define GLINT_CONSTANT(name, value) const uint name = value
+
+#endif
+#endif

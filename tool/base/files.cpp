@@ -1,0 +1,112 @@
+#include "base/files.h"
+
+#include <xxhash.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <unistd.h>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct FileCloser {
+    void operator()(std::FILE* file) const {
+        std::fclose(file);
+    }
+};
+using File = std::unique_ptr<std::FILE, FileCloser>;
+
+std::span<const std::uint8_t> asBytes(std::string_view text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    std::error_code error;
+    if (fs::file_size(path, error) != bytes.size() || error) {
+        return false;
+    }
+    const Result<Bytes> present = readFile(path);
+    return present && std::memcmp(present->data(), bytes.data(), bytes.size()) == 0;
+}
+
+}  // namespace
+
+std::uint64_t hashBytes(std::span<const std::uint8_t> bytes) {
+    return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::uint64_t hashBytes(std::string_view text) {
+    return hashBytes(asBytes(text));
+}
+
+std::string hexHash(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+Result<Bytes> readFile(const fs::path& path, std::uint64_t maxBytes) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) {
+        const bool exists = fs::exists(path, error);
+        return makeError("file-open", path.string(), exists ? "is not a regular file" : "no such file",
+                         "check the path");
+    }
+    const std::uint64_t size = fs::file_size(path, error);
+    if (error) {
+        return makeError("file-open", path.string(), error.message());
+    }
+    if (size > maxBytes) {
+        return makeError(
+            "file-size", path.string(),
+            "is " + std::to_string(size) + " bytes long; the limit is " + std::to_string(maxBytes));
+    }
+    const File file(std::fopen(path.c_str(), "rb"));
+    if (!file) {
+        return makeError("file-open", path.string(), std::strerror(errno), "check the file's permissions");
+    }
+    Bytes bytes(size);
+    if (size > 0 && std::fread(bytes.data(), 1, size, file.get()) != size) {
+        return makeError("file-read", path.string(), "ended early or could not be read");
+    }
+    return bytes;
+}
+
+Status writeFile(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    if (holds(path, bytes)) {
+        return okStatus();
+    }
+    const fs::path temporary = path.string() + ".tmp" + std::to_string(getpid());
+    const auto fail = [&](const std::string& why) -> Status {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        return makeError("file-write", path.string(), "can't be written: " + why,
+                         "check the folder, its permissions and the free space");
+    };
+    File file(std::fopen(temporary.c_str(), "wb"));
+    if (!file) {
+        return fail(std::strerror(errno));
+    }
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+        return fail(std::strerror(errno));
+    }
+    // Close by hand: a full disk may show only when the buffers are flushed.
+    if (std::fclose(file.release()) != 0) {
+        return fail(std::strerror(errno));
+    }
+    std::error_code error;
+    fs::rename(temporary, path, error);
+    return error ? fail(error.message()) : okStatus();
+}
+
+Status writeFile(const fs::path& path, std::string_view text) {
+    return writeFile(path, asBytes(text));
+}
+
+}  // namespace glint

@@ -1,0 +1,32 @@
+// glTF 2.0 files into a Scene.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct ImportOptions {
+    // Decode images to RGBA8. The compiler needs none of them; the renderer needs all.
+    bool decodeImages = false;
+    // Limits that keep hostile files from asking for the machine's memory.
+    std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
+    std::uint64_t maxFileBytes = 1ULL << 32;
+    int maxImageSize = 16384;  // pixels, either way
+};
+
+// Reads `path` (.gltf or .glb), its buffers and its images. Files outside the scene's folder are refused.
+// On success, Scene::warnings holds what was skipped. The error names the file and, where there is one, the
+// JSON pointer of the culprit.
+Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// The primitives of all meshes, mesh by mesh, as planning sees them.
+std::vector<PrimitiveInputs> planningInputs(const Scene& scene);
+
+}  // namespace glint

@@ -1,0 +1,128 @@
+// A scene as plain data: what the importer makes of a glTF file. Knows nothing of tinygltf or Vulkan.
+#pragma once
+
+#include "plan/material.h"
+
+#include <glint/result.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+using Float2 = std::array<float, 2>;
+using Float3 = std::array<float, 3>;
+using Float4 = std::array<float, 4>;
+
+// Column-major 4 x 4, column vectors: element (row r, column c) is m[4 * c + r], as in glTF.
+using Matrix4 = std::array<double, 16>;
+
+// A triangle list. Attribute arrays are empty or as long as positions; indices are always filled.
+struct Primitive {
+    std::string pointer;  // JSON pointer, "/meshes/0/primitives/1"
+    int material = 0;     // always valid: primitives without one use Scene::defaultMaterial
+    std::vector<Float3> positions;
+    std::vector<Float3> normals;   // unit; empty: flat shading
+    std::vector<Float4> tangents;  // unit xyz; w = ±1; empty: the hit derives a frame from the UVs
+    std::vector<Float2> texCoords0;
+    std::vector<Float2> texCoords1;
+    std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
+    ColorContent colorContent = ColorContent::None;
+    std::vector<std::uint32_t> indices;  // 3 a triangle, each < positions.size()
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+// A node of the default scene, parents before children.
+struct Node {
+    std::string name;
+    int parent = -1;  // index into Scene::nodes
+    int mesh = -1;
+    int camera = -1;
+    int light = -1;
+    Matrix4 world{};
+};
+
+struct Camera {
+    std::string name;
+    bool orthographic = false;
+    double yfov = 0.8;    // radians, perspective
+    double xmag = 1.0;    // half width, orthographic
+    double ymag = 1.0;    // half height, orthographic
+    double znear = 0.01;  // metres
+    double zfar = 0.0;    // 0 means infinite
+    Matrix4 world{};      // looks along its -Z, +Y up
+};
+
+enum class LightType : std::uint8_t { Directional, Point, Spot };
+
+// A punctual light placed in the world (KHR_lights_punctual).
+struct Light {
+    std::string name;
+    LightType type = LightType::Directional;
+    Float3 color{1.0F, 1.0F, 1.0F};  // linear
+    float intensity = 1.0F;          // lux or candela
+    float range = 0.0F;              // metres; 0 means unlimited
+    float innerConeAngle = 0.0F;     // radians
+    float outerConeAngle = 0.7853982F;
+    Float3 position{};
+    Float3 direction{0.0F, 0.0F, -1.0F};  // unit, the way the light travels
+};
+
+enum class Wrap : std::uint8_t { Repeat, ClampToEdge, MirroredRepeat };
+enum class Filter : std::uint8_t { Nearest, Linear };
+
+struct Sampler {
+    Wrap wrapU = Wrap::Repeat;
+    Wrap wrapV = Wrap::Repeat;
+    Filter magnification = Filter::Linear;
+    Filter minification = Filter::Linear;
+    Filter mip = Filter::Linear;
+    bool mipmapped = true;
+
+    bool operator==(const Sampler&) const = default;
+};
+
+// Pixels are empty unless ImportOptions::decodeImages.
+struct Image {
+    std::string name;     // glTF name, else the file's name, else "image N"
+    std::string pointer;  // JSON pointer
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t>
+        rgba8;  // 4 * width * height bytes, first row on top, as stored (not linearised)
+};
+
+struct Texture {
+    int image = 0;
+    int sampler = 0;  // index into Scene::samplers; a default one is appended where glTF names none
+};
+
+// A file that the scene was read from, for hashes and dependency files.
+struct SourceFile {
+    std::string path;  // as opened
+    std::uint64_t bytes = 0;
+    std::uint64_t hash = 0;  // XXH3, 64 bits
+};
+
+struct Scene {
+    std::string path;  // the .gltf or .glb
+    std::vector<Material> materials;
+    int defaultMaterial = -1;  // index of the appended glTF default material, or -1 if no primitive needs it
+    std::vector<Mesh> meshes;
+    std::vector<Node> nodes;
+    std::vector<Camera> cameras;  // those that a node places
+    std::vector<Light> lights;    // those that a node places
+    std::vector<Texture> textures;
+    std::vector<Sampler> samplers;
+    std::vector<Image> images;
+    std::vector<SourceFile> files;
+    std::vector<Diagnostic> warnings;
+};
+
+}  // namespace glint
