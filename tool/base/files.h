@@ -1,14 +1,14 @@
 // Files and hashes: whole-file reads with limits, writes that never leave a half-written file.
 #pragma once
 
+#include <glint/result.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <glint/result.h>
 
 namespace glint {
 
@@ -23,8 +23,8 @@ std::string hexHash(std::uint64_t hash);
 // Reads a whole file. Errors: "file-open", "file-size" (above maxBytes), "file-read".
 Result<Bytes> readFile(const std::filesystem::path& path, std::uint64_t maxBytes = 1ULL << 32);
 
-// Writes through a temporary file beside `path` and a rename; keeps the old file, with its time stamp, where the
-// contents are the same already. Errors: "file-write".
+// Writes through a temporary file beside `path` and a rename; keeps the old file, with its time stamp, where
+// the contents are the same already. Errors: "file-write".
 Status writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Status writeFile(const std::filesystem::path& path, std::string_view text);
 

@@ -1,0 +1,64 @@
+// From a Scene to a package: plan, GLSL, SPIR-V, tables. No file is written here but by writePackage().
+#pragma once
+
+#include "base/files.h"
+#include "gltf/scene.h"
+#include "plan/plan.h"
+#include "spirv/statistics.h"
+
+#include <glint/package_format.h>
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct CompileSettings {
+    std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    PlanOptions plan;
+    int maxShaders = 0;      // cases; 0: no limit
+    int jobs = 0;            // threads; 0: one a core
+    bool emitHeader = true;  // glint_tables.h
+    bool emitGlsl = false;   // the flattened sources, in glsl/
+    bool debugInfo = false;  // keep names in the SPIR-V
+};
+
+// One SPIR-V module of the package. Modules with equal bytes share `file`.
+struct CompiledModule {
+    package::ModuleRole role = package::ModuleRole::Trace;
+    int shaderId = 0;  // ShadeCase only
+    std::string name;  // "uber.comp", "shade_2_BaseTex.comp": also the name of the GLSL file
+    std::string file;  // "uber.spv": within the package
+    std::vector<std::uint32_t> spirv;
+    std::string glsl;  // flattened
+    SpirvStatistics statistics;
+    std::uint64_t hash = 0;
+};
+
+struct PackageFile {
+    std::string name;  // relative, '/' between folders
+    Bytes bytes;
+};
+
+struct CompiledPackage {
+    Plan plan;
+    std::vector<CompiledModule> modules;  // in order of role, then shader ID
+    std::vector<PackageFile> files;       // everything that writePackage() writes, sorted by name
+    int uniqueSpirv = 0;
+    std::uint64_t spirvBytes = 0;  // of the unique modules
+};
+
+// Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
+// line (a defect of Glint itself).
+Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings);
+
+// Replaces the contents of `folder` by the package: files that did not change keep their time stamps, files
+// of the earlier package that are no longer part of it go, tables.bin goes last so that a reader never sees a
+// mixture that passes its checks. A failure leaves the earlier package whole. Refuses a folder that holds
+// something else.
+Status writePackage(const CompiledPackage& package, const std::filesystem::path& folder);
+
+}  // namespace glint

@@ -1,0 +1,32 @@
+// GLSL to optimised, validated SPIR-V, in process.
+#pragma once
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+enum class ShaderStage { Vertex, Fragment, Compute };
+
+struct ShaderSource {
+    std::string name;  // for messages; a message about a line names the file and line of the #line directives
+    ShaderStage stage = ShaderStage::Compute;
+    std::string glsl;  // flattened: no #include left
+};
+
+struct ShaderCompileOptions {
+    bool debugInfo = false;  // keep names
+};
+
+// Vulkan 1.2, SPIR-V 1.5: so that every device with ray queries can load it. Thread-safe.
+// Errors: "glsl" (what glslang says, first error first), "spirv-optimize", "spirv-validate".
+Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
+                                                 const ShaderCompileOptions& options);
+
+// Text form of a module, for people.
+Result<std::string> disassemble(const std::vector<std::uint32_t>& words);
+
+}  // namespace glint

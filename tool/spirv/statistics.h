@@ -1,0 +1,22 @@
+// Counts over a SPIR-V module.
+#pragma once
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <span>
+
+namespace glint {
+
+struct SpirvStatistics {
+    std::uint64_t bytes = 0;
+    std::uint32_t instructions = 0;    // within functions, labels and debug lines apart
+    std::uint32_t textureFetches = 0;  // OpImageSample*, OpImageFetch, OpImageGather
+    std::uint32_t rayQueries = 0;      // OpRayQueryInitializeKHR
+    std::uint32_t branches = 0;        // OpBranchConditional and OpSwitch
+};
+
+// Error "spirv-format" where `words` is no SPIR-V module.
+Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words);
+
+}  // namespace glint
