@@ -23,6 +23,7 @@ struct TextureInfo {
     int texture = -1;  // index into Scene::textures; -1 where the slot is empty
     int texCoord = 0;  // the UV set, the extension's override already applied
     TextureTransform transform;
+    bool hasTransform = false;  // the file gives KHR_texture_transform here, identity or not
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -35,6 +36,7 @@ struct Material {
     float roughnessFactor = 1.0F;
     std::array<float, 3> emissiveFactor{0.0F, 0.0F, 0.0F};  // linear
     float emissiveStrength = 1.0F;                          // KHR_materials_emissive_strength
+    bool hasEmissiveStrength = false;                       // the file gives the extension, 1 or not
     float normalScale = 1.0F;
     float occlusionStrength = 1.0F;
     float alphaCutoff = 0.5F;
