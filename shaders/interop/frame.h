@@ -9,6 +9,8 @@ GLINT_INTEROP_BEGIN
 // Threads of a workgroup: one-dimensional passes over rays, and 8 x 8 tiles of passes over pixels.
 GLINT_CONSTANT(kRayGroupSize, 64u);
 GLINT_CONSTANT(kPixelGroupSize, 8u);
+// Workgroups of a dispatch over rays in x before it grows in y: half of the least limit that Vulkan allows.
+GLINT_CONSTANT(kMaxRayGroupsX, 32768u);
 // Threads of the single workgroup that scans the buckets.
 GLINT_CONSTANT(kScanGroupSize, 256u);
 

@@ -24,6 +24,7 @@ GLINT_CONSTANT(kTextureSlotCount, 5u);
 // GeometryRecord::flags
 GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: test the candidate
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
+GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass tests alpha, whatever hits do
 
 // InstanceRecord::flags
 GLINT_CONSTANT(kInstanceMirrored, 1u);  // the determinant of objectToWorld is negative

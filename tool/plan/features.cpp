@@ -154,10 +154,11 @@ Presence emissiveStrengthRule(const Material& material, const PrimitiveInputs&, 
                                                                        : present();
 }
 
-Presence texCoord1Rule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
-                       FeatureMask soFar) {
+template <int kSet>
+Presence texCoordRule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
+                      FeatureMask soFar) {
     const bool used = std::ranges::any_of(kTextureFeatures, [&](const auto& entry) {
-        return has(soFar, entry.feature) && material.texture(entry.slot).texCoord == 1;
+        return has(soFar, entry.feature) && material.texture(entry.slot).texCoord == kSet;
     });
     return used ? present() : absent();
 }
@@ -250,8 +251,10 @@ constexpr FeatureInfo kTable[] = {
     {Feature::EmissiveStrength, "emissiveStrength", "EmissiveStrength", "GLINT_EMISSIVE_STRENGTH",
      "materials[].extensions.KHR_materials_emissive_strength",
      "emissiveStrength is 1, or emissiveFactor is black", emissiveStrengthRule},
+    {Feature::TexCoord0, "texCoord0", "Uv0", "GLINT_TEXCOORD_0", "textureInfo.texCoord = 0",
+     "no texture that is read uses the set", texCoordRule<0>},
     {Feature::TexCoord1, "texCoord1", "Uv1", "GLINT_TEXCOORD_1", "textureInfo.texCoord = 1",
-     "no texture that is read uses the set", texCoord1Rule},
+     "no texture that is read uses the set", texCoordRule<1>},
     {Feature::TextureTransform, "textureTransform", "Transform", "GLINT_TEXTURE_TRANSFORM",
      "textureInfo.extensions.KHR_texture_transform", "identity on every texture that is read",
      textureTransformRule},

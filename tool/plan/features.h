@@ -27,6 +27,7 @@ enum class Feature : std::uint8_t {
     OcclusionTexture,
     EmissiveTexture,
     EmissiveStrength,
+    TexCoord0,
     TexCoord1,
     TextureTransform,
     VertexColor,

@@ -1,0 +1,17 @@
+// Resources of every pass: descriptor sets, push constants, extensions.
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_nonuniform_qualifier : require
+
+#include "interop/frame.h"
+#include "generated/features.glsl"
+#include "generated/scene.glsl"
+
+layout(push_constant, scalar) uniform PushBlock {
+    PushConstants pushed;
+};
+
+#define GLINT_FRAME pushed.frame.data
+
+layout(set = kSetScene, binding = kBindingTextures) uniform texture2D sceneTextures[];
+layout(set = kSetScene, binding = kBindingSamplers) uniform sampler sceneSamplers[];

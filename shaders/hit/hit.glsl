@@ -1,0 +1,93 @@
+// A hit with its vertex attributes fetched and interpolated: all that materials read apart from their own record.
+#include "hit/bindings.glsl"
+#include "hit/features.glsl"
+#include "hit/geometry.glsl"
+
+struct Hit {
+    vec3 position;         // world
+    vec3 geometricNormal;  // unit, on the viewer's side
+    vec3 normal;           // interpolated, unit, on the side that the surface's front faces
+    vec3 view;             // unit, towards the viewer
+    bool frontFace;
+    uint material;
+    uint pixel;
+    vec2 texCoords[2];
+    vec4 color;
+    vec4 tangent;    // world; w is the sign of the bitangent
+    vec3 edges[2];   // world: from the first vertex to the second and third
+    vec4 uvEdges[2]; // by UV set: (Δu, Δv) along each edge
+    float footprint; // width of the ray cone on the surface, metres
+};
+
+// A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms).
+vec3 directionOr(vec3 v, vec3 fallback) {
+    float squared = dot(v, v);
+    return squared > 0.0 && !isinf(squared) ? v * inversesqrt(squared) : fallback;
+}
+
+// Attributes are fetched where `features` may need them. rayDirection is unit; coneWidth is that of the ray cone at
+// the hit.
+Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
+             uint pixel, Features features) {
+    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
+    uvec3 corner = uvec3(geometry.indices.data[3u * primitive], geometry.indices.data[3u * primitive + 1u],
+                         geometry.indices.data[3u * primitive + 2u]);
+    vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+    bool mirrored = (instance.flags & kInstanceMirrored) != 0u;
+
+    Hit hit;
+    hit.view = -rayDirection;
+    hit.material = geometry.materialIndex;
+    hit.pixel = pixel;
+
+    // Position and the plane of the triangle. Counter-clockwise is the front in object space.
+    vec3 p0 = geometry.positions.data[corner.x];
+    vec3 e1 = geometry.positions.data[corner.y] - p0;
+    vec3 e2 = geometry.positions.data[corner.z] - p0;
+    precise vec3 position = transformPoint(instance.objectToWorld, p0 + barycentrics.x * e1 + barycentrics.y * e2);
+    hit.position = position;
+    hit.edges[0] = transformVector(instance.objectToWorld, e1);
+    hit.edges[1] = transformVector(instance.objectToWorld, e2);
+    vec3 front = directionOr(cross(hit.edges[0], hit.edges[1]), hit.view) * (mirrored ? -1.0 : 1.0);
+    hit.frontFace = dot(front, hit.view) >= 0.0;
+    hit.geometricNormal = hit.frontFace ? front : -front;
+
+    hit.normal = front;
+    if (hasInput(features, GLINT_NORMALS)) {
+        vec3 n = weights.x * geometry.normals.data[corner.x] + weights.y * geometry.normals.data[corner.y] +
+                 weights.z * geometry.normals.data[corner.z];
+        hit.normal = directionOr(transformNormal(instance.normalToWorld, n), front);
+    }
+    hit.tangent = vec4(0.0);
+    if (hasInput(features, GLINT_TANGENTS)) {
+        vec4 t0 = geometry.tangents.data[corner.x];
+        vec4 t = weights.x * t0 + weights.y * geometry.tangents.data[corner.y] +
+                 weights.z * geometry.tangents.data[corner.z];
+        hit.tangent = vec4(transformVector(instance.objectToWorld, t.xyz), mirrored ? -t0.w : t0.w);
+    }
+
+    // UV sets, with their edges for derived frames and for the level of detail.
+    hit.texCoords[0] = vec2(0.0);
+    hit.texCoords[1] = vec2(0.0);
+    hit.uvEdges[0] = vec4(0.0);
+    hit.uvEdges[1] = vec4(0.0);
+    if (hasInput(features, GLINT_TEXCOORD_0)) {
+        vec2 uv0 = geometry.texCoords0.data[corner.x];
+        hit.uvEdges[0] = vec4(geometry.texCoords0.data[corner.y] - uv0, geometry.texCoords0.data[corner.z] - uv0);
+        hit.texCoords[0] = uv0 + barycentrics.x * hit.uvEdges[0].xy + barycentrics.y * hit.uvEdges[0].zw;
+    }
+    if (hasInput(features, GLINT_TEXCOORD_1)) {
+        vec2 uv0 = geometry.texCoords1.data[corner.x];
+        hit.uvEdges[1] = vec4(geometry.texCoords1.data[corner.y] - uv0, geometry.texCoords1.data[corner.z] - uv0);
+        hit.texCoords[1] = uv0 + barycentrics.x * hit.uvEdges[1].xy + barycentrics.y * hit.uvEdges[1].zw;
+    }
+    hit.color = vec4(1.0);
+    if (hasInput(features, GLINT_VERTEX_COLOR)) {
+        hit.color = weights.x * geometry.colors.data[corner.x] + weights.y * geometry.colors.data[corner.y] +
+                    weights.z * geometry.colors.data[corner.z];
+    }
+
+    // The cone meets the surface at an angle; below 0.01 radians its footprint is cut, as anisotropy is the sampler's.
+    hit.footprint = coneWidth / max(abs(dot(hit.geometricNormal, rayDirection)), 0.01);
+    return hit;
+}

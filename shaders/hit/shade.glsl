@@ -1,0 +1,71 @@
+// shade(): the one function that every strategy calls for a hit.
+#include "effects/ambient.glsl"
+#include "hit/lights.glsl"
+#include "hit/material.glsl"
+#include "hit/random.glsl"
+
+// Light that leaves the hit towards the viewer. `direct` counts only if nothing stands on the shadow ray: who calls
+// shade() traces that ray, so that one ray query serves every case.
+struct ShadeResult {
+    vec3 radiance;
+    vec3 direct;
+    vec3 shadowDirection;  // unit
+    float shadowDistance;  // metres; 0: no light reaches the surface, no ray is needed
+};
+
+// Dimensions of the random numbers of a sample.
+const uint kDimensionLight = 0u;
+
+float luminance(vec3 color) {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Direct light by one light, chosen in one pass with probability proportional to the luminance that it would bring
+// without shadows (weighted reservoir sampling, Chao 1982). Unbiased; exact where one light dominates.
+void chooseLight(Hit hit, Surface surface, inout ShadeResult result) {
+    float random = randomUnit(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
+    float total = 0.0;
+    float chosenWeight = 1.0;
+    vec3 chosen = vec3(0.0);
+    for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
+        LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
+        // A light below the surface's plane reaches it only through the surface.
+        if (dot(hit.geometricNormal, light.direction) <= 0.0) {
+            continue;
+        }
+        vec3 contribution = evaluateBsdf(surface, hit.view, light.direction) * light.irradiance;
+        float weight = luminance(contribution);
+        if (weight <= 0.0) {
+            continue;
+        }
+        total += weight;
+        float probability = weight / total;
+        if (random < probability) {
+            random /= probability;
+            chosen = contribution;
+            chosenWeight = weight;
+            result.shadowDirection = light.direction;
+            result.shadowDistance = light.distance;
+        } else {
+            random = (random - probability) / (1.0 - probability);
+        }
+    }
+    result.direct = chosen * (total / chosenWeight);
+}
+
+ShadeResult shade(Hit hit, Features features) {
+    ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    if (hasLobe(features, GLINT_UNLIT)) {
+        result.radiance = baseColor(hit, GLINT_FRAME.materials.data[hit.material], features).rgb;
+        return result;
+    }
+    Surface surface = evaluateSurface(hit, features);
+    result.radiance = surface.emission + ambientDiffuse(surface) + ambientSpecular(surface, hit.view);
+    chooseLight(hit, surface, result);
+    return result;
+}
+
+// What a hit with an unknown shader ID shows: impossible unless scene and package disagree.
+ShadeResult shadeUnknown() {
+    return ShadeResult(vec3(1.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0);
+}

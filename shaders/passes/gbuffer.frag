@@ -1,0 +1,32 @@
+#version 460
+// G-buffer: which triangle each pixel sees. Materials are read by the lighting pass, once a pixel.
+#include "hit/bindings.glsl"
+
+layout(location = 0) flat in uint primitive;
+#if GLINT_HAS_MASKED
+layout(location = 1) in vec2 texCoord;
+layout(location = 2) in float vertexAlpha;
+#endif
+
+layout(location = 0) out uvec2 surface;
+
+void main() {
+#if GLINT_HAS_MASKED
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[pushed.geometry];
+    if ((geometry.flags & kGeometryMasked) != 0u) {
+        MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
+        float alpha = material.baseColorFactor.a * vertexAlpha;
+        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
+            TextureRecord record = material.textures[kTextureBaseColor];
+            // The draw has one material: the indices are uniform.
+            alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
+                             texCoord)
+                         .a;
+        }
+        if (alpha < material.alphaCutoff) {
+            discard;
+        }
+    }
+#endif
+    surface = uvec2(pushed.geometry, primitive);
+}

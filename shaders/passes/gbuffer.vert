@@ -1,0 +1,36 @@
+#version 460
+// G-buffer, vertices pulled by address: each triangle has its own three, so that its number needs no geometry shader
+// capability.
+#include "hit/bindings.glsl"
+#include "hit/geometry.glsl"
+
+layout(location = 0) flat out uint primitive;
+#if GLINT_HAS_MASKED
+layout(location = 1) out vec2 texCoord;
+layout(location = 2) out float vertexAlpha;
+#endif
+
+void main() {
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[pushed.geometry];
+    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
+    uint index = geometry.indices.data[gl_VertexIndex];
+    vec4 world = vec4(transformPoint(instance.objectToWorld, geometry.positions.data[index]), 1.0);
+    gl_Position = vec4(dot(GLINT_FRAME.worldToClip[0], world), dot(GLINT_FRAME.worldToClip[1], world),
+                       dot(GLINT_FRAME.worldToClip[2], world), dot(GLINT_FRAME.worldToClip[3], world));
+    primitive = gl_VertexIndex / 3u;
+
+#if GLINT_HAS_MASKED
+    texCoord = vec2(0.0);
+    vertexAlpha = 1.0;
+    if ((geometry.flags & kGeometryMasked) != 0u) {
+        TextureRecord record = GLINT_FRAME.materials.data[geometry.materialIndex].textures[kTextureBaseColor];
+        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
+            vec2 uv = record.texCoord == 0u ? geometry.texCoords0.data[index] : geometry.texCoords1.data[index];
+            texCoord = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
+        }
+        if ((geometry.featureInputs & GLINT_VERTEX_COLOR) != 0u) {
+            vertexAlpha = geometry.colors.data[index].a;
+        }
+    }
+#endif
+}

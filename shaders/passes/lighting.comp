@@ -1,0 +1,80 @@
+#version 460
+// Lighting of the primary surfaces: materials, every punctual light with its shadow ray, the sky; and what the effects
+// need of each pixel.
+#include "effects/reflection.glsl"
+#include "hit/camera.glsl"
+#include "hit/images.glsl"
+#include "hit/shade.glsl"
+#include "hit/trace.glsl"
+
+layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
+
+Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
+    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
+    vec3 corners[3];
+    for (uint i = 0u; i < 3u; ++i) {
+        uint index = geometry.indices.data[3u * primitive + i];
+        corners[i] = transformPoint(instance.objectToWorld, geometry.positions.data[index]);
+    }
+    vec2 barycentrics =
+        rayTriangleBarycentrics(ray, corners[0], corners[1] - corners[0], corners[2] - corners[0]);
+    vec3 position = corners[0] + barycentrics.x * (corners[1] - corners[0]) +
+                    barycentrics.y * (corners[2] - corners[0]);
+    float coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(position, ray.origin);
+    return fetchHit(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features);
+}
+
+vec3 directLight(Hit hit, Surface surface) {
+    vec3 origin = offsetRayOrigin(hit.position, hit.geometricNormal);
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
+        LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
+        if (dot(hit.geometricNormal, light.direction) <= 0.0) {
+            continue;
+        }
+        vec3 contribution = evaluateBsdf(surface, hit.view, light.direction) * light.irradiance;
+        if (luminance(contribution) > 0.0 && isVisible(origin, light.direction, light.distance)) {
+            sum += contribution;
+        }
+    }
+    return sum;
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.height) {
+        return;
+    }
+    ivec2 place = ivec2(pixel);
+    uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
+    CameraRay ray = cameraRay(pixel);
+    vec3 radiance = skyRadiance(ray.direction);
+    vec4 normalRoughness = vec4(0.0, 0.0, 0.0, kNoReflection);
+    vec4 position = vec4(0.0);
+    vec3 reflectance = vec3(0.0);
+
+    if (surfaceId.x != kNoSurface) {
+        GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
+        Features features = GLINT_SCENE_FEATURES(geometry);
+        Hit hit = primaryHit(geometry, surfaceId.y, ray, pixel.x + pixel.y * GLINT_FRAME.width, features);
+        position = vec4(offsetRayOrigin(hit.position, hit.geometricNormal),
+                        uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
+        if (hasLobe(features, GLINT_UNLIT)) {
+            radiance = baseColor(hit, GLINT_FRAME.materials.data[hit.material], features).rgb;
+            normalRoughness = vec4(hit.normal, kUnlitSurface);
+        } else {
+            Surface surface = evaluateSurface(hit, features);
+            float traced = tracedShare(surface.roughness);
+            radiance = surface.emission + ambientDiffuse(surface) +
+                       (1.0 - traced) * ambientSpecular(surface, hit.view) + directLight(hit, surface);
+            normalRoughness = vec4(surface.normal, surface.roughness);
+            reflectance = traced * ggxDirectionalAlbedo(surface.f0, surface.roughness,
+                                                        clampedNDotV(surface, hit.view));
+        }
+    }
+    imageStore(radianceImage, place, vec4(radiance, 1.0));
+    imageStore(normalRoughnessImage, place, normalRoughness);
+    imageStore(positionImage, place, position);
+    imageStore(reflectanceImage, place, vec4(reflectance, 0.0));
+    imageStore(reflectionImage, place, vec4(0.0));
+}
