@@ -1,0 +1,200 @@
+// Keys, cases and IDs of hand-made scenes under each merge policy.
+#include "plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace {
+
+using namespace glint;
+
+constexpr FeatureMask kNormals = bit(Feature::Normals);
+constexpr FeatureMask kTextured = bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+
+// Materials: 0 plain, 1 plain with other values, 2 textured, 3 unlit, 4 unlit and textured.
+struct SmallScene {
+    std::vector<Material> materials{5};
+    std::vector<PrimitiveInputs> primitives;
+
+    SmallScene() {
+        materials[1].roughnessFactor = 0.2F;
+        materials[2].texture(TextureSlot::BaseColor).texture = 0;
+        materials[3].unlit = true;
+        materials[4].unlit = true;
+        materials[4].texture(TextureSlot::BaseColor).texture = 0;
+        for (int material = 0; material < 5; ++material) {
+            PrimitiveInputs primitive;
+            primitive.primitive = material;
+            primitive.material = material;
+            primitive.hasNormals = true;
+            primitive.hasTexCoords0 = true;
+            primitives.push_back(primitive);
+        }
+        // A second primitive of material 0, without normals: a key of its own.
+        PrimitiveInputs flat;
+        flat.mesh = 1;
+        primitives.push_back(flat);
+    }
+
+    Plan plan(MergePolicy merge) const {
+        return makePlan(materials, primitives, {{}, merge});
+    }
+};
+
+TEST(Plan, GivesEachPermutationAKey) {
+    const Plan plan = SmallScene().plan(MergePolicy::None);
+    ASSERT_EQ(plan.keys.size(), 5U);
+    const FeatureMask unlit = bit(Feature::Unlit);
+    EXPECT_EQ(plan.keys[0].mask, 0U);
+    EXPECT_EQ(plan.keys[1].mask, unlit);
+    EXPECT_EQ(plan.keys[2].mask, kTextured | unlit);
+    EXPECT_EQ(plan.keys[3].mask, kNormals);
+    EXPECT_EQ(plan.keys[4].mask, kTextured | kNormals);
+    EXPECT_EQ(plan.keys[3].materials, (std::vector<int>{0, 1}));
+    EXPECT_EQ(plan.keyOfPrimitive, (std::vector<int>{3, 3, 4, 1, 2, 0}));
+    // unlit, base colour texture, UV set 0, normals
+    EXPECT_EQ(plan.keysPossible, 16.0);
+}
+
+TEST(Plan, NoneMakesEveryKeyACase) {
+    const Plan plan = SmallScene().plan(MergePolicy::None);
+    ASSERT_EQ(plan.cases.size(), 5U);
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+        EXPECT_EQ(plan.cases[i].shaderId, static_cast<int>(i));
+        EXPECT_EQ(plan.cases[i].always, plan.keys[i].mask);
+        EXPECT_EQ(plan.cases[i].sometimes, 0U);
+        EXPECT_EQ(plan.keys[i].shaderId, static_cast<int>(i));
+    }
+    EXPECT_EQ(plan.cases[4].name, "Pbr_BaseTex_Uv0_Normals");
+    EXPECT_EQ(plan.cases[2].name, "Unlit_BaseTex_Uv0");
+}
+
+TEST(Plan, FamilyMergesKeysWithTheSameLobes) {
+    const Plan plan = SmallScene().plan(MergePolicy::Family);
+    ASSERT_EQ(plan.cases.size(), 2U);
+    EXPECT_EQ(plan.cases[0].name, "PbrFamily");
+    EXPECT_EQ(plan.cases[0].always, 0U);
+    EXPECT_EQ(plan.cases[0].sometimes, kTextured | kNormals);
+    EXPECT_EQ(plan.cases[0].materials, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(plan.cases[1].always, bit(Feature::Unlit));
+    EXPECT_EQ(plan.cases[1].sometimes, kTextured);
+    EXPECT_EQ(plan.cases[1].keys, (std::vector<int>{1, 2}));
+}
+
+TEST(Plan, AllMakesOneCase) {
+    const Plan plan = SmallScene().plan(MergePolicy::All);
+    ASSERT_EQ(plan.cases.size(), 1U);
+    EXPECT_EQ(plan.cases[0].always, 0U);
+    EXPECT_EQ(plan.cases[0].sometimes, bit(Feature::Unlit) | kTextured | kNormals);
+    EXPECT_EQ(plan.cases[0].keys.size(), 5U);
+    EXPECT_EQ(plan.always, plan.cases[0].always);
+    EXPECT_EQ(plan.sometimes, plan.cases[0].sometimes);
+}
+
+TEST(Plan, OfNothingHasNoCase) {
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+        const Plan plan = makePlan({}, {}, {{}, merge});
+        EXPECT_TRUE(plan.keys.empty());
+        EXPECT_TRUE(plan.cases.empty());
+        EXPECT_EQ(plan.always | plan.sometimes, 0U);
+        EXPECT_EQ(plan.keysPossible, 0.0);
+    }
+}
+
+TEST(Plan, DoesNotDependOnTheOrderOfPrimitives) {
+    SmallScene scene;
+    const Plan before = scene.plan(MergePolicy::None);
+    std::ranges::reverse(scene.primitives);
+    const Plan after = scene.plan(MergePolicy::None);
+    ASSERT_EQ(before.cases.size(), after.cases.size());
+    for (std::size_t i = 0; i < before.cases.size(); ++i) {
+        EXPECT_EQ(before.cases[i].name, after.cases[i].name);
+        EXPECT_EQ(before.cases[i].materials, after.cases[i].materials);
+    }
+}
+
+TEST(Plan, RecordsEachDropOnceWithItsMaterials) {
+    SmallScene scene;
+    for (Material& material : scene.materials) {
+        material.alphaMode = AlphaMode::Mask;
+    }
+    const Plan plan = scene.plan(MergePolicy::None);
+    int alphaDrops = 0;
+    for (const DroppedFeature& dropped : plan.dropped) {
+        if (dropped.feature == "alphaMask") {
+            ++alphaDrops;
+            EXPECT_EQ(dropped.materials, (std::vector<int>{0, 1, 2, 3, 4}));
+        }
+    }
+    EXPECT_EQ(alphaDrops, 1);
+}
+
+TEST(Plan, ExcessSaysWhatToDo) {
+    const SmallScene scene;
+    const Plan plan = scene.plan(MergePolicy::None);
+    EXPECT_FALSE(describeExcess(plan, MergePolicy::None, 0).has_value());
+    EXPECT_FALSE(describeExcess(plan, MergePolicy::None, 5).has_value());
+    EXPECT_NE(describeExcess(plan, MergePolicy::None, 4)->find("--merge family"), std::string::npos);
+    EXPECT_NE(describeExcess(plan, MergePolicy::None, 1)->find("--merge all"), std::string::npos);
+}
+
+Material randomMaterial(std::mt19937& random) {
+    const auto coin = [&] { return (random() & 1U) != 0; };
+    Material material;
+    for (TextureInfo& info : material.textures) {
+        info.texture = coin() ? 0 : -1;
+        info.texCoord = coin() ? 1 : 0;
+        info.transform.rotation = coin() ? 1.0F : 0.0F;
+    }
+    material.unlit = coin();
+    material.doubleSided = coin();
+    material.alphaMode = coin() ? AlphaMode::Mask : AlphaMode::Opaque;
+    material.emissiveFactor[0] = coin() ? 1.0F : 0.0F;
+    material.emissiveStrength = coin() ? 2.0F : 1.0F;
+    return material;
+}
+
+// What `always`, `sometimes` and "never" promise holds for every key of every case.
+TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
+    constexpr unsigned kSeed = 20240611;
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    std::vector<Material> materials;
+    std::vector<PrimitiveInputs> primitives;
+    for (int i = 0; i < 500; ++i) {
+        materials.push_back(randomMaterial(random));
+        PrimitiveInputs primitive;
+        primitive.material = i;
+        primitive.hasNormals = (random() & 1U) != 0;
+        primitive.hasTangents = (random() & 1U) != 0;
+        primitive.hasTexCoords0 = true;
+        primitive.hasTexCoords1 = (random() & 1U) != 0;
+        primitive.colors = static_cast<ColorContent>(random() % 3);
+        primitives.push_back(primitive);
+    }
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+        const Plan plan = makePlan(materials, primitives, {{AlphaPolicy::Tested}, merge});
+        std::set<std::string> names;
+        std::size_t keyCount = 0;
+        for (const Case& shaderCase : plan.cases) {
+            EXPECT_EQ(shaderCase.always & shaderCase.sometimes, 0U);
+            EXPECT_TRUE(names.insert(shaderCase.name).second) << shaderCase.name;
+            FeatureMask all = ~FeatureMask{0};
+            FeatureMask any = 0;
+            for (const int key : shaderCase.keys) {
+                all &= plan.keys[key].mask;
+                any |= plan.keys[key].mask;
+                EXPECT_EQ(plan.keys[key].shaderId, shaderCase.shaderId);
+            }
+            EXPECT_EQ(shaderCase.always, all);
+            EXPECT_EQ(shaderCase.sometimes, any & ~all);
+            keyCount += shaderCase.keys.size();
+        }
+        EXPECT_EQ(keyCount, plan.keys.size());
+    }
+}
+
+}  // namespace
