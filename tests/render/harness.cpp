@@ -1,0 +1,107 @@
+#include "render/harness.h"
+
+#include "cli/camera.h"
+#include "cli/scene_view.h"
+#include "cli/temporary_folder.h"
+#include "image/compare.h"
+
+#include <cmath>
+
+namespace glint::testing {
+
+Context& sharedContext() {
+    static const std::unique_ptr<Context> context = [] {
+        Result<std::unique_ptr<Context>> made = Context::createHeadless({Validation::Synchronization, {}});
+        if (!made) {
+            ADD_FAILURE() << toString(made.error());
+            std::abort();
+        }
+        return std::move(*made);
+    }();
+    return *context;
+}
+
+void expectNoValidationMessages() {
+    static std::size_t reported = 0;
+    const std::vector<std::string> messages = sharedContext().validationMessages();
+    for (; reported < messages.size(); ++reported) {
+        ADD_FAILURE() << messages[reported];
+    }
+}
+
+LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan) {
+    CompileSettings settings;
+    settings.plan = plan;
+    Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    if (!compiled) {
+        ADD_FAILURE() << toString(compiled.error());
+        return;
+    }
+    compiled_ = std::move(*compiled);
+    const Result<TemporaryFolder> folder = TemporaryFolder::create();
+    ASSERT_TRUE(folder.ok());
+    const std::filesystem::path path = folder->path() / "package";
+    const Status written = writePackage(compiled_, path);
+    ASSERT_TRUE(written.ok()) << toString(written.error());
+    Result<Package> package = Package::load(path);
+    ASSERT_TRUE(package.ok()) << toString(package.error());
+    package_ = std::make_unique<Package>(std::move(*package));
+
+    SceneViewData data = makeSceneView(scene);
+    if (scene.lights.empty()) {
+        data.lights.push_back(sunLight());
+    }
+    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), *package_, data.view());
+    ASSERT_TRUE(uploaded.ok()) << toString(uploaded.error());
+    gpuScene_ = std::move(*uploaded);
+}
+
+LoadedScene::~LoadedScene() = default;
+
+LinearImage LoadedScene::render(package::Strategy strategy, const RenderSetup& setup,
+                                FrameCounters* counters) const {
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(sharedContext(), *package_, *gpuScene_, {strategy, setup.width, setup.height});
+    if (!renderer) {
+        ADD_FAILURE() << toString(renderer.error());
+        return {};
+    }
+    Result<LinearImage> image = (*renderer)->render(setup.frame, setup.samples);
+    if (!image) {
+        ADD_FAILURE() << toString(image.error());
+        return {};
+    }
+    if (counters != nullptr) {
+        Result<FrameCounters> counted = (*renderer)->counters();
+        if (!counted) {
+            ADD_FAILURE() << toString(counted.error());
+            return {};
+        }
+        *counters = *counted;
+        EXPECT_EQ(counters->unknownShader, 0U);
+    }
+    expectNoValidationMessages();
+    return std::move(*image);
+}
+
+RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t height) {
+    RenderSetup setup;
+    setup.width = width;
+    setup.height = height;
+    const SceneViewData data = makeSceneView(scene);
+    const double aspect = static_cast<double>(width) / height;
+    const Result<CameraChoice> camera = chooseCamera(scene, data, "", aspect);
+    setup.frame.camera = camera ? camera->view : framingCamera(worldBounds(data), aspect);
+    return setup;
+}
+
+void expectSameImage(const LinearImage& image, const LinearImage& reference, const std::string& what) {
+    const Result<ImageDifference> difference = compareImages(image, reference, "image", "reference");
+    ASSERT_TRUE(difference.ok()) << what << ": " << toString(difference.error());
+    EXPECT_EQ(difference->nonFinite + difference->referenceNonFinite, 0U) << what;
+    const LargestError& worst = difference->relative;
+    EXPECT_LE(worst.value, 1e-4) << what << ": at (" << worst.x << ", " << worst.y << "), channel "
+                                 << worst.channel;
+}
+
+}  // namespace glint::testing
