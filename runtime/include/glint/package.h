@@ -47,8 +47,9 @@ public:
     // The entry for a primitive of a mesh, or null if the package does not know it.
     const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
 
+    struct State;  // for the runtime's own sources
+
 private:
-    struct State;
     explicit Package(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };

@@ -123,8 +123,9 @@ public:
 
     double pipelineCreationMs() const;
 
+    struct State;  // for the runtime's own sources
+
 private:
-    struct State;
     explicit Renderer(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };

@@ -1,0 +1,57 @@
+# glint_embed(TARGET OUTPUT file.cpp ROOTS dir… PATTERNS glob…): compiles text files into TARGET, found at run time by
+# their path below a root through glint::embeddedFiles() (tool/emit/embedded.h). Changed, added and removed files
+# rebuild it.
+#
+# The same file is the generator: cmake -DOUTPUT=… -DLIST=… -P GlintEmbed.cmake, where each line of LIST is "name|path".
+
+if(CMAKE_SCRIPT_MODE_FILE)
+  file(STRINGS "${LIST}" entries ENCODING UTF-8)
+  set(code "// Made by cmake/GlintEmbed.cmake from the shaders and templates. Do not edit.\n")
+  string(APPEND code "#include \"emit/embedded.h\"\n\nnamespace glint {\n\n")
+  string(APPEND code "std::span<const EmbeddedFile> embeddedFiles() {\n    static constexpr EmbeddedFile kFiles[] = {\n")
+  foreach(entry IN LISTS entries)
+    string(REGEX MATCH "^([^|]+)\\|(.+)$" matched "${entry}")
+    set(name "${CMAKE_MATCH_1}")
+    set(path "${CMAKE_MATCH_2}")
+    file(READ "${path}" text)
+    if(text MATCHES "\\)glint\"")
+      message(FATAL_ERROR "${path} holds the delimiter that embedding needs")
+    endif()
+    string(APPEND code "        {\"${name}\", R\"glint(${text})glint\"},\n")
+  endforeach()
+  string(APPEND code "    };\n    return kFiles;\n}\n\n}  // namespace glint\n")
+  file(WRITE "${OUTPUT}" "${code}")
+  return()
+endif()
+
+set(GLINT_EMBED_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
+
+function(glint_embed target)
+  cmake_parse_arguments(arg "" "OUTPUT" "ROOTS;PATTERNS" ${ARGN})
+  set(lines "")
+  set(inputs "")
+  foreach(root IN LISTS arg_ROOTS)
+    set(globs ${arg_PATTERNS})
+    list(TRANSFORM globs PREPEND "${root}/")
+    file(GLOB_RECURSE found RELATIVE "${root}" CONFIGURE_DEPENDS ${globs})
+    foreach(name IN LISTS found)
+      string(APPEND lines "${name}|${root}/${name}\n")
+      list(APPEND inputs "${root}/${name}")
+    endforeach()
+  endforeach()
+  if(NOT lines)
+    message(FATAL_ERROR "glint_embed: no file matches ${arg_PATTERNS} below ${arg_ROOTS}")
+  endif()
+  file(CONFIGURE OUTPUT "${arg_OUTPUT}.list" CONTENT "${lines}" @ONLY)
+  add_custom_command(
+    OUTPUT "${arg_OUTPUT}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUTPUT=${arg_OUTPUT}" "-DLIST=${arg_OUTPUT}.list" -P "${GLINT_EMBED_SCRIPT}"
+    DEPENDS ${inputs} "${arg_OUTPUT}.list" "${GLINT_EMBED_SCRIPT}"
+    COMMENT "Embedding shaders and templates"
+    VERBATIM)
+  # The target may live in another folder, where this rule is out of sight: it waits for a target of this one.
+  add_custom_target(${target}_embedded DEPENDS "${arg_OUTPUT}")
+  add_dependencies(${target} ${target}_embedded)
+  set_source_files_properties("${arg_OUTPUT}" TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)
+  target_sources(${target} PRIVATE "${arg_OUTPUT}")
+endfunction()

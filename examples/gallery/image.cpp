@@ -1,0 +1,93 @@
+#include "image.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#include <stb/stb_image_write.h>
+
+namespace gallery {
+
+namespace {
+
+std::uint8_t toByte(float value) {
+    return static_cast<std::uint8_t>(std::lround(glm::clamp(value, 0.0F, 1.0F) * 255.0F));
+}
+
+// Calls visit(index, uv) once for every pixel, rows shared out among the cores. Pixels do not depend on one
+// another, so the result does not depend on the number of threads.
+void forEachPixel(int width, int height, const std::function<void(int, const glm::vec2&)>& visit) {
+    const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
+    const auto rows = [&](int first) {
+        for (int y = first; y < height; y += threads) {
+            for (int x = 0; x < width; ++x) {
+                visit(y * width + x, {(static_cast<float>(x) + 0.5F) / static_cast<float>(width),
+                                      (static_cast<float>(y) + 0.5F) / static_cast<float>(height)});
+            }
+        }
+    };
+    std::vector<std::future<void>> work;
+    for (int thread = 1; thread < threads; ++thread) {
+        work.push_back(std::async(std::launch::async, rows, thread));
+    }
+    rows(0);
+}
+
+}  // namespace
+
+Image paint(int width, int height, int channels, const std::function<glm::vec4(const glm::vec2&)>& colorOf) {
+    Image image{width, height, channels, {}};
+    image.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height * channels));
+    forEachPixel(width, height, [&](int index, const glm::vec2& uv) {
+        const glm::vec4 color = colorOf(uv);
+        for (int channel = 0; channel < channels; ++channel) {
+            image.pixels[static_cast<std::size_t>(index * channels + channel)] = toByte(color[channel]);
+        }
+    });
+    return image;
+}
+
+HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heightOf) {
+    HeightField field{size, {}};
+    field.heights.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    forEachPixel(size, size, [&](int index, const glm::vec2& uv) {
+        field.heights[static_cast<std::size_t>(index)] = heightOf(uv);
+    });
+    return field;
+}
+
+Image normalMap(const HeightField& field) {
+    // Central differences: two pixels of 1 / size each.
+    const float scale = 0.5F * static_cast<float>(field.size);
+    return paint(field.size, field.size, 3, [&](const glm::vec2& uv) {
+        const int x = static_cast<int>(uv.x * static_cast<float>(field.size));
+        const int y = static_cast<int>(uv.y * static_cast<float>(field.size));
+        const float slopeRight = (field.at(x + 1, y) - field.at(x - 1, y)) * scale;
+        const float slopeUp = (field.at(x, y - 1) - field.at(x, y + 1)) * scale;
+        const glm::vec3 normal = glm::normalize(glm::vec3(-slopeRight, -slopeUp, 1.0F));
+        return glm::vec4(normal * 0.5F + 0.5F, 1.0F);
+    });
+}
+
+glint::Result<std::vector<std::uint8_t>> encodePng(const Image& image) {
+    std::vector<std::uint8_t> bytes;
+    const auto sink = [](void* context, void* data, int size) {
+        auto* out = static_cast<std::vector<std::uint8_t>*>(context);
+        const auto* begin = static_cast<const std::uint8_t*>(data);
+        out->insert(out->end(), begin, begin + size);
+    };
+    const int done = stbi_write_png_to_func(sink, &bytes, image.width, image.height, image.channels,
+                                            image.pixels.data(), image.width * image.channels);
+    if (done == 0) {
+        return glint::makeError("png-encode", "", "cannot encode a PNG of this size", "free some memory");
+    }
+    return bytes;
+}
+
+}  // namespace gallery

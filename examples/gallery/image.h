@@ -1,0 +1,46 @@
+// Images in memory, height fields, and PNG.
+#pragma once
+
+#include <glint/result.h>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace gallery {
+
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 3;                  // 3 or 4
+    std::vector<std::uint8_t> pixels;  // first row on top
+};
+
+// Calls `colorOf` at every pixel centre with u to the right and v down, both within (0, 1).
+// Colours are stored as they come, clamped to [0, 1]: encode sRGB where the texture is a colour.
+Image paint(int width, int height, int channels, const std::function<glm::vec4(const glm::vec2&)>& colorOf);
+
+// Heights over the unit square, in units of its width; repeats at the borders.
+struct HeightField {
+    int size = 0;
+    std::vector<float> heights;
+
+    float at(int x, int y) const {
+        return heights[static_cast<std::size_t>((y & (size - 1)) * size + (x & (size - 1)))];
+    }
+};
+
+// `size` is a power of two.
+HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heightOf);
+
+// The tangent-space normals of a height field in glTF's convention: +X right, +Y up the image.
+Image normalMap(const HeightField& field);
+
+// Errors: "png-encode".
+glint::Result<std::vector<std::uint8_t>> encodePng(const Image& image);
+
+}  // namespace gallery

@@ -1,0 +1,107 @@
+// Floor, walls, gate, beams, sea; and the lights and cameras.
+#include "scene.h"
+#include "shapes.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+namespace gallery {
+
+namespace {
+
+constexpr float kHalfWidth = 5.0F;
+constexpr float kFrontZ = 6.0F;
+constexpr float kWallHeight = 4.2F;
+constexpr float kWallThickness = 0.24F;
+constexpr unsigned kPlain = kNormals;
+constexpr unsigned kTextured = kNormals | kTexCoord0;
+constexpr unsigned kBumped = kTextured | kTangents;
+
+glm::quat turn(float degrees, const glm::vec3& axis) {
+    return glm::angleAxis(glm::radians(degrees), axis);
+}
+
+const glm::vec3 kX(1.0F, 0.0F, 0.0F);
+const glm::vec3 kY(0.0F, 1.0F, 0.0F);
+
+// A camera or light at `from` that looks at `to`.
+Placement lookAt(const glm::vec3& from, const glm::vec3& to) {
+    const glm::vec3 forward = glm::normalize(to - from);
+    return {from, glm::quatLookAt(forward, std::abs(forward.y) > 0.99F ? kX : kY)};
+}
+
+void addGround(GltfWriter& writer, const MaterialSet& materials) {
+    const float depth = kFrontZ + 4.0F - kBackWallZ;
+    const int floor = writer.addMesh(
+        "Floor",
+        {{writer.addGeometry(panel({2.0F * kHalfWidth + 1.0F, depth}), kTextured), materials.floor}});
+    writer.addMeshNode("Floor", floor, {{0.0F, 0.0F, kBackWallZ - 1.5F + 0.5F * depth}, turn(-90.0F, kX)});
+    const int edge = writer.addMesh(
+        "Terrace", {{writer.addGeometry(box({2.0F * kHalfWidth + 1.02F, 0.5F, depth + 0.02F}), kPlain),
+                     materials.stone}});
+    writer.addMeshNode("Terrace", edge, {{0.0F, -0.252F, kBackWallZ - 1.5F + 0.5F * depth}});
+    const int sea =
+        writer.addMesh("Sea", {{writer.addGeometry(panel({400.0F, 400.0F}), kBumped), materials.water}});
+    writer.addMeshNode("Sea", sea, {{0.0F, -0.9F, 0.0F}, turn(-90.0F, kX)});
+}
+
+void addWalls(GltfWriter& writer, const MaterialSet& materials) {
+    const MeshData wall =
+        gateWall({2.0F * kHalfWidth, kWallHeight, kWallThickness}, {0.0F, kGateHeight}, kGateRadius);
+    const int back = writer.addMesh("Back wall", {{writer.addGeometry(wall, kBumped), materials.brick}});
+    writer.addMeshNode("Back wall", back, {{0.0F, 0.0F, kBackWallZ}});
+
+    // The ring hides the cut edge of the wall: its tube is wider than the wall is thick.
+    const int ring = writer.addMesh(
+        "Gate ring", {{writer.addGeometry(torus(kGateRadius, 0.15F, 128, 24), kPlain), materials.copper}});
+    writer.addMeshNode("Gate ring", ring,
+                       {{0.0F, kGateHeight, kBackWallZ}, turn(90.0F, kX), {1.0F, 1.15F, 1.0F}});
+
+    const float length = kFrontZ - kBackWallZ;
+    const int side = writer.addGeometry(box({kWallThickness, kWallHeight, length}), kTextured);
+    const float middle = 0.5F * (kFrontZ + kBackWallZ);
+    writer.addMeshNode("Left wall", writer.addMesh("Left wall", {{side, materials.plasterLeft}}),
+                       {{-kHalfWidth, 0.5F * kWallHeight, middle}});
+    writer.addMeshNode("Right wall", writer.addMesh("Right wall", {{side, materials.plasterRight}}),
+                       {{kHalfWidth, 0.5F * kWallHeight, middle}});
+    const int skirting = writer.addMesh(
+        "Skirting", {{writer.addGeometry(box({0.06F, 0.16F, length}), kPlain), materials.stone}});
+    for (const float side_x : {-1.0F, 1.0F}) {
+        writer.addMeshNode("Skirting", skirting,
+                           {{side_x * (kHalfWidth - 0.5F * kWallThickness - 0.03F), 0.08F, middle}});
+    }
+}
+
+void addBeams(GltfWriter& writer, const MaterialSet& materials) {
+    const int beam = writer.addMesh(
+        "Beam",
+        {{writer.addGeometry(box({2.0F * kHalfWidth + 0.8F, 0.22F, 0.14F}), kTextured), materials.beamWood}});
+    for (int index = 0; index < 6; ++index) {
+        writer.addMeshNode(
+            "Beam", beam,
+            {{0.0F, kWallHeight + 0.11F, kBackWallZ + 0.4F + 1.85F * static_cast<float>(index)}});
+    }
+}
+
+}  // namespace
+
+void addRoom(GltfWriter& writer, const MaterialSet& materials) {
+    addGround(writer, materials);
+    addWalls(writer, materials);
+    addBeams(writer, materials);
+}
+
+void addLightsAndCameras(GltfWriter& writer) {
+    const std::array<double, 3> warm{1.0, 0.72, 0.45};
+    writer.addLightNode({"Sun", "directional", {1.0, 0.94, 0.84}, 2.6},
+                        lookAt({3.0F, 6.0F, 4.5F}, {0.0F, 0.0F, 0.0F}));
+    writer.addLightNode({"Lantern light", "point", warm, 7.0}, {{-1.75F, 2.75F, -1.3F}});
+    writer.addLightNode({"Lamp light", "point", warm, 9.0}, {{3.1F, 2.2F, -2.6F}});
+    writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, 10.0}, {{-1.5F, 3.6F, 3.0F}});
+    writer.addLightNode({"Knot spot", "spot", {1.0, 0.92, 0.80}, 40.0, std::array{0.16, 0.30}},
+                        lookAt({1.2F, 4.1F, 1.2F}, {0.0F, 1.95F, -2.2F}));
+    writer.addCameraNode("main", 0.70, lookAt({0.9F, 1.85F, 7.3F}, {0.05F, 1.40F, -2.0F}));
+    writer.addCameraNode("detail", 0.62, lookAt({2.6F, 1.35F, 3.6F}, {0.4F, 0.75F, 0.4F}));
+}
+
+}  // namespace gallery

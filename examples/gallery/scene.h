@@ -1,0 +1,65 @@
+// The gallery: a roofless room by the sea, with exhibits in more materials than most scenes have.
+#pragma once
+
+#include "gltf_writer.h"
+
+#include <glint/result.h>
+
+#include <filesystem>
+
+namespace gallery {
+
+// Indices of materials in the file, named by what they cover.
+struct MaterialSet {
+    int floor;
+    int brick;
+    int plasterLeft;
+    int plasterRight;
+    int beamWood;
+    int benchWood;
+    int water;
+    int stone;
+    int marblePlinth;
+    int marbleTable;
+    int gold;
+    int copper;
+    int mirror;
+    int redRubber;
+    int bluePlastic;
+    int whitePlastic;
+    int vase;
+    int ruby;
+    int emerald;
+    int paintedStairs;
+    int agave;
+    int screen;
+    int lantern;
+    int lanternCore;
+    int glass;
+    int neonPink;
+    int neonCyan;
+    int lampPanel;
+    int sign;
+    int painting;
+    int frame;
+    int brushedSteel;
+    int hammeredCopper;
+    int globe;
+    int tintedMarble;
+};
+
+MaterialSet addMaterials(GltfWriter& writer);
+
+void addRoom(GltfWriter& writer, const MaterialSet& materials);
+void addExhibits(GltfWriter& writer, const MaterialSet& materials);
+void addLightsAndCameras(GltfWriter& writer);
+
+// Where the gate stands in the back wall.
+inline constexpr float kBackWallZ = -4.0F;
+inline constexpr float kGateHeight = 2.15F;
+inline constexpr float kGateRadius = 1.65F;
+
+// Writes gallery.gltf, gallery.bin and the textures into `folder`. Errors: "gallery-write", "png-encode".
+glint::Status writeGallery(const std::filesystem::path& folder);
+
+}  // namespace gallery

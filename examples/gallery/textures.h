@@ -1,0 +1,41 @@
+// The images of the scene. Colours come sRGB-encoded; metallic-roughness images hold occlusion in red,
+// roughness in green and metalness in blue.
+#pragma once
+
+#include "image.h"
+
+namespace gallery {
+
+// Surfaces (surface_textures.cpp); all of them repeat.
+Image floorColor();  // four tiles a side, chequered
+Image floorMetallicRoughness();
+Image brickColor();
+Image brickOcclusionRoughnessMetallic();
+Image brickNormal();
+Image plasterColor();
+Image plasterNormal();
+Image woodColor();  // grain along u
+Image woodMetallicRoughness();
+Image marbleColor();
+Image waterNormal();
+Image brushedMetallicRoughness();  // strokes along u
+Image brushedNormal();
+Image hammeredNormal();
+Image canvasNormal();
+
+// Motifs (motif_textures.cpp): pictures with an up and a right.
+Image vaseColor();
+Image vaseMetallicRoughness();
+Image globeColor();
+Image globeMetallicRoughness();
+Image globeEmissive();
+Image screenColor();   // alpha cuts leaves out
+Image lanternColor();  // alpha cuts round holes out
+Image lanternEmissive();
+Image lampColor();
+Image signColor();
+Image signEmissive();
+Image paintingColor();
+Image footOcclusion();  // darker towards the foot and the edges
+
+}  // namespace gallery

@@ -1,0 +1,62 @@
+// Building acceleration structures.
+#pragma once
+
+#include "memory.h"
+#include "resources.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Members are destroyed in reverse: the structure before its buffer.
+struct AccelerationStructure {
+    Buffer buffer;
+    UniqueAccelerationStructure handle;
+    VkDeviceAddress address = 0;
+};
+
+// One geometry of a BLAS: a triangle list in device buffers.
+struct BlasGeometry {
+    VkDeviceAddress positions = 0;  // three floats each
+    VkDeviceAddress indices = 0;
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;  // not 0
+    bool opaque = true;
+};
+
+struct BlasInput {
+    std::vector<BlasGeometry> geometries;  // not empty
+    std::string where;                     // for messages
+};
+
+struct BlasStatistics {
+    std::uint64_t bytes = 0;
+    std::uint64_t uncompactedBytes = 0;
+    double buildMs = 0.0;
+};
+
+// Builds and compacts all inputs, in batches that bound scratch and transient memory; waits for the device.
+// `pool` must outlive the result. Errors: "blas-limit", naming the mesh; those of buffers and submissions.
+Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
+                                                       std::span<const BlasInput> inputs,
+                                                       BlasStatistics& statistics);
+
+// Builds a TLAS, which may be of no instances; waits for the device. Error "tlas-limit".
+Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
+                                        std::span<const VkAccelerationStructureInstanceKHR> instances,
+                                        double& buildMs);
+
+// For both: a structure of `bytes`, not yet built.
+Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                              VkAccelerationStructureTypeKHR type);
+// A scratch buffer; `address` is aligned as the device wants it.
+struct Scratch {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+};
+Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
+
+}  // namespace glint

@@ -1,0 +1,286 @@
+// Bottom levels: sizes, batches, compaction.
+#include "acceleration.h"
+#include "commands.h"
+#include "timer.h"
+#include "vulkan_error.h"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+// What one batch may take beside the structures that stay: scratch, and structures before compaction.
+constexpr VkDeviceSize kBatchScratchBytes = VkDeviceSize{64} << 20;
+constexpr VkDeviceSize kBatchStructureBytes = VkDeviceSize{256} << 20;
+
+constexpr MemoryDependency kBuildToBuild{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+                                         VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
+constexpr MemoryDependency kBuildToAll{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                                       VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+                                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
+
+// An input in Vulkan's terms. `info` points into `geometries`: vectors keep that when a Blas moves.
+struct BlasBuild {
+    std::vector<VkAccelerationStructureGeometryKHR> geometries;
+    std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    VkDeviceSize structureBytes = 0;
+    VkDeviceSize scratchBytes = 0;  // rounded up to the alignment of scratch
+};
+
+Status checkLimits(const Context::State& context, const BlasInput& input) {
+    const VkPhysicalDeviceAccelerationStructurePropertiesKHR& limits = context.limits.accelerationStructure;
+    if (input.geometries.size() > limits.maxGeometryCount) {
+        return makeError("blas-limit", input.where,
+                         "the mesh has " + std::to_string(input.geometries.size()) +
+                             " primitives, the device takes " + std::to_string(limits.maxGeometryCount),
+                         "split the mesh");
+    }
+    std::uint64_t triangles = 0;
+    for (const BlasGeometry& geometry : input.geometries) {
+        triangles += geometry.triangleCount;
+    }
+    if (triangles > limits.maxPrimitiveCount) {
+        return makeError("blas-limit", input.where,
+                         "the mesh has " + std::to_string(triangles) + " triangles, the device takes " +
+                             std::to_string(limits.maxPrimitiveCount),
+                         "split the mesh");
+    }
+    return okStatus();
+}
+
+VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
+    VkAccelerationStructureGeometryKHR described{};
+    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+    described.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    described.flags = geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : 0;
+    VkAccelerationStructureGeometryTrianglesDataKHR& triangles = described.geometry.triangles;
+    triangles.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
+    triangles.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
+    triangles.vertexData.deviceAddress = geometry.positions;
+    triangles.vertexStride = 3 * sizeof(float);
+    triangles.maxVertex = geometry.vertexCount - 1;
+    triangles.indexType = VK_INDEX_TYPE_UINT32;
+    triangles.indexData.deviceAddress = geometry.indices;
+    return described;
+}
+
+BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
+    BlasBuild build;
+    std::vector<std::uint32_t> counts;
+    for (const BlasGeometry& geometry : input.geometries) {
+        build.geometries.push_back(describeGeometry(geometry));
+        VkAccelerationStructureBuildRangeInfoKHR range{};
+        range.primitiveCount = geometry.triangleCount;
+        build.ranges.push_back(range);
+        counts.push_back(geometry.triangleCount);
+    }
+    build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+    build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
+    build.info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
+                       VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+    build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+    build.info.geometryCount = static_cast<std::uint32_t>(build.geometries.size());
+    build.info.pGeometries = build.geometries.data();
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
+                                                     VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
+                                                     &build.info, counts.data(), &sizes);
+    const VkDeviceSize alignment =
+        context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
+    build.structureBytes = sizes.accelerationStructureSize;
+    build.scratchBytes = (sizes.buildScratchSize + alignment - 1) / alignment * alignment;
+    return build;
+}
+
+// Builds one batch, in transient memory, and its compacted copies.
+class BatchBuilder {
+public:
+    BatchBuilder(Context::State& context, MemoryPool& pool, std::span<BlasBuild> builds)
+        : context_(context), pool_(pool), builds_(builds), transient_(context) {}
+
+    Status run(std::vector<AccelerationStructure>& compacted, BlasStatistics& statistics) {
+        Result<CommandRunner> runner = CommandRunner::create(context_);
+        if (!runner) {
+            return runner.error();
+        }
+        if (Status status = prepare(); !status) {
+            return status;
+        }
+        if (Status status = build(*runner, statistics); !status) {
+            return status;
+        }
+        return compact(*runner, compacted, statistics);
+    }
+
+private:
+    std::uint32_t count() const {
+        return static_cast<std::uint32_t>(builds_.size());
+    }
+
+    Status prepare() {
+        VkDeviceSize scratchBytes = 0;
+        for (const BlasBuild& build : builds_) {
+            scratchBytes += build.scratchBytes;
+        }
+        Result<Scratch> scratch = createScratch(context_, transient_, scratchBytes);
+        if (!scratch) {
+            return scratch.error();
+        }
+        scratch_ = std::move(*scratch);
+        VkDeviceAddress address = scratch_.address;
+        for (BlasBuild& build : builds_) {
+            Result<AccelerationStructure> structure = createStructure(
+                context_, transient_, build.structureBytes, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
+            if (!structure) {
+                return structure.error();
+            }
+            build.info.dstAccelerationStructure = structure->handle.get();
+            build.info.scratchData.deviceAddress = address;
+            address += build.scratchBytes;
+            handles_.push_back(structure->handle.get());
+            structures_.push_back(std::move(*structure));
+        }
+        VkQueryPoolCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+        info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
+        info.queryCount = count();
+        VkQueryPool queries = VK_NULL_HANDLE;
+        const VkResult result =
+            context_.vk.CreateQueryPool(context_.handles.device, &info, nullptr, &queries);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkCreateQueryPool", result);
+        }
+        queries_ = UniqueQueryPool(context_, queries);
+        context_.vk.ResetQueryPool(context_.handles.device, queries, 0, count());
+        return okStatus();
+    }
+
+    Status build(CommandRunner& runner, BlasStatistics& statistics) {
+        Result<Timer> timer = Timer::create(context_, 1);
+        if (!timer) {
+            return timer.error();
+        }
+        Result<VkCommandBuffer> commands = runner.begin();
+        if (!commands) {
+            return commands.error();
+        }
+        std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+        std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
+        for (const BlasBuild& build : builds_) {
+            infos.push_back(build.info);
+            ranges.push_back(build.ranges.data());
+            statistics.uncompactedBytes += build.structureBytes;
+        }
+        timer->recordBegin(*commands, 0);
+        context_.vk.CmdBuildAccelerationStructuresKHR(*commands, count(), infos.data(), ranges.data());
+        timer->recordEnd(*commands, 0);
+        recordDependency(context_, *commands, kBuildToBuild);
+        context_.vk.CmdWriteAccelerationStructuresPropertiesKHR(
+            *commands, count(), handles_.data(), VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
+            queries_.get(), 0);
+        if (Status status = runner.submitAndWait(); !status) {
+            return status;
+        }
+        if (timer->available()) {
+            Result<std::vector<double>> milliseconds = timer->read(1);
+            if (!milliseconds) {
+                return milliseconds.error();
+            }
+            statistics.buildMs += milliseconds->front();
+        }
+        return okStatus();
+    }
+
+    Status compact(CommandRunner& runner, std::vector<AccelerationStructure>& compacted,
+                   BlasStatistics& statistics) {
+        std::vector<VkDeviceSize> sizes(builds_.size());
+        const VkResult result = context_.vk.GetQueryPoolResults(
+            context_.handles.device, queries_.get(), 0, count(), sizes.size() * sizeof(VkDeviceSize),
+            sizes.data(), sizeof(VkDeviceSize), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkGetQueryPoolResults", result);
+        }
+        Result<VkCommandBuffer> commands = runner.begin();
+        if (!commands) {
+            return commands.error();
+        }
+        recordDependency(context_, *commands, kBuildToBuild);
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            Result<AccelerationStructure> structure =
+                createStructure(context_, pool_, sizes[i], VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
+            if (!structure) {
+                return structure.error();
+            }
+            VkCopyAccelerationStructureInfoKHR copy{};
+            copy.sType = VK_STRUCTURE_TYPE_COPY_ACCELERATION_STRUCTURE_INFO_KHR;
+            copy.src = handles_[i];
+            copy.dst = structure->handle.get();
+            copy.mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR;
+            context_.vk.CmdCopyAccelerationStructureKHR(*commands, &copy);
+            statistics.bytes += sizes[i];
+            compacted.push_back(std::move(*structure));
+        }
+        recordDependency(context_, *commands, kBuildToAll);
+        return runner.submitAndWait();
+    }
+
+    Context::State& context_;
+    MemoryPool& pool_;
+    std::span<BlasBuild> builds_;
+    MemoryPool transient_;
+    Scratch scratch_;
+    std::vector<AccelerationStructure> structures_;
+    std::vector<VkAccelerationStructureKHR> handles_;
+    UniqueQueryPool queries_;
+};
+
+// The end of the batch that starts at `first`: one build at least.
+std::size_t batchEnd(const Context::State& context, std::span<const BlasBuild> builds, std::size_t first) {
+    // Drivers that bind scratch as a storage buffer have its limit, too.
+    const VkDeviceSize scratchLimit =
+        std::min<VkDeviceSize>(kBatchScratchBytes, context.limits.core.maxStorageBufferRange);
+    VkDeviceSize scratch = builds[first].scratchBytes;
+    VkDeviceSize structures = builds[first].structureBytes;
+    std::size_t end = first + 1;
+    while (end < builds.size() && scratch + builds[end].scratchBytes <= scratchLimit &&
+           structures + builds[end].structureBytes <= kBatchStructureBytes) {
+        scratch += builds[end].scratchBytes;
+        structures += builds[end].structureBytes;
+        ++end;
+    }
+    return end;
+}
+
+}  // namespace
+
+Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
+                                                       std::span<const BlasInput> inputs,
+                                                       BlasStatistics& statistics) {
+    std::vector<BlasBuild> builds;
+    builds.reserve(inputs.size());
+    for (const BlasInput& input : inputs) {
+        if (Status status = checkLimits(context, input); !status) {
+            return status.error();
+        }
+        builds.push_back(describeBuild(context, input));
+    }
+    std::vector<AccelerationStructure> structures;
+    structures.reserve(inputs.size());
+    std::size_t first = 0;
+    while (first < builds.size()) {
+        const std::size_t end = batchEnd(context, builds, first);
+        BatchBuilder batch(context, pool, std::span(builds).subspan(first, end - first));
+        if (Status status = batch.run(structures, statistics); !status) {
+            return status.error();
+        }
+        first = end;
+    }
+    return structures;
+}
+
+}  // namespace glint

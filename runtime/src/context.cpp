@@ -1,0 +1,178 @@
+#include "context_state.h"
+#include "requirements.h"
+#include "vulkan_error.h"
+
+#include <utility>
+
+namespace glint {
+
+void ValidationLog::add(std::string message) {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back(std::move(message));
+}
+
+std::vector<std::string> ValidationLog::messages() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+}
+
+Context::State::~State() {
+    if (handles.device != VK_NULL_HANDLE) {
+        if (pipelineCache != VK_NULL_HANDLE) {
+            vk.DestroyPipelineCache(handles.device, pipelineCache, nullptr);
+        }
+        if (ownsDevice && vk.DestroyDevice != nullptr) {
+            vk.DestroyDevice(handles.device, nullptr);
+        }
+    }
+    if (ownsInstance) {
+        if (messenger != VK_NULL_HANDLE) {
+            instance.DestroyDebugUtilsMessengerEXT(handles.instance, messenger, nullptr);
+        }
+        instance.DestroyInstance(handles.instance, nullptr);
+    }
+}
+
+namespace {
+
+void queryLimits(Context::State& state) {
+    DeviceLimits& limits = state.limits;
+    limits.accelerationStructure.sType =
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceVulkan13Properties vulkan13{};
+    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;
+    vulkan13.pNext = &limits.accelerationStructure;
+    VkPhysicalDeviceVulkan12Properties vulkan12{};
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+    vulkan12.pNext = &vulkan13;
+    VkPhysicalDeviceVulkan11Properties vulkan11{};
+    vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
+    vulkan11.pNext = &vulkan12;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &vulkan11;
+    state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
+    limits.accelerationStructure.pNext = nullptr;
+    limits.core = properties.properties.limits;
+    limits.maxAllocationBytes = vulkan11.maxMemoryAllocationSize;
+    limits.maxBufferBytes = vulkan13.maxBufferSize;
+    limits.maxTextures = vulkan12.maxPerStageDescriptorUpdateAfterBindSampledImages;
+    limits.maxSamplers = vulkan12.maxPerStageDescriptorUpdateAfterBindSamplers;
+    limits.deviceName = properties.properties.deviceName;
+    limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
+    state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
+}
+
+Status checkQueueFamily(Context::State& state) {
+    std::uint32_t count = 0;
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
+                                                          families.data());
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    const std::uint32_t family = state.handles.queueFamily;
+    if (family >= count || (families[family].queueFlags & kNeeded) != kNeeded) {
+        return makeError("context-queue", "",
+                         "queue family " + std::to_string(family) + " has no graphics and compute",
+                         "pass a queue of a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT");
+    }
+    state.limits.timestampValidBits = families[family].timestampValidBits;
+    return okStatus();
+}
+
+Status checkHandles(const DeviceHandles& handles) {
+    const std::pair<bool, const char*> needed[] = {
+        {handles.instance != VK_NULL_HANDLE, "instance"},
+        {handles.physicalDevice != VK_NULL_HANDLE, "physicalDevice"},
+        {handles.device != VK_NULL_HANDLE, "device"},
+        {handles.queue != VK_NULL_HANDLE, "queue"}};
+    for (const auto& [present, name] : needed) {
+        if (!present) {
+            return makeError("context-handles", "", std::string("DeviceHandles::") + name + " is null",
+                             "fill every handle before Context::adopt()");
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Status finishContext(Context::State& state) {
+    Result<DeviceTable> table = loadDeviceTable(state.instance, state.handles.device);
+    if (!table) {
+        return table.error();
+    }
+    state.vk = *table;
+    queryLimits(state);
+    if (Status status = checkQueueFamily(state); !status) {
+        return status;
+    }
+    VkPipelineCacheCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    const VkResult result =
+        state.vk.CreatePipelineCache(state.handles.device, &info, nullptr, &state.pipelineCache);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineCache", result);
+    }
+    return okStatus();
+}
+
+Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
+    if (Status status = checkHandles(handles); !status) {
+        return status.error();
+    }
+    auto state = std::make_unique<State>();
+    DeviceHandles complete = handles;
+    if (complete.getInstanceProcAddr == nullptr) {
+        Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
+        if (!library) {
+            return library.error();
+        }
+        state->library = *library;
+        complete.getInstanceProcAddr = state->library->getInstanceProcAddr();
+    }
+    Result<InstanceTable> instance = loadInstanceTable(complete.getInstanceProcAddr, complete.instance);
+    if (!instance) {
+        return instance.error();
+    }
+    state->instance = *instance;
+    state->handles = complete;
+    DeviceReport report;
+    if (Status status = queryDevice(state->instance, complete.physicalDevice, report); !status) {
+        return status.error();
+    }
+    if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
+        return makeError("device-features", "", "the device lacks " + joinNames(missing),
+                         "update the driver or use another device");
+    }
+    if (Status status = finishContext(*state); !status) {
+        return status.error();
+    }
+    return std::unique_ptr<Context>(new Context(std::move(state)));
+}
+
+Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Context::~Context() = default;
+
+const DeviceHandles& Context::handles() const {
+    return state_->handles;
+}
+
+std::string Context::deviceName() const {
+    return state_->limits.deviceName;
+}
+
+std::string Context::driverName() const {
+    return state_->limits.driverName;
+}
+
+std::vector<std::string> Context::validationMessages() const {
+    return state_->log.messages();
+}
+
+Context::State& Context::state() {
+    return *state_;
+}
+
+}  // namespace glint

@@ -1,0 +1,63 @@
+// What the runtime's own sources see of a Context.
+#pragma once
+
+#include "vulkan_table.h"
+
+#include <glint/context.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Messages of the validation layer; the driver may report from several threads.
+class ValidationLog {
+public:
+    void add(std::string message);
+    std::vector<std::string> messages() const;
+
+private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> messages_;
+};
+
+// Limits that uploads and renderers check against.
+struct DeviceLimits {
+    VkPhysicalDeviceLimits core{};
+    VkPhysicalDeviceMemoryProperties memory{};
+    VkDeviceSize maxAllocationBytes = 0;
+    VkDeviceSize maxBufferBytes = 0;
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
+    std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
+    std::uint32_t maxSamplers = 0;
+    std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
+    std::string deviceName;
+    std::string driverName;
+};
+
+struct Context::State {
+    State() = default;
+    ~State();
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    // Null where the caller gave its own vkGetInstanceProcAddr. Declared first: closed last.
+    std::shared_ptr<VulkanLibrary> library;
+    InstanceTable instance;
+    DeviceTable vk;
+    DeviceHandles handles;
+    bool ownsInstance = false;
+    bool ownsDevice = false;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    ValidationLog log;
+    DeviceLimits limits;
+    // In memory only; shared by the renderers of this context.
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+};
+
+// Fills what follows from the handles: device functions, limits, pipeline cache.
+Status finishContext(Context::State& state);
+
+}  // namespace glint

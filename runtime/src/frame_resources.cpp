@@ -1,0 +1,209 @@
+#include "frame_resources.h"
+
+#include "commands.h"
+#include "vulkan_error.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace glint {
+
+Status checkFrameSize(const Context::State& context, const FrameSize& size) {
+    const VkPhysicalDeviceLimits& limits = context.limits.core;
+    const std::uint32_t maxWidth = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
+    const std::uint32_t maxHeight = std::min(limits.maxImageDimension2D, limits.maxFramebufferHeight);
+    const std::string asked = std::to_string(size.width) + " x " + std::to_string(size.height);
+    if (size.width == 0 || size.height == 0 || size.width > maxWidth || size.height > maxHeight) {
+        return makeError("render-size", "", "an image of " + asked + " pixels cannot be rendered",
+                         "use 1 x 1 to " + std::to_string(maxWidth) + " x " + std::to_string(maxHeight));
+    }
+    const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
+    // The ray list has a record for every pixel, and 32 bits number them.
+    if (pixels > std::numeric_limits<std::uint32_t>::max() ||
+        pixels * sizeof(gpu::RayRecord) > context.limits.maxBufferBytes) {
+        return makeError("render-size", "",
+                         "the rays of " + asked + " pixels do not fit a buffer of the device",
+                         "render a smaller image");
+    }
+    return okStatus();
+}
+
+namespace {
+
+Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        ImageInfo info;
+        info.extent = {size.width, size.height};
+        const bool surface = binding == gpu::kBindingSurface;
+        info.format = surface ? kSurfaceFormat : VK_FORMAT_R32G32B32A32_SFLOAT;
+        info.usage =
+            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        if (surface) {
+            info.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        }
+        if (binding == gpu::kBindingAccumulated) {
+            info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // so that the caller can draw it
+        }
+        Result<Image> image = createImage(context, frame.pool, info);
+        if (!image) {
+            return image.error();
+        }
+        frame.images[binding] = std::move(*image);
+    }
+    ImageInfo info;
+    info.extent = {size.width, size.height};
+    info.format = kDepthFormat;
+    info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    Result<Image> depth = createImage(context, frame.pool, info);
+    if (!depth) {
+        return depth.error();
+    }
+    frame.depth = std::move(*depth);
+    return okStatus();
+}
+
+Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    constexpr VkBufferUsageFlags kCleared =
+        kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
+    const VkDeviceSize ordered = size.ordered ? pixels : 1;
+    const VkDeviceSize bucketBytes = sizeof(gpu::BucketRecord) * size.bucketCount;
+    const struct {
+        Buffer& target;
+        VkDeviceSize bytes;
+        VkBufferUsageFlags usage;
+        MemoryUse use;
+    } wanted[] = {
+        {frame.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
+        {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage, MemoryUse::Device},
+        {frame.hits, ordered * sizeof(gpu::HitRecord), kStorage, MemoryUse::Device},
+        {frame.orderedHits, ordered * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
+        {frame.buckets, bucketBytes, kCleared, MemoryUse::Device},
+        {frame.rayDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.bucketDispatch, sizeof(gpu::DispatchArguments) * size.bucketCount, kIndirect,
+         MemoryUse::Device},
+        {frame.counters, kReadbackBucketOffset, kCleared, MemoryUse::Device},
+        {frame.readback, kReadbackBucketOffset + bucketBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+         MemoryUse::Readback},
+    };
+    for (const auto& entry : wanted) {
+        Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use);
+        if (!buffer) {
+            return buffer.error();
+        }
+        entry.target = std::move(*buffer);
+    }
+    return okStatus();
+}
+
+Status createSet(Context::State& context, FrameResources& frame) {
+    std::array<VkDescriptorSetLayoutBinding, gpu::kFrameImageCount> bindings{};
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        bindings[binding] = {binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, VK_SHADER_STAGE_COMPUTE_BIT,
+                             nullptr};
+    }
+    VkDescriptorSetLayoutCreateInfo layoutInfo{};
+    layoutInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    layoutInfo.bindingCount = gpu::kFrameImageCount;
+    layoutInfo.pBindings = bindings.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    const VkDevice device = context.handles.device;
+    VkResult result = context.vk.CreateDescriptorSetLayout(device, &layoutInfo, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDescriptorSetLayout", result);
+    }
+    frame.setLayout = UniqueSetLayout(context, layout);
+
+    const VkDescriptorPoolSize poolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, gpu::kFrameImageCount};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &poolSize;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDescriptorPool", result);
+    }
+    frame.descriptorPool = UniqueDescriptorPool(context, pool);
+
+    VkDescriptorSetAllocateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    setInfo.descriptorPool = pool;
+    setInfo.descriptorSetCount = 1;
+    setInfo.pSetLayouts = &layout;
+    result = context.vk.AllocateDescriptorSets(device, &setInfo, &frame.set);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkAllocateDescriptorSets", result);
+    }
+    return okStatus();
+}
+
+void fillSet(Context::State& context, const FrameResources& frame) {
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        const VkDescriptorImageInfo image{VK_NULL_HANDLE, frame.images[binding].view.get(),
+                                          VK_IMAGE_LAYOUT_GENERAL};
+        VkWriteDescriptorSet write{};
+        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        write.dstSet = frame.set;
+        write.dstBinding = binding;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        write.pImageInfo = &image;
+        context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+    }
+}
+
+// Into the layouts that they keep, and black.
+Status clearImages(Context::State& context, const FrameResources& frame) {
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    for (const Image& image : frame.images) {
+        recordTransition(
+            context, *commands,
+            {image.handle.get(),
+             VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_GENERAL,
+             {VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+        const VkClearColorValue black{};
+        const VkImageSubresourceRange range = wholeImage();
+        context.vk.CmdClearColorImage(*commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, &black, 1,
+                                      &range);
+    }
+    ImageTransition depth;
+    depth.image = frame.depth.handle.get();
+    depth.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.dependency.toStages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    depth.dependency.toAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    depth.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    recordTransition(context, *commands, depth);
+    return runner->submitAndWait();
+}
+
+}  // namespace
+
+Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    if (Status status = createImages(context, size, frame); !status) {
+        return status;
+    }
+    if (Status status = createBuffers(context, size, frame); !status) {
+        return status;
+    }
+    if (Status status = createSet(context, frame); !status) {
+        return status;
+    }
+    fillSet(context, frame);
+    return clearImages(context, frame);
+}
+
+}  // namespace glint

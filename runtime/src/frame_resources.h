@@ -1,0 +1,52 @@
+// Images and buffers of a frame, and descriptor set 1.
+#pragma once
+
+#include "interop/frame.h"
+#include "resources.h"
+
+#include <array>
+#include <cstdint>
+
+namespace glint {
+
+inline constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32_UINT;
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+// What counters() reads: the counters, then the buckets.
+inline constexpr VkDeviceSize kReadbackBucketOffset = sizeof(std::uint32_t) * gpu::kCounterCount;
+
+// Members are destroyed in reverse: the pool's memory last.
+struct FrameResources {
+    explicit FrameResources(Context::State& context) : pool(context) {}
+
+    MemoryPool pool;
+    std::array<Image, gpu::kFrameImageCount> images;  // by binding; layout GENERAL from creation on
+    Image depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
+    Buffer constants;                                 // FrameConstants, host-visible
+    Buffer rays;
+    Buffer hits;         // one element unless buckets are used
+    Buffer orderedHits;  // likewise
+    Buffer buckets;
+    Buffer rayDispatch;
+    Buffer bucketDispatch;
+    Buffer counters;
+    Buffer readback;
+    UniqueSetLayout setLayout;
+    UniqueDescriptorPool descriptorPool;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+};
+
+struct FrameSize {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t bucketCount = 0;
+    bool ordered = false;  // hits are stored and ordered by bucket
+};
+
+// Error "render-size": no pixels, or more than the device can do.
+Status checkFrameSize(const Context::State& context, const FrameSize& size);
+
+// Makes everything, clears the images and waits for the device.
+Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
+
+}  // namespace glint

@@ -1,0 +1,163 @@
+#include "geometry.h"
+
+#include "instance_math.h"
+
+#include <map>
+
+namespace glint {
+namespace {
+
+// Vectors of four floats are aligned to their size, which any device is content with.
+constexpr VkDeviceSize kAttributeAlignment = 16;
+// Custom indices have 24 bits.
+constexpr std::size_t kMaxGeometries = std::size_t{1} << 24;
+
+struct AttributeUpload {
+    std::span<const std::uint8_t> bytes;
+    VkDeviceAddress GpuPrimitive::*address;
+    VkDeviceSize offset = 0;
+};
+
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view) {
+    return {{bytesOf(view.indices), &GpuPrimitive::indices},
+            {bytesOf(view.positions), &GpuPrimitive::positions},
+            {bytesOf(view.normals), &GpuPrimitive::normals},
+            {bytesOf(view.tangents), &GpuPrimitive::tangents},
+            {bytesOf(view.texCoords0), &GpuPrimitive::texCoords0},
+            {bytesOf(view.texCoords1), &GpuPrimitive::texCoords1},
+            {bytesOf(view.colors), &GpuPrimitive::colors}};
+}
+
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view) {
+    GpuPrimitive primitive;
+    primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
+    primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
+    if (primitive.triangleCount == 0) {
+        return primitive;
+    }
+    std::vector<AttributeUpload> attributes = attributesOf(view);
+    VkDeviceSize bytes = 0;
+    for (AttributeUpload& attribute : attributes) {
+        attribute.offset = bytes;
+        bytes +=
+            (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
+    }
+    // Addresses of a buffer are aligned for its usage; the slack makes them so for attributes, too.
+    Result<Buffer> buffer =
+        createBuffer(context, pool, bytes + kAttributeAlignment,
+                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    const VkDeviceSize slack =
+        (kAttributeAlignment - buffer->address % kAttributeAlignment) % kAttributeAlignment;
+    for (const AttributeUpload& attribute : attributes) {
+        if (attribute.bytes.empty()) {
+            continue;
+        }
+        const VkDeviceSize offset = slack + attribute.offset;
+        primitive.*attribute.address = buffer->address + offset;
+        if (Status status = uploader.copyToBuffer(attribute.bytes, *buffer, offset); !status) {
+            return status.error();
+        }
+    }
+    primitive.buffer = std::move(*buffer);
+    return primitive;
+}
+
+gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
+                                       std::uint32_t instance) {
+    gpu::GeometryRecord record{};
+    record.shaderId = entry.shaderId;
+    record.materialIndex = entry.materialIndex;
+    record.featureLobes = entry.featureLobes;
+    record.featureInputs = entry.featureInputs;
+    record.instanceIndex = instance;
+    record.flags = entry.geometryFlags;
+    record.indices = primitive.indices;
+    record.positions = primitive.positions;
+    record.normals = primitive.normals;
+    record.tangents = primitive.tangents;
+    record.texCoords0 = primitive.texCoords0;
+    record.texCoords1 = primitive.texCoords1;
+    record.colors = primitive.colors;
+    return record;
+}
+
+// Parts of each mesh that has triangles: indices into SceneLayout::parts.
+using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+
+PartsOfMesh partition(const Package& package, const SceneView& scene,
+                      std::span<const GpuPrimitive> primitives, std::vector<MeshPart>& parts) {
+    std::map<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>> members;
+    for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+        const PrimitiveView& view = scene.primitives[i];
+        if (primitives[i].triangleCount > 0) {
+            const std::uint32_t flags = package.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+            members[{view.mesh, (flags & gpu::kGeometryDoubleSided) != 0}].push_back(i);
+        }
+    }
+    PartsOfMesh partsOfMesh;
+    for (auto& [key, indices] : members) {
+        partsOfMesh[key.first].push_back(static_cast<std::uint32_t>(parts.size()));
+        parts.push_back({key.first, key.second, std::move(indices)});
+    }
+    return partsOfMesh;
+}
+
+}  // namespace
+
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader,
+                                                   std::span<const PrimitiveView> primitives) {
+    std::vector<GpuPrimitive> uploaded;
+    uploaded.reserve(primitives.size());
+    for (const PrimitiveView& view : primitives) {
+        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view);
+        if (!primitive) {
+            return primitive.error();
+        }
+        uploaded.push_back(std::move(*primitive));
+    }
+    return uploaded;
+}
+
+Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives) {
+    SceneLayout layout;
+    const PartsOfMesh partsOfMesh = partition(package, scene, primitives, layout.parts);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const InstanceView& instance = scene.instances[i];
+        const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
+        layout.instances.push_back(record);
+        const auto parts = partsOfMesh.find(instance.mesh);
+        // A flattened instance has no place in a TLAS, whose transforms must be invertible. It is not drawn
+        // either: a surface that the camera sees and reflections don't would be worse than none.
+        if (parts == partsOfMesh.end() || !isInvertible(instance.objectToWorld)) {
+            continue;
+        }
+        for (const std::uint32_t part : parts->second) {
+            layout.partInstances.push_back({part, i, static_cast<std::uint32_t>(layout.geometries.size())});
+            for (const std::uint32_t index : layout.parts[part].primitives) {
+                const PrimitiveView& view = scene.primitives[index];
+                const GpuPrimitive& primitive = primitives[index];
+                const package::PrimitiveEntry& entry = *package.findPrimitive(view.mesh, view.primitive);
+                layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()),
+                                        3 * primitive.triangleCount, layout.parts[part].doubleSided,
+                                        (record.flags & gpu::kInstanceMirrored) != 0});
+                layout.geometries.push_back(makeGeometryRecord(entry, primitive, i));
+                layout.triangles += primitive.triangleCount;
+            }
+        }
+        if (layout.geometries.size() > kMaxGeometries) {
+            return makeError("scene-geometries", "instance " + std::to_string(i),
+                             "the scene's instances have more than 2^24 primitives altogether",
+                             "join primitives of a material, or use fewer instances");
+        }
+    }
+    return layout;
+}
+
+}  // namespace glint

@@ -1,0 +1,74 @@
+// Vertex data on the device, and what of it forms which acceleration structure.
+#pragma once
+
+#include "interop/scene.h"
+#include "resources.h"
+#include "upload.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// A primitive's attributes in one buffer; addresses are 0 where it lacks them.
+struct GpuPrimitive {
+    Buffer buffer;
+    VkDeviceAddress indices = 0;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+    VkDeviceAddress texCoords0 = 0;
+    VkDeviceAddress texCoords1 = 0;
+    VkDeviceAddress colors = 0;
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;
+};
+
+// Copies are queued in `uploader`. Primitives without triangles get no buffer.
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader,
+                                                   std::span<const PrimitiveView> primitives);
+
+// The primitives of a mesh that are seen from one side, or from both: one BLAS, as culling is a property of
+// its instances. Primitives without triangles are in no part.
+struct MeshPart {
+    std::uint32_t mesh = 0;
+    bool doubleSided = false;
+    std::vector<std::uint32_t> primitives;  // indices into SceneView::primitives
+};
+
+// A part placed in the world: an instance of the TLAS.
+struct PartInstance {
+    std::uint32_t part = 0;
+    std::uint32_t instance = 0;     // index into SceneView::instances
+    std::uint32_t customIndex = 0;  // first of its geometry records
+};
+
+// A draw of the raster pass.
+struct Draw {
+    std::uint32_t geometry = 0;  // GeometryRecord index
+    std::uint32_t vertexCount = 0;
+    bool doubleSided = false;
+    bool mirrored = false;
+};
+
+struct SceneLayout {
+    std::vector<MeshPart> parts;  // in order of mesh; single-sided first
+    std::vector<PartInstance> partInstances;
+    std::vector<Draw> draws;  // one a geometry record
+    std::vector<gpu::GeometryRecord> geometries;
+    std::vector<gpu::InstanceRecord> instances;  // one an instance of the scene
+    std::uint64_t triangles = 0;                 // of all instances
+};
+
+// Pure. `primitives` are those of uploadPrimitives(). Error "scene-geometries": more records than the 24 bits
+// of a custom index can number.
+Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives);
+
+}  // namespace glint

@@ -1,0 +1,44 @@
+// What the renderer sees of a GpuScene.
+#pragma once
+
+#include "acceleration.h"
+#include "geometry.h"
+#include "resources.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace glint {
+
+// Structures that the array of set 0 has room for: the scene, and what a host application adds.
+inline constexpr std::uint32_t kTlasCapacity = 4;
+
+// Members are destroyed in reverse: the pool's memory last.
+struct GpuScene::State {
+    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+
+    Context::State& context;
+    MemoryPool pool;
+    std::vector<GpuPrimitive> primitives;
+    std::vector<AccelerationStructure> blases;
+    AccelerationStructure tlas;
+    Buffer geometries;
+    Buffer instances;
+    Buffer materials;
+    Buffer lights;
+    std::uint32_t lightCount = 0;
+    std::vector<Image> textures;
+    std::vector<UniqueSampler> samplers;
+    UniqueSetLayout setLayout;
+    UniqueDescriptorPool descriptorPool;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    std::vector<Draw> draws;
+    Statistics statistics;
+};
+
+// Layout, pool and set 0, filled from the state's structures, textures and samplers.
+Status createSceneSet(GpuScene::State& state);
+
+}  // namespace glint

@@ -1,0 +1,115 @@
+#include "package_state.h"
+
+#include <glint/package.h>
+
+#include <algorithm>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+// A table above this is no package: 256 MiB hold more than a million primitives and materials.
+constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
+
+}  // namespace
+
+Result<Package> Package::load(const std::filesystem::path& folder) {
+    const std::filesystem::path tablesPath = folder / package::kTablesFile;
+    Result<std::vector<std::uint8_t>> bytes = readPackageFile(tablesPath, "package-missing", kMaxTablesBytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    auto state = std::make_unique<State>();
+    state->tables = std::move(*bytes);
+    const std::string where = tablesPath.string();
+    if (Status status = readTables(*state, where); !status) {
+        return status.error();
+    }
+    if (Status status = checkTables(*state, where); !status) {
+        return status.error();
+    }
+    if (Status status = readModules(*state, folder); !status) {
+        return status.error();
+    }
+    return Package(std::move(state));
+}
+
+Package::Package(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Package::Package(Package&&) noexcept = default;
+Package& Package::operator=(Package&&) noexcept = default;
+Package::~Package() = default;
+
+bool Package::supports(package::Strategy strategy) const {
+    return (state_->header.strategies & strategy) != 0;
+}
+
+bool Package::alphaTested() const {
+    return state_->header.alphaTested != 0;
+}
+
+std::uint32_t Package::caseCount() const {
+    return state_->header.caseCount;
+}
+
+std::uint32_t Package::bucketCount() const {
+    return 1 + state_->header.caseCount;
+}
+
+std::span<const package::CaseEntry> Package::cases() const {
+    return state_->cases;
+}
+
+std::span<const package::ModuleEntry> Package::modules() const {
+    return state_->modules;
+}
+
+std::span<const package::PrimitiveEntry> Package::primitives() const {
+    return state_->primitives;
+}
+
+std::span<const package::TextureEntry> Package::textures() const {
+    return state_->textures;
+}
+
+std::span<const package::SamplerEntry> Package::samplers() const {
+    return state_->samplers;
+}
+
+std::span<const gpu::MaterialRecord> Package::materials() const {
+    return state_->materials;
+}
+
+std::string_view Package::string(package::StringRef ref) const {
+    const std::uint64_t end = std::uint64_t{ref.offset} + ref.length;
+    if (end > state_->strings.size()) {
+        return {};
+    }
+    return {state_->strings.data() + ref.offset, ref.length};
+}
+
+std::span<const std::uint32_t> Package::spirv(package::ModuleRole role, std::uint32_t shaderId) const {
+    const auto entry = std::ranges::find_if(state_->modules, [&](const package::ModuleEntry& candidate) {
+        return candidate.role == role &&
+               (role != package::ModuleRole::ShadeCase || candidate.shaderId == shaderId);
+    });
+    if (entry == state_->modules.end()) {
+        return {};
+    }
+    const auto words = state_->spirv.find(string(entry->file));
+    return words == state_->spirv.end() ? std::span<const std::uint32_t>{} : words->second;
+}
+
+const package::PrimitiveEntry* Package::findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const {
+    const auto key = [](const package::PrimitiveEntry& entry) {
+        return std::tuple(entry.mesh, entry.primitive);
+    };
+    const auto found =
+        std::ranges::lower_bound(state_->primitives, std::tuple(mesh, primitive), std::less<>{}, key);
+    const bool same = found != state_->primitives.end() && key(*found) == std::tuple(mesh, primitive);
+    return same ? &*found : nullptr;
+}
+
+}  // namespace glint

@@ -1,0 +1,117 @@
+// Files of a package: reading them, and keeping to the package's folder.
+#include "package_state.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t kSpirvMagic = 0x07230203;
+constexpr std::size_t kSpirvHeaderBytes = 20;
+constexpr const char* kRecompile = "compile the package again with `glint compile`";
+
+// A relative path of plain components: nothing that leads out of the folder by name.
+bool staysInside(const std::filesystem::path& name) {
+    if (name.empty() || name.is_absolute() || name.has_root_path()) {
+        return false;
+    }
+    return std::ranges::all_of(
+        name, [](const std::filesystem::path& part) { return !part.empty() && part != ".." && part != "."; });
+}
+
+// Nor by a symbolic link. `file` exists.
+bool resolvesInside(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::path root = std::filesystem::canonical(folder, error);
+    if (error) {
+        return false;
+    }
+    const std::filesystem::path target = std::filesystem::canonical(file, error);
+    if (error) {
+        return false;
+    }
+    return std::ranges::mismatch(root, target).in1 == root.end();
+}
+
+Result<std::vector<std::uint32_t>> readModule(const std::filesystem::path& folder, const std::string& name,
+                                              const package::ModuleEntry& entry) {
+    const std::filesystem::path path = folder / name;
+    const std::string where = path.string();
+    if (!staysInside(name) || name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) {
+        return makeError("package-file-name", (folder / package::kTablesFile).string(),
+                         "the module file name \"" + name + "\" does not stay in the package's folder",
+                         kRecompile);
+    }
+    Result<std::vector<std::uint8_t>> bytes = readPackageFile(path, "package-module-missing", entry.bytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    if (!resolvesInside(folder, path)) {
+        return makeError("package-file-name", where, "the module is a link that leaves the package's folder",
+                         kRecompile);
+    }
+    if (bytes->size() != entry.bytes) {
+        return makeError("package-module-altered", where,
+                         "the module has " + std::to_string(bytes->size()) + " bytes, the package says " +
+                             std::to_string(entry.bytes),
+                         kRecompile);
+    }
+    if (XXH3_64bits(bytes->data(), bytes->size()) != entry.hash) {
+        return makeError("package-module-altered", where,
+                         "the module's contents differ from the package's hash", kRecompile);
+    }
+    std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
+    std::memcpy(words.data(), bytes->data(), words.size() * sizeof(std::uint32_t));
+    if (bytes->size() % sizeof(std::uint32_t) != 0 || bytes->size() < kSpirvHeaderBytes ||
+        words[0] != kSpirvMagic) {
+        return makeError("package-module-altered", where, "the module is not SPIR-V", kRecompile);
+    }
+    return words;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> readPackageFile(const std::filesystem::path& path, const char* missingId,
+                                                  std::uint64_t maxBytes) {
+    const std::string where = path.string();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        return makeError(missingId, where, "there is no such file",
+                         "give the folder that `glint compile` wrote, or compile the package again");
+    }
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream) {
+        return makeError("package-read", where, "the file cannot be opened", "check its permissions");
+    }
+    // One byte more than allowed tells the caller that the file is longer, without reading all of it.
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::min(size, maxBytes + 1)));
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
+        return makeError("package-read", where, "the file cannot be read to its end", "check the disk");
+    }
+    return bytes;
+}
+
+Status readModules(Package::State& state, const std::filesystem::path& folder) {
+    for (const package::ModuleEntry& entry : state.modules) {
+        const std::string name(state.strings.data() + entry.file.offset, entry.file.length);
+        // Entries that share a file agree on its size and hash: checkTables() has seen to it.
+        if (state.spirv.contains(name)) {
+            continue;
+        }
+        Result<std::vector<std::uint32_t>> words = readModule(folder, name, entry);
+        if (!words) {
+            return words.error();
+        }
+        state.spirv.emplace(name, std::move(*words));
+    }
+    return okStatus();
+}
+
+}  // namespace glint

@@ -1,0 +1,236 @@
+// The passes of a frame in order, with labels, timers and barriers.
+#include "renderer_state.h"
+
+#include <cstddef>
+
+namespace glint {
+namespace {
+
+using package::ModuleRole;
+
+constexpr VkShaderStageFlags kPushStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+
+// Everything before against everything after: frames follow each other, whoever recorded the one before.
+constexpr MemoryDependency kAllToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+constexpr MemoryDependency kClearToPasses{
+    VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
+constexpr MemoryDependency kRasterToCompute{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT};
+// Also into indirect arguments, which the dispatching passes read.
+constexpr MemoryDependency kComputeToCompute{
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+    VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
+constexpr MemoryDependency kComputeToCopy{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                          VK_ACCESS_2_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+                                          VK_ACCESS_2_TRANSFER_READ_BIT};
+constexpr MemoryDependency kCopyToHost{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+
+class FrameRecorder {
+public:
+    FrameRecorder(Renderer::State& state, VkCommandBuffer commands)
+        : state_(state), vk_(state.context.vk), commands_(commands) {
+        pushed_.frame = state.frame.constants.address;
+    }
+
+    void record(bool reflections) {
+        state_.passes.clear();
+        state_.timer.recordReset(commands_);
+        barrier(kAllToAll);
+        clear(reflections);
+        barrier(kClearToPasses);
+        recordGBuffer();
+        barrier(kRasterToCompute);
+        bindSets(VK_PIPELINE_BIND_POINT_COMPUTE);
+        dispatchPixels("lighting", ModuleRole::Lighting);
+        barrier(kComputeToCompute);
+        if (reflections) {
+            recordReflections();
+        }
+        dispatchPixels("compose", ModuleRole::Compose);
+        barrier(kComputeToCopy);
+        copyCounters();
+        barrier(kCopyToHost);
+    }
+
+private:
+    void barrier(const MemoryDependency& dependency) {
+        recordDependency(state_.context, commands_, dependency);
+    }
+
+    void beginPass(const std::string& name) {
+        if (vk_.CmdBeginDebugUtilsLabelEXT != nullptr) {
+            VkDebugUtilsLabelEXT label{};
+            label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+            label.pLabelName = name.c_str();
+            vk_.CmdBeginDebugUtilsLabelEXT(commands_, &label);
+        }
+        state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.passes.size()));
+        state_.passes.push_back(name);
+    }
+
+    void endPass() {
+        state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.passes.size() - 1));
+        if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
+            vk_.CmdEndDebugUtilsLabelEXT(commands_);
+        }
+    }
+
+    void bindSets(VkPipelineBindPoint point) {
+        const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set};
+        vk_.CmdBindDescriptorSets(commands_, point, state_.pipelines.layout.get(), gpu::kSetScene, 2, sets, 0,
+                                  nullptr);
+    }
+
+    void push() {
+        vk_.CmdPushConstants(commands_, state_.pipelines.layout.get(), kPushStages, 0, sizeof(pushed_),
+                             &pushed_);
+    }
+
+    void clear(bool reflections) {
+        vk_.CmdFillBuffer(commands_, state_.frame.counters.handle.get(), 0, VK_WHOLE_SIZE, 0);
+        vk_.CmdFillBuffer(commands_, state_.frame.buckets.handle.get(), 0, VK_WHOLE_SIZE, 0);
+        if (!reflections) {
+            const VkClearColorValue black{};
+            const VkImageSubresourceRange range = wholeImage();
+            vk_.CmdClearColorImage(commands_, state_.frame.images[gpu::kBindingReflection].handle.get(),
+                                   VK_IMAGE_LAYOUT_GENERAL, &black, 1, &range);
+        }
+    }
+
+    void beginRendering() {
+        VkRenderingAttachmentInfo color{};
+        color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+        color.imageView = state_.frame.images[gpu::kBindingSurface].view.get();
+        color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+        color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+        color.clearValue.color.uint32[0] = gpu::kNoSurface;
+        VkRenderingAttachmentInfo depth{};
+        depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+        depth.imageView = state_.frame.depth.view.get();
+        depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+        depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+        depth.clearValue.depthStencil.depth = 0.0F;  // far, as depth is reversed
+        VkRenderingInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+        info.renderArea.extent = {state_.size.width, state_.size.height};
+        info.layerCount = 1;
+        info.colorAttachmentCount = 1;
+        info.pColorAttachments = &color;
+        info.pDepthAttachment = &depth;
+        vk_.CmdBeginRendering(commands_, &info);
+        const VkViewport viewport{
+            0.0F, 0.0F, static_cast<float>(state_.size.width), static_cast<float>(state_.size.height),
+            0.0F, 1.0F};
+        vk_.CmdSetViewport(commands_, 0, 1, &viewport);
+        vk_.CmdSetScissor(commands_, 0, 1, &info.renderArea);
+    }
+
+    void recordGBuffer() {
+        beginPass("gbuffer");
+        beginRendering();
+        vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
+        bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
+        for (const Draw& draw : state_.scene.draws) {
+            vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+            // glTF's fronts are counter-clockwise on screen, unless a mirroring transform turns them.
+            vk_.CmdSetFrontFace(commands_,
+                                draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+            pushed_.geometry = draw.geometry;
+            push();
+            vk_.CmdDraw(commands_, draw.vertexCount, 1, 0, 0);
+        }
+        vk_.CmdEndRendering(commands_);
+        endPass();
+    }
+
+    void bindCompute(VkPipeline pipeline) {
+        vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+        push();
+    }
+
+    void dispatchPixels(const std::string& name, ModuleRole role) {
+        beginPass(name);
+        bindCompute(state_.pipelines.passes.at(role));
+        constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
+        vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
+                        (state_.size.height + kTile - 1) / kTile, 1);
+        endPass();
+    }
+
+    void dispatchOnce(const std::string& name, ModuleRole role) {
+        beginPass(name);
+        bindCompute(state_.pipelines.passes.at(role));
+        vk_.CmdDispatch(commands_, 1, 1, 1);
+        endPass();
+        barrier(kComputeToCompute);
+    }
+
+    void dispatchRays(const std::string& name, ModuleRole role) {
+        beginPass(name);
+        bindCompute(state_.pipelines.passes.at(role));
+        vk_.CmdDispatchIndirect(commands_, state_.frame.rayDispatch.handle.get(), 0);
+        endPass();
+        barrier(kComputeToCompute);
+    }
+
+    void dispatchBucket(const std::string& name, VkPipeline pipeline, std::uint32_t bucket) {
+        beginPass(name);
+        pushed_.bucket = bucket;
+        bindCompute(pipeline);
+        vk_.CmdDispatchIndirect(commands_, state_.frame.bucketDispatch.handle.get(),
+                                bucket * sizeof(gpu::DispatchArguments));
+        endPass();
+    }
+
+    void recordReflections() {
+        dispatchPixels("reflection rays", ModuleRole::ReflectionRays);
+        barrier(kComputeToCompute);
+        dispatchOnce("ray dispatch", ModuleRole::RayDispatch);
+        if (state_.strategy == package::kStrategyUber) {
+            dispatchRays("uber", ModuleRole::UberShade);
+            return;
+        }
+        dispatchRays("trace", ModuleRole::Trace);
+        dispatchRays("count", ModuleRole::BucketCount);
+        dispatchOnce("offset", ModuleRole::BucketOffset);
+        dispatchRays("copy", ModuleRole::BucketCopy);
+        // Buckets write different pixels: they need no order among themselves.
+        dispatchBucket("shade miss", state_.pipelines.passes.at(ModuleRole::ShadeMiss), 0);
+        for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
+            dispatchBucket("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId],
+                           1 + shaderId);
+        }
+        barrier(kComputeToCompute);
+    }
+
+    void copyCounters() {
+        const VkBuffer readback = state_.frame.readback.handle.get();
+        const VkBufferCopy counters{0, 0, state_.frame.counters.bytes};
+        vk_.CmdCopyBuffer(commands_, state_.frame.counters.handle.get(), readback, 1, &counters);
+        const VkBufferCopy buckets{0, kReadbackBucketOffset, state_.frame.buckets.bytes};
+        vk_.CmdCopyBuffer(commands_, state_.frame.buckets.handle.get(), readback, 1, &buckets);
+    }
+
+    Renderer::State& state_;
+    const DeviceTable& vk_;
+    VkCommandBuffer commands_;
+    gpu::PushConstants pushed_{};
+};
+
+}  // namespace
+
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, bool reflections) {
+    FrameRecorder(state, commands).record(reflections);
+}
+
+}  // namespace glint

@@ -1,0 +1,212 @@
+#include "pipelines.h"
+
+#include "frame_resources.h"
+#include "vulkan_error.h"
+
+#include <array>
+#include <chrono>
+
+namespace glint {
+namespace {
+
+using package::ModuleRole;
+
+Result<UniqueShaderModule> createModule(Context::State& context, std::span<const std::uint32_t> words) {
+    VkShaderModuleCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    info.codeSize = words.size_bytes();
+    info.pCode = words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateShaderModule(context.handles.device, &info, nullptr, &module);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateShaderModule", result);
+    }
+    return UniqueShaderModule(context, module);
+}
+
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
+    VkPipelineShaderStageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage = stage;
+    info.module = module;
+    info.pName = "main";
+    return info;
+}
+
+Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayout> setLayouts,
+                    Pipelines& pipelines) {
+    VkPushConstantRange range{};
+    range.stageFlags =
+        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    range.size = sizeof(gpu::PushConstants);
+    VkPipelineLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.setLayoutCount = static_cast<std::uint32_t>(setLayouts.size());
+    info.pSetLayouts = setLayouts.data();
+    info.pushConstantRangeCount = 1;
+    info.pPushConstantRanges = &range;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineLayout", result);
+    }
+    pipelines.layout = UniquePipelineLayout(context, layout);
+    return okStatus();
+}
+
+Result<VkPipeline> createCompute(Context::State& context, std::span<const std::uint32_t> words,
+                                 Pipelines& pipelines) {
+    Result<UniqueShaderModule> module = createModule(context, words);
+    if (!module) {
+        return module.error();
+    }
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
+    info.layout = pipelines.layout.get();
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,
+                                                              1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateComputePipelines", result);
+    }
+    pipelines.owned.emplace_back(context, pipeline);
+    return pipeline;
+}
+
+// Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
+Result<VkPipeline> createGBuffer(Context::State& context, const Package& package, Pipelines& pipelines) {
+    Result<UniqueShaderModule> vertex = createModule(context, package.spirv(ModuleRole::GBufferVertex));
+    if (!vertex) {
+        return vertex.error();
+    }
+    Result<UniqueShaderModule> fragment = createModule(context, package.spirv(ModuleRole::GBufferFragment));
+    if (!fragment) {
+        return fragment.error();
+    }
+    const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex->get()),
+                            stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment->get())};
+    VkPipelineVertexInputStateCreateInfo vertexInput{};
+    vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    VkPipelineInputAssemblyStateCreateInfo assembly{};
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPipelineViewportStateCreateInfo viewport{};
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = 1;
+    viewport.scissorCount = 1;
+    VkPipelineRasterizationStateCreateInfo raster{};
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.lineWidth = 1.0F;
+    VkPipelineMultisampleStateCreateInfo multisample{};
+    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    VkPipelineDepthStencilStateCreateInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = VK_TRUE;
+    depth.depthWriteEnable = VK_TRUE;
+    depth.depthCompareOp = VK_COMPARE_OP_GREATER;
+    VkPipelineColorBlendAttachmentState attachment{};
+    attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
+    VkPipelineColorBlendStateCreateInfo blend{};
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.attachmentCount = 1;
+    blend.pAttachments = &attachment;
+    constexpr VkDynamicState kDynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                           VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
+    VkPipelineDynamicStateCreateInfo dynamic{};
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = std::size(kDynamic);
+    dynamic.pDynamicStates = kDynamic;
+    VkPipelineRenderingCreateInfo rendering{};
+    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachmentFormats = &kSurfaceFormat;
+    rendering.depthAttachmentFormat = kDepthFormat;
+
+    VkGraphicsPipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+    info.pNext = &rendering;
+    info.stageCount = stages.size();
+    info.pStages = stages.data();
+    info.pVertexInputState = &vertexInput;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+    info.layout = pipelines.layout.get();
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateGraphicsPipelines(context.handles.device, context.pipelineCache,
+                                                               1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateGraphicsPipelines", result);
+    }
+    pipelines.owned.emplace_back(context, pipeline);
+    return pipeline;
+}
+
+std::vector<ModuleRole> computeRoles(package::Strategy strategy) {
+    std::vector<ModuleRole> roles{ModuleRole::Lighting, ModuleRole::ReflectionRays, ModuleRole::RayDispatch,
+                                  ModuleRole::Compose};
+    if (strategy == package::kStrategyUber) {
+        roles.push_back(ModuleRole::UberShade);
+    } else {
+        roles.insert(roles.end(), {ModuleRole::Trace, ModuleRole::BucketCount, ModuleRole::BucketOffset,
+                                   ModuleRole::BucketCopy, ModuleRole::ShadeMiss});
+    }
+    return roles;
+}
+
+Status createCases(Context::State& context, const Package& package, Pipelines& pipelines) {
+    // The loader gives entries that name one file the same words.
+    std::map<const std::uint32_t*, VkPipeline> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const std::span<const std::uint32_t> words = package.spirv(ModuleRole::ShadeCase, shaderId);
+        auto known = byWords.find(words.data());
+        if (known == byWords.end()) {
+            Result<VkPipeline> pipeline = createCompute(context, words, pipelines);
+            if (!pipeline) {
+                return pipeline.error();
+            }
+            known = byWords.emplace(words.data(), *pipeline).first;
+        }
+        pipelines.cases.push_back(known->second);
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Result<Pipelines> createPipelines(Context::State& context, const Package& package, package::Strategy strategy,
+                                  std::span<const VkDescriptorSetLayout> setLayouts) {
+    const auto start = std::chrono::steady_clock::now();
+    Pipelines pipelines;
+    if (Status status = createLayout(context, setLayouts, pipelines); !status) {
+        return status.error();
+    }
+    Result<VkPipeline> gbuffer = createGBuffer(context, package, pipelines);
+    if (!gbuffer) {
+        return gbuffer.error();
+    }
+    pipelines.gbuffer = *gbuffer;
+    for (const ModuleRole role : computeRoles(strategy)) {
+        Result<VkPipeline> pipeline = createCompute(context, package.spirv(role), pipelines);
+        if (!pipeline) {
+            return pipeline.error();
+        }
+        pipelines.passes[role] = *pipeline;
+    }
+    if (strategy == package::kStrategyVisibility) {
+        if (Status status = createCases(context, package, pipelines); !status) {
+            return status.error();
+        }
+    }
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    pipelines.creationMs = elapsed.count();
+    return pipelines;
+}
+
+}  // namespace glint

@@ -1,0 +1,246 @@
+// Renderer: creation, frame constants, results.
+#include "camera.h"
+#include "renderer_state.h"
+#include "vulkan_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace glint {
+namespace {
+
+// Below any roughness: no surface sends a ray, and the sky stands in for reflections.
+constexpr float kNoReflections = -1.0F;
+
+gpu::vec3 toVec3(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Status checkFrame(const FrameOptions& frame) {
+    if (Status status = checkCamera(frame.camera); !status) {
+        return status;
+    }
+    for (const std::array<float, 3>& radiance : {frame.sky.zenith, frame.sky.horizon, frame.sky.ground}) {
+        if (!std::ranges::all_of(radiance,
+                                 [](float value) { return std::isfinite(value) && value >= 0.0F; })) {
+            return makeError("sky", "", "the sky's radiance is negative or not finite",
+                             "give three finite numbers of at least 0");
+        }
+    }
+    if (!std::isfinite(frame.maxReflectionRoughness)) {
+        return makeError("frame-options", "", "maxReflectionRoughness is not finite", "use 0 to 1");
+    }
+    return okStatus();
+}
+
+gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptions& options) {
+    gpu::FrameConstants constants{};
+    fillCamera(options.camera, state.size.width, state.size.height, sampleJitter(options.sampleIndex),
+               constants);
+    constants.sampleIndex = options.sampleIndex;
+    constants.seed = options.seed;
+    constants.lightCount = state.scene.lightCount;
+    constants.bucketCount = state.size.bucketCount;
+    constants.maxReflectionRoughness = options.reflections ? options.maxReflectionRoughness : kNoReflections;
+    constants.skyZenith = toVec3(options.sky.zenith);
+    constants.skyHorizon = toVec3(options.sky.horizon);
+    constants.skyGround = toVec3(options.sky.ground);
+    constants.geometries = state.scene.geometries.address;
+    constants.instances = state.scene.instances.address;
+    constants.materials = state.scene.materials.address;
+    constants.lights = state.scene.lights.address;
+    const FrameResources& frame = state.frame;
+    constants.rays = frame.rays.address;
+    constants.hits = frame.hits.address;
+    constants.orderedHits = frame.orderedHits.address;
+    constants.buckets = frame.buckets.address;
+    constants.rayDispatch = frame.rayDispatch.address;
+    constants.bucketDispatch = frame.bucketDispatch.address;
+    constants.counters = frame.counters.address;
+    return constants;
+}
+
+Diagnostic notRecorded() {
+    return makeError("frame-not-recorded", "", "no frame has been recorded",
+                     "record a frame, submit it and wait for it first");
+}
+
+Status checkStrategy(const Package& package, package::Strategy strategy) {
+    const bool known = strategy == package::kStrategyUber || strategy == package::kStrategyVisibility;
+    if (known && package.supports(strategy)) {
+        return okStatus();
+    }
+    const char* name = strategy == package::kStrategyUber ? "uber" : "visibility";
+    return makeError("package-strategy", "",
+                     known ? std::string("the package has no modules for the strategy ") + name
+                           : std::string("RendererOptions::strategy is not one strategy"),
+                     "compile the package with that --strategy, or render with the one that it has");
+}
+
+// The accumulated image, into memory that the host reads.
+void recordReadback(const Renderer::State& state, VkCommandBuffer commands, const Buffer& target) {
+    recordDependency(state.context, commands,
+                     {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {state.size.width, state.size.height, 1};
+    state.context.vk.CmdCopyImageToBuffer(commands, state.frame.images[gpu::kBindingAccumulated].handle.get(),
+                                          VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
+    recordDependency(state.context, commands,
+                     {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+}
+
+Result<LinearImage> readBack(Renderer::State& state, CommandRunner& runner) {
+    MemoryPool pool(state.context);
+    LinearImage image;
+    image.width = state.size.width;
+    image.height = state.size.height;
+    image.pixels.resize(std::size_t{image.width} * image.height);
+    const std::size_t bytes = image.pixels.size() * sizeof(image.pixels[0]);
+    Result<Buffer> buffer =
+        createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
+    if (!buffer) {
+        return buffer.error();
+    }
+    Result<VkCommandBuffer> commands = runner.begin();
+    if (!commands) {
+        return commands.error();
+    }
+    recordReadback(state, *commands, *buffer);
+    if (Status status = runner.submitAndWait(); !status) {
+        return status.error();
+    }
+    std::memcpy(image.pixels.data(), buffer->mapped, bytes);
+    return image;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
+                                                   const RendererOptions& options) {
+    Context::State& contextState = context.state();
+    if (Status status = checkStrategy(package, options.strategy); !status) {
+        return status.error();
+    }
+    const bool ordered = options.strategy == package::kStrategyVisibility;
+    const FrameSize size{options.width, options.height, package.bucketCount(), ordered};
+    if (Status status = checkFrameSize(contextState, size); !status) {
+        return status.error();
+    }
+    Result<Timer> timer = Timer::create(contextState, kMaxFixedPasses + package.caseCount());
+    if (!timer) {
+        return timer.error();
+    }
+    auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
+    state->strategy = options.strategy;
+    state->size = size;
+    for (const package::CaseEntry& entry : package.cases()) {
+        state->caseNames.emplace_back(package.string(entry.name));
+    }
+    if (Status status = createFrameResources(contextState, size, state->frame); !status) {
+        return status.error();
+    }
+    const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
+    Result<Pipelines> pipelines = createPipelines(contextState, package, options.strategy, layouts);
+    if (!pipelines) {
+        return pipelines.error();
+    }
+    state->pipelines = std::move(*pipelines);
+    return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
+}
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Renderer::~Renderer() = default;
+
+Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
+    if (Status status = checkFrame(frame); !status) {
+        return status;
+    }
+    const gpu::FrameConstants constants = makeConstants(*state_, frame);
+    std::memcpy(state_->frame.constants.mapped, &constants, sizeof(constants));
+    recordFrame(*state_, commands, frame.reflections);
+    state_->recorded = true;
+    return okStatus();
+}
+
+VkImage Renderer::output() const {
+    return state_->frame.images[gpu::kBindingAccumulated].handle.get();
+}
+
+VkImageView Renderer::outputView() const {
+    return state_->frame.images[gpu::kBindingAccumulated].view.get();
+}
+
+Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount) {
+    if (sampleCount == 0) {
+        return makeError("frame-options", "", "0 samples make no image", "render at least one sample");
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    FrameOptions sample = frame;
+    for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
+        Result<VkCommandBuffer> commands = runner->begin();
+        if (!commands) {
+            return commands.error();
+        }
+        if (Status status = record(*commands, sample); !status) {
+            return status.error();
+        }
+        if (Status status = runner->submitAndWait(); !status) {
+            return status.error();
+        }
+    }
+    return readBack(*state_, *runner);
+}
+
+Result<std::vector<PassTiming>> Renderer::timings() {
+    if (!state_->recorded) {
+        return notRecorded();
+    }
+    const auto count = static_cast<std::uint32_t>(state_->passes.size());
+    Result<std::vector<double>> milliseconds = state_->timer.read(count);
+    if (!milliseconds) {
+        return milliseconds.error();
+    }
+    std::vector<PassTiming> timings;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        timings.push_back({state_->passes[i], (*milliseconds)[i]});
+    }
+    return timings;
+}
+
+Result<FrameCounters> Renderer::counters() {
+    if (!state_->recorded) {
+        return notRecorded();
+    }
+    const std::uint8_t* bytes = state_->frame.readback.mapped;
+    std::array<std::uint32_t, gpu::kCounterCount> values{};
+    std::memcpy(values.data(), bytes, sizeof(values));
+    FrameCounters counters;
+    counters.rays = values[gpu::kCounterRays];
+    counters.skippedSky = values[gpu::kCounterSkippedSky];
+    counters.skippedRough = values[gpu::kCounterSkippedRough];
+    counters.skippedUnlit = values[gpu::kCounterSkippedUnlit];
+    counters.unknownShader = values[gpu::kCounterUnknownShader];
+    if (state_->size.ordered) {
+        std::vector<gpu::BucketRecord> buckets(state_->size.bucketCount);
+        std::memcpy(buckets.data(), bytes + kReadbackBucketOffset,
+                    buckets.size() * sizeof(gpu::BucketRecord));
+        for (const gpu::BucketRecord& bucket : buckets) {
+            counters.bucketCounts.push_back(bucket.count);
+        }
+    }
+    return counters;
+}
+
+double Renderer::pipelineCreationMs() const {
+    return state_->pipelines.creationMs;
+}
+
+}  // namespace glint

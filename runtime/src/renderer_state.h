@@ -1,0 +1,42 @@
+// What the passes of a Renderer work on.
+#pragma once
+
+#include "commands.h"
+#include "frame_resources.h"
+#include "gpu_scene_state.h"
+#include "pipelines.h"
+#include "timer.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct Renderer::State {
+    State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
+        : context(contextState), scene(sceneState), timer(std::move(passTimer)), frame(contextState) {}
+
+    Context::State& context;
+    GpuScene::State& scene;
+    package::Strategy strategy = package::kStrategyVisibility;
+    FrameSize size;
+    std::vector<std::string> caseNames;
+    Timer timer;
+    FrameResources frame;
+    Pipelines pipelines;
+    // Of the last recording.
+    std::vector<std::string> passes;
+    bool recorded = false;
+};
+
+// Passes of a frame at most: the fixed ones of the longer strategy, and one a case.
+inline constexpr std::uint32_t kMaxFixedPasses = 16;
+
+// Records all passes of a frame whose constants are in state.frame.constants.
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, bool reflections);
+
+}  // namespace glint

@@ -1,0 +1,35 @@
+// What a device must have, as pure functions over what it reports.
+#pragma once
+
+#include "vulkan_table.h"
+
+#include <glint/context.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// What a physical device reports: features in a DeviceRequirements chain, plus limits and extensions.
+struct DeviceReport {
+    std::uint32_t apiVersion = 0;
+    std::vector<std::string> extensions;
+    DeviceRequirements features;
+    VkShaderStageFlags subgroupStages = 0;
+    VkSubgroupFeatureFlags subgroupOperations = 0;
+    std::uint32_t maxPushConstantBytes = 0;
+    std::uint32_t maxWorkgroupThreads = 0;
+    bool hasQueue = false;  // a family with graphics and compute
+};
+
+// Names of what `report` lacks, the API version first; empty if Glint runs on such a device.
+std::vector<std::string> missingFrom(const DeviceReport& report);
+
+// Fills `report` by asking `device`. Error "vulkan-call".
+Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);
+
+// "a, b and c".
+std::string joinNames(const std::vector<std::string>& names);
+
+}  // namespace glint

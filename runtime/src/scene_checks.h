@@ -1,0 +1,24 @@
+// Whether a scene is well formed, and the one that a package was compiled from.
+#pragma once
+
+#include <glint/package.h>
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+
+namespace glint {
+
+// Bits of PrimitiveEntry::featureInputs that say which attributes shading reads: the high words of the
+// compiler's features (tool/plan/features.h) by the same names. A test compares them.
+inline constexpr std::uint32_t kInputTexCoord0 = 1U << 6;
+inline constexpr std::uint32_t kInputTexCoord1 = 1U << 7;
+inline constexpr std::uint32_t kInputVertexColor = 1U << 9;
+inline constexpr std::uint32_t kInputNormals = 1U << 10;
+inline constexpr std::uint32_t kInputTangents = 1U << 11;
+
+// Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
+// scene), "scene-image", "scene-light". Their place is "mesh 3, primitive 1", "image 2" or "light 0".
+Status checkScene(const Package& package, const SceneView& scene, std::uint32_t maxImageSize);
+
+}  // namespace glint

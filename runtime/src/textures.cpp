@@ -1,0 +1,122 @@
+#include "textures.h"
+
+#include "vulkan_error.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+namespace glint {
+namespace {
+
+// What a slot that names no texture finds: it leaves a factor as it is.
+constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
+
+Result<Image> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                            const ImageView& image, bool srgb) {
+    ImageInfo info;
+    info.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+    info.extent = {image.width, image.height};
+    info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+    info.usage =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    Result<Image> texture = createImage(context, pool, info);
+    if (!texture) {
+        return texture.error();
+    }
+    if (Status status = uploader.copyToImage(image.rgba8, *texture); !status) {
+        return status.error();
+    }
+    return texture;
+}
+
+VkSamplerAddressMode addressMode(std::uint32_t wrap) {
+    constexpr VkSamplerAddressMode kModes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                               VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                               VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
+    return kModes[wrap];
+}
+
+VkFilter filter(std::uint32_t linear) {
+    return linear != 0 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+}
+
+Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry) {
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    info.magFilter = filter(entry.magnification);
+    info.minFilter = filter(entry.minification);
+    info.addressModeU = addressMode(entry.wrapU);
+    info.addressModeV = addressMode(entry.wrapV);
+    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    if (entry.mipmapped != 0) {
+        info.mipmapMode = entry.mip != 0 ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+        info.maxLod = VK_LOD_CLAMP_NONE;
+    } else {
+        // Mip 0 only. Above 0, so that minification still chooses its own filter (VkSamplerCreateInfo, note).
+        info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+        info.maxLod = 0.25F;
+    }
+    VkSampler sampler = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateSampler(context.handles.device, &info, nullptr, &sampler);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateSampler", result);
+    }
+    return UniqueSampler(context, sampler);
+}
+
+}  // namespace
+
+Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                          std::span<const package::TextureEntry> textures,
+                                          std::span<const ImageView> images) {
+    if (textures.size() > context.limits.maxTextures) {
+        return makeError("scene-textures", "",
+                         "the scene has " + std::to_string(textures.size()) + " textures, the device takes " +
+                             std::to_string(context.limits.maxTextures),
+                         "use a smaller scene");
+    }
+    std::vector<Image> uploaded;
+    for (const package::TextureEntry& texture : textures) {
+        Result<Image> image =
+            uploadTexture(context, pool, uploader, images[texture.image], texture.srgb != 0);
+        if (!image) {
+            return image.error();
+        }
+        uploaded.push_back(std::move(*image));
+    }
+    if (uploaded.empty()) {
+        Result<Image> image = uploadTexture(context, pool, uploader, {1, 1, kWhite}, false);
+        if (!image) {
+            return image.error();
+        }
+        uploaded.push_back(std::move(*image));
+    }
+    return uploaded;
+}
+
+Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
+                                                  std::span<const package::SamplerEntry> samplers) {
+    const std::uint32_t limit =
+        std::min(context.limits.maxSamplers, context.limits.core.maxSamplerAllocationCount);
+    if (samplers.size() > limit) {
+        return makeError("scene-samplers", "",
+                         "the scene has " + std::to_string(samplers.size()) + " samplers, the device takes " +
+                             std::to_string(limit),
+                         "use fewer kinds of samplers");
+    }
+    constexpr package::SamplerEntry kDefault{0, 0, 1, 1, 1, 1};
+    const std::span<const package::SamplerEntry> wanted =
+        samplers.empty() ? std::span(&kDefault, 1) : samplers;
+    std::vector<UniqueSampler> created;
+    for (const package::SamplerEntry& entry : wanted) {
+        Result<UniqueSampler> sampler = createSampler(context, entry);
+        if (!sampler) {
+            return sampler.error();
+        }
+        created.push_back(std::move(*sampler));
+    }
+    return created;
+}
+
+}  // namespace glint

@@ -1,0 +1,25 @@
+// Bindless textures and samplers.
+#pragma once
+
+#include "resources.h"
+#include "upload.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// One image a TextureEntry, in its order, all mips; at least one, so that the array is never empty.
+// Copies are queued in `uploader`. Error "scene-textures": more than a shader of this device can see.
+Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                          std::span<const package::TextureEntry> textures,
+                                          std::span<const ImageView> images);
+
+// One sampler a SamplerEntry; at least one. Error "scene-samplers".
+Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
+                                                  std::span<const package::SamplerEntry> samplers);
+
+}  // namespace glint

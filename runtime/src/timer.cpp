@@ -1,0 +1,77 @@
+#include "timer.h"
+
+#include "vulkan_error.h"
+
+namespace glint {
+
+Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
+    Timer timer(context);
+    if (context.limits.timestampValidBits == 0) {
+        return timer;
+    }
+    timer.queries_ = 2 * capacity;
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = timer.queries_;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateQueryPool(context.handles.device, &info, nullptr, &pool);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateQueryPool", result);
+    }
+    timer.pool_ = UniqueQueryPool(context, pool);
+    // Reading a query that was never reset is not allowed; reading one without a result is.
+    context.vk.ResetQueryPool(context.handles.device, pool, 0, timer.queries_);
+    return timer;
+}
+
+void Timer::recordReset(VkCommandBuffer commands) const {
+    if (available()) {
+        context_->vk.CmdResetQueryPool(commands, pool_.get(), 0, queries_);
+    }
+}
+
+void Timer::recordBegin(VkCommandBuffer commands, std::uint32_t stretch) const {
+    if (available()) {
+        context_->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(),
+                                        2 * stretch);
+    }
+}
+
+void Timer::recordEnd(VkCommandBuffer commands, std::uint32_t stretch) const {
+    if (available()) {
+        context_->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(),
+                                        2 * stretch + 1);
+    }
+}
+
+Result<std::vector<double>> Timer::read(std::uint32_t count) const {
+    if (!available()) {
+        return makeError("timings-unavailable", "", "the device's queue has no timestamps",
+                         "use a queue family whose timestampValidBits is not 0");
+    }
+    std::vector<std::uint64_t> ticks(std::size_t{2} * count);
+    if (count > 0) {
+        const VkResult result = context_->vk.GetQueryPoolResults(
+            context_->handles.device, pool_.get(), 0, 2 * count, ticks.size() * sizeof(std::uint64_t),
+            ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+        if (result == VK_NOT_READY) {
+            return makeError("timings-pending", "", "the device has not finished the recording",
+                             "wait for the submission before reading its timings");
+        }
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkGetQueryPoolResults", result);
+        }
+    }
+    const std::uint32_t bits = context_->limits.timestampValidBits;
+    const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+    std::vector<double> milliseconds(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        // Modulo the valid bits, a counter that wraps once in between is no harm.
+        const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & mask;
+        milliseconds[i] = static_cast<double>(elapsed) * context_->limits.core.timestampPeriod * 1e-6;
+    }
+    return milliseconds;
+}
+
+}  // namespace glint

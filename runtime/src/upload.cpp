@@ -1,0 +1,161 @@
+#include "upload.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace glint {
+namespace {
+
+// Large enough that submissions don't show, small enough for every host-visible heap. A row of the largest
+// image that a device may have (65536 pixels) fits 64 times.
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
+// Copies start at multiples of a texel, and of what devices like best.
+constexpr VkDeviceSize kStagingAlignment = 256;
+constexpr VkDeviceSize kTexelBytes = 4;
+
+constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
+constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
+
+}  // namespace
+
+Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
+    std::unique_ptr<Uploader> uploader(new Uploader(context));
+    Result<Buffer> staging = createBuffer(context, uploader->pool_, kStagingBytes,
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
+    if (!staging) {
+        return staging.error();
+    }
+    uploader->staging_ = std::move(*staging);
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    uploader->runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+    return uploader;
+}
+
+Status Uploader::start() {
+    if (commands_ == VK_NULL_HANDLE) {
+        Result<VkCommandBuffer> commands = runner_->begin();
+        if (!commands) {
+            return commands.error();
+        }
+        commands_ = *commands;
+    }
+    return okStatus();
+}
+
+Status Uploader::finish() {
+    if (commands_ == VK_NULL_HANDLE) {
+        return okStatus();
+    }
+    recordDependency(
+        *context_, commands_,
+        {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+    commands_ = VK_NULL_HANDLE;
+    used_ = 0;
+    return runner_->submitAndWait();
+}
+
+Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
+    used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
+    if (used_ + unit > kStagingBytes) {
+        if (Status status = finish(); !status) {
+            return status.error();
+        }
+    }
+    if (Status status = start(); !status) {
+        return status.error();
+    }
+    const VkDeviceSize room = (kStagingBytes - used_) / unit * unit;
+    return std::min(wanted, room);
+}
+
+Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target,
+                              VkDeviceSize offset) {
+    while (!bytes.empty()) {
+        Result<VkDeviceSize> room = reserve(bytes.size(), 1);
+        if (!room) {
+            return room.error();
+        }
+        std::memcpy(staging_.mapped + used_, bytes.data(), *room);
+        const VkBufferCopy region{used_, offset, *room};
+        context_->vk.CmdCopyBuffer(commands_, staging_.handle.get(), target.handle.get(), 1, &region);
+        used_ += *room;
+        offset += *room;
+        bytes = bytes.subspan(*room);
+    }
+    return okStatus();
+}
+
+Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const Image& target) {
+    if (Status status = start(); !status) {
+        return status;
+    }
+    recordTransition(
+        *context_, commands_,
+        {target.handle.get(),
+         VK_IMAGE_LAYOUT_UNDEFINED,
+         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+         {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+    const VkDeviceSize rowBytes = kTexelBytes * target.extent.width;
+    std::uint32_t row = 0;
+    while (row < target.extent.height) {
+        Result<VkDeviceSize> room = reserve(rowBytes * (target.extent.height - row), rowBytes);
+        if (!room) {
+            return room.error();
+        }
+        const auto rows = static_cast<std::uint32_t>(*room / rowBytes);
+        std::memcpy(staging_.mapped + used_, rgba8.data() + row * rowBytes, *room);
+        VkBufferImageCopy region{};
+        region.bufferOffset = used_;
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageOffset = {0, static_cast<std::int32_t>(row), 0};
+        region.imageExtent = {target.extent.width, rows, 1};
+        context_->vk.CmdCopyBufferToImage(commands_, staging_.handle.get(), target.handle.get(),
+                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        used_ += *room;
+        row += rows;
+    }
+    recordMips(target);
+    return okStatus();
+}
+
+void Uploader::recordMips(const Image& target) {
+    const VkImage image = target.handle.get();
+    auto width = static_cast<std::int32_t>(target.extent.width);
+    auto height = static_cast<std::int32_t>(target.extent.height);
+    for (std::uint32_t mip = 1; mip < target.mips; ++mip) {
+        recordTransition(*context_, commands_,
+                         {image,
+                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                          {kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT, kBlitStages,
+                           VK_ACCESS_2_TRANSFER_READ_BIT},
+                          mip - 1,
+                          1});
+        VkImageBlit region{};
+        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        region.srcOffsets[1] = {width, height, 1};
+        width = std::max(width / 2, 1);
+        height = std::max(height / 2, 1);
+        region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        region.dstOffsets[1] = {width, height, 1};
+        context_->vk.CmdBlitImage(commands_, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
+                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+    }
+    const MemoryDependency toShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+    if (target.mips > 1) {
+        recordTransition(*context_, commands_,
+                         {image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, toShaders, 0, target.mips - 1});
+    }
+    recordTransition(*context_, commands_,
+                     {image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                      toShaders, target.mips - 1, 1});
+}
+
+}  // namespace glint

@@ -1,0 +1,16 @@
+// Vulkan's result codes as diagnostics.
+#pragma once
+
+#include <glint/result.h>
+
+#include <vulkan/vulkan_core.h>
+
+namespace glint {
+
+// "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not know.
+std::string vulkanResultName(VkResult result);
+
+// Error "vulkan-call": which call failed, and how.
+Diagnostic vulkanError(const char* call, VkResult result);
+
+}  // namespace glint

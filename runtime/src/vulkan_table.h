@@ -1,0 +1,160 @@
+// Vulkan's functions as tables that a Context owns: no global pointers, so that two contexts, or the host
+// application's own loader, never meet.
+#pragma once
+
+#include <glint/result.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <memory>
+
+// Needed before an instance exists.
+#define GLINT_GLOBAL_FUNCTIONS(X)       \
+    X(CreateInstance)                   \
+    X(EnumerateInstanceLayerProperties) \
+    X(EnumerateInstanceExtensionProperties)
+
+#define GLINT_INSTANCE_FUNCTIONS(X)           \
+    X(DestroyInstance)                        \
+    X(EnumeratePhysicalDevices)               \
+    X(GetPhysicalDeviceProperties)            \
+    X(GetPhysicalDeviceProperties2)           \
+    X(GetPhysicalDeviceFeatures2)             \
+    X(GetPhysicalDeviceMemoryProperties)      \
+    X(GetPhysicalDeviceQueueFamilyProperties) \
+    X(GetPhysicalDeviceFormatProperties)      \
+    X(EnumerateDeviceExtensionProperties)     \
+    X(CreateDevice)                           \
+    X(GetDeviceProcAddr)
+
+#define GLINT_DEVICE_FUNCTIONS(X)               \
+    X(DestroyDevice)                            \
+    X(GetDeviceQueue)                           \
+    X(DeviceWaitIdle)                           \
+    X(QueueSubmit2)                             \
+    X(AllocateMemory)                           \
+    X(FreeMemory)                               \
+    X(MapMemory)                                \
+    X(CreateBuffer)                             \
+    X(DestroyBuffer)                            \
+    X(GetBufferMemoryRequirements)              \
+    X(BindBufferMemory)                         \
+    X(GetBufferDeviceAddress)                   \
+    X(CreateImage)                              \
+    X(DestroyImage)                             \
+    X(GetImageMemoryRequirements)               \
+    X(BindImageMemory)                          \
+    X(CreateImageView)                          \
+    X(DestroyImageView)                         \
+    X(CreateSampler)                            \
+    X(DestroySampler)                           \
+    X(CreateDescriptorSetLayout)                \
+    X(DestroyDescriptorSetLayout)               \
+    X(CreateDescriptorPool)                     \
+    X(DestroyDescriptorPool)                    \
+    X(AllocateDescriptorSets)                   \
+    X(UpdateDescriptorSets)                     \
+    X(CreateShaderModule)                       \
+    X(DestroyShaderModule)                      \
+    X(CreatePipelineLayout)                     \
+    X(DestroyPipelineLayout)                    \
+    X(CreatePipelineCache)                      \
+    X(DestroyPipelineCache)                     \
+    X(CreateComputePipelines)                   \
+    X(CreateGraphicsPipelines)                  \
+    X(DestroyPipeline)                          \
+    X(CreateCommandPool)                        \
+    X(DestroyCommandPool)                       \
+    X(ResetCommandPool)                         \
+    X(AllocateCommandBuffers)                   \
+    X(BeginCommandBuffer)                       \
+    X(EndCommandBuffer)                         \
+    X(CreateFence)                              \
+    X(DestroyFence)                             \
+    X(ResetFences)                              \
+    X(WaitForFences)                            \
+    X(CreateQueryPool)                          \
+    X(DestroyQueryPool)                         \
+    X(ResetQueryPool)                           \
+    X(GetQueryPoolResults)                      \
+    X(CmdResetQueryPool)                        \
+    X(CmdWriteTimestamp2)                       \
+    X(CmdPipelineBarrier2)                      \
+    X(CmdCopyBuffer)                            \
+    X(CmdCopyBufferToImage)                     \
+    X(CmdCopyImageToBuffer)                     \
+    X(CmdBlitImage)                             \
+    X(CmdFillBuffer)                            \
+    X(CmdClearColorImage)                       \
+    X(CmdBindPipeline)                          \
+    X(CmdBindDescriptorSets)                    \
+    X(CmdPushConstants)                         \
+    X(CmdDispatch)                              \
+    X(CmdDispatchIndirect)                      \
+    X(CmdBeginRendering)                        \
+    X(CmdEndRendering)                          \
+    X(CmdSetViewport)                           \
+    X(CmdSetScissor)                            \
+    X(CmdSetCullMode)                           \
+    X(CmdSetFrontFace)                          \
+    X(CmdDraw)                                  \
+    X(CreateAccelerationStructureKHR)           \
+    X(DestroyAccelerationStructureKHR)          \
+    X(GetAccelerationStructureBuildSizesKHR)    \
+    X(GetAccelerationStructureDeviceAddressKHR) \
+    X(CmdBuildAccelerationStructuresKHR)        \
+    X(CmdCopyAccelerationStructureKHR)          \
+    X(CmdWriteAccelerationStructuresPropertiesKHR)
+
+namespace glint {
+
+#define GLINT_DECLARE_FUNCTION(name) PFN_vk##name name = nullptr;
+
+struct GlobalTable {
+    PFN_vkGetInstanceProcAddr GetInstanceProcAddr = nullptr;
+    GLINT_GLOBAL_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+};
+
+struct InstanceTable {
+    GLINT_INSTANCE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+    // Null unless VK_EXT_debug_utils is enabled.
+    PFN_vkCreateDebugUtilsMessengerEXT CreateDebugUtilsMessengerEXT = nullptr;
+    PFN_vkDestroyDebugUtilsMessengerEXT DestroyDebugUtilsMessengerEXT = nullptr;
+};
+
+struct DeviceTable {
+    GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+    // Null unless VK_EXT_debug_utils is enabled.
+    PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT CmdEndDebugUtilsLabelEXT = nullptr;
+};
+
+#undef GLINT_DECLARE_FUNCTION
+
+// The system's Vulkan loader, closed when the last owner goes.
+class VulkanLibrary {
+public:
+    // Error "vulkan-loader" where there is none.
+    static Result<std::shared_ptr<VulkanLibrary>> open();
+    ~VulkanLibrary();
+    VulkanLibrary(const VulkanLibrary&) = delete;
+    VulkanLibrary& operator=(const VulkanLibrary&) = delete;
+
+    PFN_vkGetInstanceProcAddr getInstanceProcAddr() const {
+        return getInstanceProcAddr_;
+    }
+    // A symbol that the library exports, or null.
+    void* symbol(const char* name) const;
+
+private:
+    explicit VulkanLibrary(void* handle) : handle_(handle) {}
+    void* handle_;
+    PFN_vkGetInstanceProcAddr getInstanceProcAddr_ = nullptr;
+};
+
+// Each error ("vulkan-function") names the first function that is missing.
+Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr);
+Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
+Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device);
+
+}  // namespace glint

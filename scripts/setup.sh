@@ -1,0 +1,274 @@
+#!/usr/bin/env bash
+# Installs what Glint needs to build, test and run. Does nothing where all of it is there.
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: scripts/setup.sh [--check] [--lint]
+
+Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
+On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
+
+  --check  install nothing; print what is missing and exit 1 if anything is
+  --lint   also what scripts/lint.sh needs
+TEXT
+}
+
+# What must be there, and the packages that bring it, the first that the distribution has is taken.
+#   command NAME   a program on the PATH
+#   file PATTERN   a file
+kNeeds=(
+    "command g++|g++"
+    "command cmake|cmake"
+    "command ninja|ninja-build"
+    "command pkg-config|pkg-config pkgconf"
+    "command git|git"
+    "command ccache|ccache"
+    "file /etc/ssl/certs/ca-certificates.crt|ca-certificates"
+    "file /usr/include/glslang/Public/ShaderLang.h|glslang-dev"
+    "file /usr/include/spirv-tools/optimizer.hpp|spirv-tools-dev libspirv-tools-dev spirv-tools"
+    "command spirv-val|spirv-tools"
+    "file /usr/include/spirv/unified1/spirv.hpp|spirv-headers"
+    "file /usr/include/tiny_gltf.h|libtinygltf-dev"
+    "file /usr/include/vulkan/vulkan.h|libvulkan-dev"
+    "file /usr/include/volk.h|libvulkan-volk-dev"
+    "file /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json|vulkan-validationlayers"
+    "file /usr/share/vulkan/icd.d/lvp_icd*.json|mesa-vulkan-drivers"
+    "file /usr/include/fmt/format.h|libfmt-dev"
+    "file /usr/include/CLI/CLI.hpp|libcli11-dev"
+    "file /usr/include/nlohmann/json.hpp|nlohmann-json3-dev"
+    "file /usr/include/kainjow/mustache.hpp|libkainjow-mustache-dev"
+    "file /usr/include/glm/glm.hpp|libglm-dev"
+    "file /usr/include/xxhash.h|libxxhash-dev"
+    "file /usr/include/stb/stb_image.h|libstb-dev"
+    "file /usr/include/OpenEXR/ImfHeader.h|libopenexr-dev"
+    "file /usr/include/gtest/gtest.h|libgtest-dev"
+)
+# clang-format 14 is what the sources are formatted with.
+kLintNeeds=(
+    "command clang-format-14|clang-format-14 clang-format"
+    "command clang-tidy|clang-tidy"
+    "command shellcheck|shellcheck"
+)
+# The first Mesa whose software driver has ray queries is of this series.
+kOldestMesa=24
+kBackportsFile=/etc/apt/sources.list.d/glint-backports.sources
+
+say() {
+    printf 'setup: %s\n' "$*"
+}
+
+fail() {
+    printf 'setup: error: %s\n' "$*" >&2
+    exit 1
+}
+
+# --- What is there ---------------------------------------------------------------------------------
+
+present() {
+    local kind=$1 what=$2
+    case $kind in
+        command) command -v "$what" >/dev/null ;;
+        file) compgen -G "$what" >/dev/null ;;
+    esac
+}
+
+# Prints the needs that are not met.
+missing_needs() {
+    local need probe
+    for need in "$@"; do
+        probe=${need%%|*}
+        if ! present "${probe%% *}" "${probe#* }"; then
+            printf '%s\n' "$need"
+        fi
+    done
+}
+
+mesa_version() {
+    dpkg-query -W -f '${Version}' mesa-vulkan-drivers 2>/dev/null || true
+}
+
+# Debian 12 with a Mesa of its own.
+mesa_too_old() {
+    [[ $distribution == "debian 12" ]] || return 1
+    local version
+    version=$(mesa_version)
+    [[ -z $version ]] || dpkg --compare-versions "$version" lt "$kOldestMesa"
+}
+
+# --- What to install -------------------------------------------------------------------------------
+
+as_root() {
+    if [[ $(id -u) -eq 0 ]]; then
+        "$@"
+    else
+        sudo "$@"
+    fi
+}
+
+apt_get() {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@"
+}
+
+candidate() {
+    LC_ALL=C apt-cache policy "$1" 2>/dev/null | sed -n 's/^  Candidate: //p' | grep -v '^(none)$' || true
+}
+
+# Prints the first of the named packages that the configured sources have.
+choose_package() {
+    local name
+    for name in "$@"; do
+        if [[ -n $(candidate "$name") ]]; then
+            printf '%s\n' "$name"
+            return
+        fi
+    done
+    local hint="check the sources of apt"
+    if [[ $distribution == ubuntu* ]]; then
+        hint="is the component universe enabled?"
+    fi
+    fail "no package for this system among: $* ($hint)"
+}
+
+# Prints the Signed-By field of an apt source, as lines of a deb822 stanza; nothing where it has none.
+# ENTRY is what apt calls it: FILE:STANZA for .sources, FILE:LINE for .list.
+signed_by() {
+    local file=${1%:*} place=${1##*:}
+    if [[ $file == *.sources ]]; then
+        # An embedded key continues on indented lines.
+        awk -v stanza="$place" '
+            /^[[:space:]]*$/ { if (inside) { inside = 0 } field = 0; next }
+            /^#/ { next }
+            !inside { inside = 1; count++ }
+            /^[^[:space:]]/ { field = tolower($0) ~ /^signed-by:/ }
+            count == stanza && field { print }
+        ' "$file"
+    else
+        sed -n "${place}s/.*[[ ]signed-by=\([^] ]*\).*/Signed-By: \1/p" "$file"
+    fi
+}
+
+# Adds backports to the sources, from the mirror and under the key that this machine uses for Debian itself.
+configure_backports() {
+    local targets release component origin uri entry
+    # shellcheck disable=SC2016 # apt expands these, not the shell
+    targets=$(apt-get indextargets --format '$(RELEASE)|$(COMPONENT)|$(ORIGIN)|$(REPO_URI)|$(SOURCESENTRY)' \
+        'Created-By: Packages')
+    if [[ $'\n'$targets == *$'\n'"bookworm-backports|main|"* ]]; then
+        say "bookworm-backports is configured already"
+        return
+    fi
+    while IFS='|' read -r release component origin uri entry; do
+        if [[ $release == bookworm && $component == main && $origin == Debian ]]; then
+            say "adding bookworm-backports in $kBackportsFile"
+            {
+                printf 'Types: deb\nURIs: %s\nSuites: bookworm-backports\nComponents: main\n' "$uri"
+                signed_by "$entry"
+            } | as_root tee "$kBackportsFile" >/dev/null
+            as_root chmod 644 "$kBackportsFile"
+            apt_get update -q
+            return
+        fi
+    done <<<"$targets"
+    fail "found no source of Debian's main component to take the mirror of backports from;" \
+        "configure bookworm-backports by hand and run this again"
+}
+
+install_mesa_from_backports() {
+    configure_backports
+    say "installing mesa-vulkan-drivers from bookworm-backports"
+    apt_get install -q -y --no-install-recommends -t bookworm-backports mesa-vulkan-drivers
+    if mesa_too_old; then
+        fail "mesa-vulkan-drivers is still $(mesa_version): bookworm-backports offers no newer one"
+    fi
+}
+
+install_packages() {
+    local packages=() alternatives need chosen
+    for need in "$@"; do
+        read -ra alternatives <<<"${need#*|}"
+        chosen=$(choose_package "${alternatives[@]}")
+        packages+=("$chosen")
+    done
+    say "installing ${packages[*]}"
+    apt_get install -q -y --no-install-recommends "${packages[@]}"
+}
+
+# --- Main ------------------------------------------------------------------------------------------
+
+check_only=false
+needs=("${kNeeds[@]}")
+for argument in "$@"; do
+    case $argument in
+        --check) check_only=true ;;
+        --lint) needs+=("${kLintNeeds[@]}") ;;
+        -h | --help)
+            usage
+            exit 0
+            ;;
+        *)
+            usage >&2
+            exit 2
+            ;;
+    esac
+done
+
+distribution=unknown
+if [[ -r /etc/os-release ]]; then
+    # shellcheck source=/dev/null
+    distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
+fi
+
+mapfile -t missing < <(missing_needs "${needs[@]}")
+old_mesa=false
+if mesa_too_old; then
+    old_mesa=true
+fi
+
+if [[ ${#missing[@]} -eq 0 && $old_mesa == false ]]; then
+    say "nothing to do"
+    exit 0
+fi
+
+if [[ $check_only == true ]]; then
+    for need in "${missing[@]}"; do
+        probe=${need%%|*}
+        names=${need#*|}
+        say "missing: ${probe#* } (package ${names// / or })"
+    done
+    if [[ $old_mesa == true && -n $(mesa_version) ]]; then
+        say "too old: mesa-vulkan-drivers $(mesa_version) (from $kOldestMesa on, in bookworm-backports)"
+    fi
+    exit 1
+fi
+
+case $distribution in
+    "debian 12" | "debian 13" | "ubuntu 24.04") ;;
+    *)
+        printf 'setup: missing here:\n' >&2
+        printf '  %s\n' "${missing[@]##*|}" >&2
+        fail "this script knows Debian 12, Debian 13 and Ubuntu 24.04, not '$distribution';" \
+            "install the packages above by the names they have here," \
+            "and a Vulkan driver with ray queries, for instance Mesa $kOldestMesa or newer"
+        ;;
+esac
+if [[ $(id -u) -ne 0 ]] && ! command -v sudo >/dev/null; then
+    fail "packages are missing (--check lists them): run this as root, or install sudo"
+fi
+
+say "reading the package lists"
+apt_get update -q
+if [[ $old_mesa == true ]]; then
+    install_mesa_from_backports
+    mapfile -t missing < <(missing_needs "${needs[@]}")
+fi
+if [[ ${#missing[@]} -gt 0 ]]; then
+    install_packages "${missing[@]}"
+fi
+
+mapfile -t missing < <(missing_needs "${needs[@]}")
+if [[ ${#missing[@]} -gt 0 ]]; then
+    printf 'setup: still missing: %s\n' "${missing[@]%%|*}" >&2
+    fail "the packages installed did not bring all that is needed"
+fi
+say "done"

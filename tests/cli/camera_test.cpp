@@ -1,0 +1,167 @@
+#include "cli/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+using Double3 = std::array<double, 3>;
+
+double dot(const Double3& a, const Double3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Double3 widen(const Float3& a) {
+    return {a[0], a[1], a[2]};
+}
+
+// How far from the centre of the image the farthest corner of the box is: 1 at the edge. Infinite behind the
+// camera.
+double reach(const CameraView& camera, const Bounds& box) {
+    const Double3 forward = widen(camera.forward);
+    const Double3 up = widen(camera.up);
+    const Double3 right{forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
+                        forward[0] * up[1] - forward[1] * up[0]};
+    double farthest = 0.0;
+    for (unsigned number = 0; number < 8; ++number) {
+        Double3 offset{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            offset[i] = (((number >> i) & 1U) != 0 ? box.max[i] : box.min[i]) - camera.position[i];
+        }
+        const double depth = dot(offset, forward);
+        if (depth <= camera.near * 0.999) {
+            return INFINITY;
+        }
+        farthest = std::max({farthest, std::abs(dot(offset, right)) / depth / camera.halfWidth,
+                             std::abs(dot(offset, up)) / depth / camera.halfHeight});
+    }
+    return farthest;
+}
+
+void expectFrame(const CameraView& camera) {
+    const Double3 forward = widen(camera.forward);
+    const Double3 up = widen(camera.up);
+    EXPECT_NEAR(dot(forward, forward), 1.0, 1e-5);
+    EXPECT_NEAR(dot(up, up), 1.0, 1e-5);
+    EXPECT_NEAR(dot(forward, up), 0.0, 1e-5);
+    EXPECT_GT(camera.near, 0.0F);
+}
+
+TEST(FramingCamera, ShowsTheWholeBoxAndNotMuchMore) {
+    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
+                            {{100, 200, 300}, {101, 200.1, 330}},
+                            {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}},
+                            {{-5000, 0, -5000}, {5000, 10, 5000}},
+                            {{0, 0, 0}, {0, 4, 0}}};
+    for (const Bounds& box : boxes) {
+        for (const double aspect : {16.0 / 9.0, 1.0, 0.25}) {
+            const CameraView camera = framingCamera(box, aspect);
+            expectFrame(camera);
+            EXPECT_FALSE(camera.orthographic);
+            EXPECT_NEAR(camera.halfWidth / camera.halfHeight, aspect, 1e-5);
+            EXPECT_LE(reach(camera, box), 1.0001);
+            EXPECT_GE(reach(camera, box), 0.7);
+        }
+    }
+}
+
+TEST(FramingCamera, EmptySceneAndSinglePointHaveOne) {
+    const CameraView empty = framingCamera(worldBounds({}), 1.5);
+    expectFrame(empty);
+    EXPECT_LE(reach(empty, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}), 1.0001);
+    const CameraView point = framingCamera({{7, 7, 7}, {7, 7, 7}}, 1.5);
+    expectFrame(point);
+    EXPECT_LE(reach(point, {{7, 7, 7}, {7, 7, 7}}), 1.0);
+}
+
+TEST(WorldBounds, CoverEveryInstance) {
+    Primitive primitive;
+    primitive.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}};
+    primitive.indices = {0, 1, 2};
+    Scene scene;
+    scene.meshes.resize(1);
+    scene.meshes[0].primitives = {primitive};
+    Node plain;
+    plain.mesh = 0;
+    plain.world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Node moved = plain;
+    moved.world = {-2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 5, 1};
+    Node infinite = plain;
+    infinite.world[12] = INFINITY;
+    scene.nodes = {plain, moved, infinite};
+    const Bounds bounds = worldBounds(makeSceneView(scene));
+    EXPECT_EQ(bounds.min, (Double3{0, 0, 0}));
+    EXPECT_EQ(bounds.max, (Double3{10, 2, 5}));
+    EXPECT_TRUE(worldBounds({}).empty());
+}
+
+Scene sceneWithCameras() {
+    Scene scene;
+    Camera perspective;
+    perspective.name = "Wide";
+    perspective.yfov = 1.0;
+    perspective.znear = 0.1;
+    perspective.zfar = 50.0;
+    // Turned by 90° about Y, so that -Z becomes -X, scaled by 2, at (1, 2, 3).
+    perspective.world = {0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 1, 2, 3, 1};
+    Camera orthographic;
+    orthographic.orthographic = true;
+    orthographic.ymag = 3.0;
+    orthographic.world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Camera flat = perspective;
+    flat.name = "Flat";
+    flat.world = {};
+    scene.cameras = {perspective, orthographic, flat};
+    return scene;
+}
+
+TEST(SceneCamera, KeepsTheVerticalFieldOfView) {
+    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 0, 2.0);
+    ASSERT_TRUE(camera) << toString(camera.error());
+    expectFrame(*camera);
+    EXPECT_EQ(camera->position, (Float3{1, 2, 3}));
+    EXPECT_NEAR(camera->forward[0], -1.0F, 1e-6F);
+    EXPECT_NEAR(camera->up[1], 1.0F, 1e-6F);
+    EXPECT_NEAR(camera->halfHeight, std::tan(0.5), 1e-6);
+    EXPECT_NEAR(camera->halfWidth, 2.0 * std::tan(0.5), 1e-6);
+    EXPECT_FLOAT_EQ(camera->near, 0.1F);
+    EXPECT_FLOAT_EQ(camera->far, 50.0F);
+}
+
+TEST(SceneCamera, OrthographicKeepsItsHeight) {
+    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 1, 2.0);
+    ASSERT_TRUE(camera);
+    EXPECT_TRUE(camera->orthographic);
+    EXPECT_FLOAT_EQ(camera->halfHeight, 3.0F);
+    EXPECT_FLOAT_EQ(camera->halfWidth, 6.0F);
+}
+
+TEST(SceneCamera, FlatNodeIsAnError) {
+    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 2, 1.0);
+    ASSERT_FALSE(camera);
+    EXPECT_EQ(camera.error().id, "camera-matrix");
+}
+
+TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
+    const Scene scene = sceneWithCameras();
+    const auto name = [&](const std::string& wanted) {
+        const Result<CameraChoice> choice = chooseCamera(scene, {}, wanted, 1.0);
+        return choice ? choice->name : choice.error().id;
+    };
+    EXPECT_EQ(name("Wide"), "Wide");
+    EXPECT_EQ(name("0"), "Wide");
+    EXPECT_EQ(name("1"), "1");
+    EXPECT_EQ(name("auto"), "auto");
+    EXPECT_EQ(name(""), "Wide");
+    EXPECT_EQ(name("3"), "camera-unknown");
+    EXPECT_EQ(name("Wyde"), "camera-unknown");
+    const Result<CameraChoice> none = chooseCamera(Scene{}, {}, "", 1.0);
+    ASSERT_TRUE(none);
+    EXPECT_EQ(none->name, "auto");
+}
+
+}  // namespace
+}  // namespace glint

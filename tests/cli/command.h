@@ -1,0 +1,45 @@
+// Runs the built `glint` and captures what it says.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::testing {
+
+struct Outcome {
+    int exit = -1;  // -1: it did not end by itself
+    std::string out;
+    std::string err;
+
+    // Standard output as JSON; a discarded value and a failed test where it is none.
+    nlohmann::json json() const;
+};
+
+// Each test has an empty folder of its own, which goes at the end.
+class CommandTest : public ::testing::Test {
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    std::filesystem::path path(const std::string& name) const {
+        return folder_ / name;
+    }
+    // Runs `glint` in the test's folder, with these variables added to the environment.
+    Outcome run(const std::vector<std::string>& arguments,
+                const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    // Paths of all files below `folder`, relative and sorted.
+    static std::vector<std::string> filesBelow(const std::filesystem::path& folder);
+
+private:
+    std::filesystem::path folder_;
+};
+
+std::string readText(const std::filesystem::path& path);
+void writeText(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace glint::testing

@@ -1,0 +1,159 @@
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+
+#include <algorithm>
+#include <string>
+
+namespace glint::testing {
+namespace {
+
+class CompileCommand : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        scene_ = writeTinyScene(path(""));
+    }
+    std::string scene() const {
+        return scene_.string();
+    }
+
+private:
+    std::filesystem::path scene_;
+};
+
+TEST_F(CompileCommand, DryRunPlansAndWritesNothing) {
+    const std::vector<std::string> before = filesBelow(path(""));
+    const Outcome outcome = run({"compile", scene(), "--dry-run", "--json", "-o", "package"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json json = outcome.json();
+    EXPECT_EQ(json.at("counts").at("materials"), 3);
+    EXPECT_EQ(json.at("counts").at("keysPresent"), 2);
+    EXPECT_EQ(json.at("counts").at("cases"), 2);
+    EXPECT_TRUE(json.at("counts").at("uniqueSpirv").is_null());
+    EXPECT_TRUE(json.at("output").is_null());
+    EXPECT_EQ(json.at("shaders").size(), 2U);
+    EXPECT_EQ(filesBelow(path("")), before);
+}
+
+TEST_F(CompileCommand, DryRunHonoursTheLimitOfShaders) {
+    EXPECT_EQ(run({"compile", scene(), "--dry-run", "--max-shaders", "2"}).exit, 0);
+    const Outcome refused = run({"compile", scene(), "--dry-run", "--max-shaders", "1"});
+    EXPECT_EQ(refused.exit, 1);
+    EXPECT_NE(refused.err.find("[max-shaders]"), std::string::npos) << refused.err;
+    EXPECT_EQ(run({"compile", scene(), "--dry-run", "--max-shaders", "1", "--merge", "all"}).exit, 0);
+}
+
+TEST_F(CompileCommand, JsonHasWhatIsPromised) {
+    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json json = outcome.json();
+    for (const char* name : {"materials", "keysPossible", "keysPresent", "cases", "uniqueSpirv"}) {
+        EXPECT_TRUE(json.at("counts").at(name).is_number_integer()) << name;
+    }
+    EXPECT_GT(json.at("spirvBytes").get<int>(), 0);
+    EXPECT_GT(json.at("packageBytes").get<int>(), json.at("spirvBytes").get<int>());
+    EXPECT_GE(json.at("milliseconds").get<double>(), 0.0);
+    EXPECT_EQ(json.at("output"), "package");
+    EXPECT_TRUE(json.at("warnings").empty());
+    for (const nlohmann::json& shader : json.at("shaders")) {
+        EXPECT_TRUE(shader.at("name").is_string());
+        EXPECT_GT(shader.at("spirv").at("bytes").get<int>(), 0);
+    }
+    const std::vector<std::string> files = filesBelow(path("package"));
+    for (const char* name : {"glint_tables.h", "manifest.json", "tables.bin"}) {
+        EXPECT_TRUE(std::binary_search(files.begin(), files.end(), name)) << name;
+    }
+}
+
+TEST_F(CompileCommand, EmitChoosesWhatElseIsWritten) {
+    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--emit", "glsl"}).exit, 0);
+    EXPECT_TRUE(std::filesystem::is_directory(path("package/glsl")));
+    EXPECT_FALSE(std::filesystem::exists(path("package/glint_tables.h")));
+}
+
+TEST_F(CompileCommand, TextSummaryNamesWhatItDid) {
+    const Outcome outcome = run({"compile", scene(), "-o", "package"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+    for (const char* label : {"materials", "keys present", "cases", "unique SPIR-V", "package bytes"}) {
+        EXPECT_NE(outcome.out.find(label), std::string::npos) << label;
+    }
+}
+
+TEST_F(CompileCommand, WerrorRefusesBeforeAnythingIsWritten) {
+    writeTinyScene(path(""), {.unknownExtension = true});
+    const Outcome refused = run({"compile", scene(), "-o", "package", "--werror"});
+    EXPECT_EQ(refused.exit, 1);
+    EXPECT_NE(refused.err.find("warning: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("[werror]"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(path("package")));
+
+    const Outcome accepted = run({"compile", scene(), "--dry-run", "--json"});
+    EXPECT_EQ(accepted.exit, 0);
+    EXPECT_EQ(accepted.json().at("warnings").size(), 1U);
+    EXPECT_NE(accepted.err.find("EXT_not_known_to_anyone"), std::string::npos) << accepted.err;
+}
+
+TEST_F(CompileCommand, FailureLeavesTheOldPackage) {
+    ASSERT_EQ(run({"compile", scene(), "-o", "package"}).exit, 0);
+    const std::vector<std::string> files = filesBelow(path("package"));
+    const std::string tables = readText(path("package/tables.bin"));
+    writeText(scene(), "{ not JSON");
+    const Outcome outcome = run({"compile", scene(), "-o", "package"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_FALSE(outcome.err.empty());
+    EXPECT_EQ(filesBelow(path("package")), files);
+    EXPECT_EQ(readText(path("package/tables.bin")), tables);
+}
+
+TEST_F(CompileCommand, RefusesAFolderOfSomethingElse) {
+    std::filesystem::create_directories(path("precious"));
+    writeText(path("precious/thesis.tex"), "years of work");
+    const Outcome outcome = run({"compile", scene(), "-o", "precious"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_EQ(filesBelow(path("precious")), std::vector<std::string>{"thesis.tex"});
+}
+
+TEST_F(CompileCommand, InspectShowsThePackage) {
+    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--merge", "none"}).exit, 0);
+    const Outcome outcome = run({"inspect", "package", "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json json = outcome.json();
+    EXPECT_EQ(json.at("merge"), "none");
+    EXPECT_EQ(json.at("alpha"), "opaque");
+    EXPECT_EQ(json.at("strategies"), nlohmann::json({"uber", "visibility"}));
+    EXPECT_EQ(json.at("counts").at("cases"), 2);
+    EXPECT_EQ(json.at("counts").at("buckets"), 3);
+    ASSERT_EQ(json.at("shaders").size(), 2U);
+    std::vector<std::string> names;
+    for (const nlohmann::json& shader : json.at("shaders")) {
+        ASSERT_EQ(shader.at("materials").size(), 1U);
+        names.push_back(shader.at("materials")[0].at("name"));
+    }
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names, (std::vector<std::string>{"Floor", "Wall"}));
+    for (const nlohmann::json& module : json.at("modules")) {
+        EXPECT_GT(module.at("instructions").get<int>(), 0) << module;
+    }
+    const Outcome text = run({"inspect", "package"});
+    EXPECT_EQ(text.exit, 0);
+    EXPECT_NE(text.out.find("strategies  uber, visibility"), std::string::npos) << text.out;
+}
+
+TEST_F(CompileCommand, InspectRefusesADamagedPackage) {
+    ASSERT_EQ(run({"compile", scene(), "-o", "package"}).exit, 0);
+    const std::string tables = readText(path("package/tables.bin"));
+    writeText(path("package/tables.bin"), tables.substr(0, tables.size() / 2));
+    const Outcome cut = run({"inspect", "package"});
+    EXPECT_EQ(cut.exit, 1);
+    EXPECT_NE(cut.err.find("error: "), std::string::npos) << cut.err;
+
+    writeText(path("package/tables.bin"), tables);
+    writeText(path("package/manifest.json"), "[]");
+    const Outcome manifest = run({"inspect", "package"});
+    EXPECT_EQ(manifest.exit, 1);
+    EXPECT_NE(manifest.err.find("[manifest-format]"), std::string::npos) << manifest.err;
+}
+
+}  // namespace
+}  // namespace glint::testing

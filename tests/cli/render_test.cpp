@@ -1,0 +1,125 @@
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+class RenderCommand : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        scene_ = writeTinyScene(path("")).string();
+    }
+    // A small picture of the scene, with more options.
+    Outcome render(const std::string& image, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"render", scene_, "-o", image, "--size", "64x36"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    std::string scene_;
+};
+
+TEST_F(RenderCommand, CompileInspectRenderCompare) {
+    ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
+    ASSERT_EQ(run({"inspect", "package"}).exit, 0);
+    const Outcome uber = render("uber.exr", {"--strategy", "uber", "--package", "package"});
+    ASSERT_EQ(uber.exit, 0) << uber.err;
+    const Outcome visibility = render("visibility.exr", {"--strategy", "visibility"});
+    ASSERT_EQ(visibility.exit, 0) << visibility.err;
+    const Outcome same = run({"compare", "uber.exr", "visibility.exr", "--max-error", "1e-4"});
+    EXPECT_EQ(same.exit, 0) << same.out << same.err;
+}
+
+TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
+    const Outcome outcome = render("a.png", {"--stats", "stats.json", "--json", "--spp", "2"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json stats = nlohmann::json::parse(readText(path("stats.json")));
+    EXPECT_EQ(stats, outcome.json());
+    EXPECT_EQ(stats.at("width"), 64);
+    EXPECT_EQ(stats.at("height"), 36);
+    EXPECT_EQ(stats.at("spp"), 2);
+    EXPECT_EQ(stats.at("camera"), "Front");
+    EXPECT_EQ(stats.at("merge"), "family");
+    EXPECT_EQ(stats.at("sceneStatistics").at("triangles"), 4);
+    EXPECT_FALSE(stats.at("device").get<std::string>().empty());
+    ASSERT_FALSE(stats.at("passes").empty());
+    for (const nlohmann::json& pass : stats.at("passes")) {
+        EXPECT_GE(pass.at("milliseconds").get<double>(), 0.0) << pass;
+    }
+    // Misses, the floor's case and the wall's.
+    const nlohmann::json& counters = stats.at("counters");
+    ASSERT_EQ(counters.at("buckets").size(), 3U);
+    std::uint64_t hits = 0;
+    for (const nlohmann::json& bucket : counters.at("buckets")) {
+        hits += bucket.get<std::uint64_t>();
+    }
+    EXPECT_GT(hits, 0U);
+    EXPECT_EQ(counters.at("rays"), hits);
+    EXPECT_GT(counters.at("skippedSky").get<int>(), 0);
+    EXPECT_GT(counters.at("skippedUnlit").get<int>(), 0);
+}
+
+TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {
+    const Outcome off = render("a.png", {"--no-reflections", "--json"});
+    ASSERT_EQ(off.exit, 0) << off.err;
+    EXPECT_EQ(off.json().at("counters").at("rays"), 0);
+    const Outcome rough = render("b.png", {"--max-roughness", "0.05", "--json"});
+    ASSERT_EQ(rough.exit, 0) << rough.err;
+    EXPECT_EQ(rough.json().at("counters").at("rays"), 0);
+    EXPECT_GT(rough.json().at("counters").at("skippedRough").get<int>(), 0);
+}
+
+TEST_F(RenderCommand, SeedsAndExposureChangeThePicture) {
+    ASSERT_EQ(render("a.png", {"--exposure", "0"}).exit, 0);
+    ASSERT_EQ(render("again.png", {"--exposure", "0"}).exit, 0);
+    ASSERT_EQ(render("bright.png", {"--exposure", "2"}).exit, 0);
+    EXPECT_EQ(readText(path("a.png")), readText(path("again.png")));
+    EXPECT_NE(readText(path("a.png")), readText(path("bright.png")));
+}
+
+TEST_F(RenderCommand, ValidationFindsNothing) {
+    const Outcome outcome = render("a.png", {"--validate", "--camera", "auto"});
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+}
+
+TEST_F(RenderCommand, FailuresLeaveTheOldPicture) {
+    writeText(path("a.png"), "old");
+    const Outcome camera = render("a.png", {"--camera", "Frnt"});
+    EXPECT_EQ(camera.exit, 1);
+    EXPECT_NE(camera.err.find("did you mean Front?"), std::string::npos) << camera.err;
+    EXPECT_EQ(render("a.png", {"--device", "no such device"}).exit, 1);
+    EXPECT_EQ(render("a.png", {"--package", "no-such-folder"}).exit, 1);
+    EXPECT_EQ(render("missing/a.png").exit, 1);
+    EXPECT_EQ(readText(path("a.png")), "old");
+}
+
+TEST_F(RenderCommand, PackageMustMatch) {
+    ASSERT_EQ(run({"compile", scene_, "-o", "package", "--strategy", "uber"}).exit, 0);
+    const Outcome strategy = render("a.png", {"--package", "package", "--strategy", "visibility"});
+    EXPECT_EQ(strategy.exit, 1);
+    EXPECT_NE(strategy.err.find("[package-mismatch]"), std::string::npos) << strategy.err;
+
+    // The wall gets the floor's material.
+    std::string text = readText(scene_);
+    const std::size_t place = text.find("\"material\":1");
+    ASSERT_NE(place, std::string::npos);
+    text.replace(place, 12, "\"material\":0");
+    writeText(scene_, text);
+    const Outcome scene = render("a.png", {"--package", "package", "--strategy", "uber"});
+    EXPECT_EQ(scene.exit, 1);
+    EXPECT_NE(scene.err.find("/meshes/1/primitives/0"), std::string::npos) << scene.err;
+    EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+}
+
+TEST_F(RenderCommand, TemporaryFolderIsRemoved) {
+    std::filesystem::create_directories(path("tmp"));
+    const std::vector<std::pair<std::string, std::string>> variables{{"TMPDIR", path("tmp").string()}};
+    EXPECT_EQ(run({"render", scene_, "-o", "a.png", "--size", "16x9"}, variables).exit, 0);
+    EXPECT_TRUE(filesBelow(path("tmp")).empty());
+}
+
+}  // namespace
+}  // namespace glint::testing

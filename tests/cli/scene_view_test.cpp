@@ -1,0 +1,107 @@
+#include "cli/scene_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace glint {
+namespace {
+
+constexpr Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+Primitive triangle() {
+    Primitive primitive;
+    primitive.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    primitive.indices = {0, 1, 2};
+    return primitive;
+}
+
+Node placing(int mesh) {
+    Node node;
+    node.mesh = mesh;
+    node.world = kIdentity;
+    return node;
+}
+
+TEST(SceneView, NumbersStayAsInTheScene) {
+    Scene scene;
+    scene.meshes.resize(4);
+    scene.meshes[0].primitives = {triangle()};               // not placed
+    scene.meshes[1].primitives = {Primitive{}, triangle()};  // its first has no triangle
+    scene.meshes[2].primitives = {Primitive{}};              // nothing to see
+    scene.meshes[3].primitives = {triangle(), triangle()};
+    scene.nodes = {placing(3), placing(1), placing(-1), placing(2), placing(3)};
+
+    const SceneViewData data = makeSceneView(scene);
+    ASSERT_EQ(data.primitives.size(), 3U);
+    EXPECT_EQ(data.primitives[0].mesh, 1U);
+    EXPECT_EQ(data.primitives[0].primitive, 1U);
+    EXPECT_EQ(data.primitives[1].mesh, 3U);
+    EXPECT_EQ(data.primitives[1].primitive, 0U);
+    EXPECT_EQ(data.primitives[2].primitive, 1U);
+    ASSERT_EQ(data.instances.size(), 3U);
+    EXPECT_EQ(data.instances[0].mesh, 3U);
+    EXPECT_EQ(data.instances[1].mesh, 1U);
+    EXPECT_EQ(data.instances[2].mesh, 3U);
+}
+
+TEST(SceneView, AttributesAreViewsOfTheScene) {
+    Scene scene;
+    scene.meshes.resize(1);
+    scene.meshes[0].primitives = {triangle()};
+    scene.meshes[0].primitives[0].texCoords1 = {{0, 0}, {1, 0}, {0, 1}};
+    scene.nodes = {placing(0)};
+    const SceneViewData data = makeSceneView(scene);
+    const PrimitiveView& view = data.primitives[0];
+    EXPECT_EQ(view.positions.data(), scene.meshes[0].primitives[0].positions.data());
+    EXPECT_EQ(view.texCoords1.size(), 3U);
+    EXPECT_EQ(view.indices.size(), 3U);
+    EXPECT_TRUE(view.normals.empty());
+    EXPECT_TRUE(view.colors.empty());
+}
+
+TEST(SceneView, MatricesBecomeRows) {
+    const Matrix4 matrix{1, 5, 9, 0, 2, 6, 10, 0, 3, 7, 11, 0, 4, 8, 12, 1};
+    const std::array<float, 12> rows{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    EXPECT_EQ(toRows(matrix), rows);
+}
+
+TEST(SceneView, ImagesKeepTheirNumbers) {
+    Scene scene;
+    scene.images.resize(2);
+    scene.images[1].width = 1;
+    scene.images[1].height = 1;
+    scene.images[1].rgba8 = {1, 2, 3, 4};
+    const SceneViewData data = makeSceneView(scene);
+    ASSERT_EQ(data.images.size(), 2U);
+    EXPECT_TRUE(data.images[0].rgba8.empty());
+    EXPECT_EQ(data.images[1].rgba8[3], 4);
+}
+
+TEST(SceneView, LightsCarryTheirIntensity) {
+    Scene scene;
+    Light light;
+    light.type = LightType::Spot;
+    light.color = {1.0F, 0.5F, 0.25F};
+    light.intensity = 8.0F;
+    light.range = 3.0F;
+    light.position = {1, 2, 3};
+    light.outerConeAngle = 0.3F;
+    scene.lights = {light};
+    const SceneViewData data = makeSceneView(scene);
+    ASSERT_EQ(data.lights.size(), 1U);
+    EXPECT_EQ(data.lights[0].type, LightView::Type::Spot);
+    EXPECT_EQ(data.lights[0].intensity, (Float3{8.0F, 4.0F, 2.0F}));
+    EXPECT_EQ(data.lights[0].position, light.position);
+    EXPECT_EQ(data.lights[0].range, 3.0F);
+    EXPECT_EQ(data.lights[0].outerConeAngle, 0.3F);
+}
+
+TEST(SceneView, SunIsAUnitVectorThatTravelsDown) {
+    const Float3 way = sunLight().direction;
+    EXPECT_NEAR(std::hypot(way[0], way[1], way[2]), 1.0F, 1e-6F);
+    EXPECT_LT(way[1], 0.0F);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,112 @@
+#include "cli/tiny_scene.h"
+
+#include "cli/command.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Four corners and two triangles: 4 positions, 4 normals, 6 indices of 16 bits.
+using Corners = std::array<std::array<float, 3>, 4>;
+
+void append(std::string& bytes, const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+}
+
+std::string quad(const Corners& corners, const std::array<float, 3>& normal) {
+    std::string bytes;
+    append(bytes, corners.data(), sizeof corners);
+    for (int i = 0; i < 4; ++i) {
+        append(bytes, normal.data(), sizeof normal);
+    }
+    const std::array<std::uint16_t, 6> indices{0, 1, 2, 0, 2, 3};
+    append(bytes, indices.data(), sizeof indices);
+    return bytes;
+}
+
+constexpr int kFloat = 5126;
+constexpr int kUnsignedShort = 5123;
+constexpr std::size_t kVectorBytes = 48;
+constexpr std::size_t kQuadBytes = 2 * kVectorBytes + 12;
+
+// Three buffer views and three accessors for the quad at `offset` of the buffer.
+void addQuad(Json& gltf, const Corners& corners, std::size_t offset, int material) {
+    const std::size_t first = gltf["accessors"].size();
+    const auto view = [&](std::size_t start, std::size_t bytes) {
+        gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset + start}, {"byteLength", bytes}});
+    };
+    view(0, kVectorBytes);
+    view(kVectorBytes, kVectorBytes);
+    view(2 * kVectorBytes, 12);
+    std::array<float, 3> low = corners[0];
+    std::array<float, 3> high = corners[0];
+    for (const std::array<float, 3>& corner : corners) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], corner[i]);
+            high[i] = std::max(high[i], corner[i]);
+        }
+    }
+    gltf["accessors"].push_back({{"bufferView", first},
+                                 {"componentType", kFloat},
+                                 {"count", 4},
+                                 {"type", "VEC3"},
+                                 {"min", low},
+                                 {"max", high}});
+    gltf["accessors"].push_back(
+        {{"bufferView", first + 1}, {"componentType", kFloat}, {"count", 4}, {"type", "VEC3"}});
+    gltf["accessors"].push_back(
+        {{"bufferView", first + 2}, {"componentType", kUnsignedShort}, {"count", 6}, {"type", "SCALAR"}});
+    gltf["meshes"].push_back({{"primitives",
+                               {{{"attributes", {{"POSITION", first}, {"NORMAL", first + 1}}},
+                                 {"indices", first + 2},
+                                 {"material", material}}}}});
+}
+
+Json materials() {
+    return Json::array(
+        {{{"name", "Floor"},
+          {"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.7, 0.6, 1.0}}, {"roughnessFactor", 0.1}}}},
+         {{"name", "Wall"},
+          {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.6, 0.3, 1.0}}}},
+          {"extensions", {{"KHR_materials_unlit", Json::object()}}}},
+         {{"name", "Spare"}}});
+}
+
+}  // namespace
+
+std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options) {
+    const Corners floor{{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}};
+    const Corners wall{{{-2, 0, -2}, {2, 0, -2}, {2, 2, -2}, {-2, 2, -2}}};
+    writeText(folder / "scene.bin", quad(floor, {0, 1, 0}) + quad(wall, {0, 0, 1}));
+
+    Json gltf{{"asset", {{"version", "2.0"}}},
+              {"scene", 0},
+              {"scenes", {{{"nodes", {0, 1}}}}},
+              {"nodes", {{{"mesh", 0}}, {{"mesh", 1}}}},
+              {"extensionsUsed", {"KHR_materials_unlit"}},
+              {"materials", materials()},
+              {"buffers", {{{"uri", "scene.bin"}, {"byteLength", 2 * kQuadBytes}}}}};
+    addQuad(gltf, floor, 0, 0);
+    addQuad(gltf, wall, kQuadBytes, 1);
+    if (options.camera) {
+        gltf["cameras"] = {
+            {{"name", "Front"}, {"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01}}}}};
+        gltf["nodes"].push_back({{"name", "Front"}, {"camera", 0}, {"translation", {0, 1, 4}}});
+        gltf["scenes"][0]["nodes"].push_back(2);
+    }
+    if (options.unknownExtension) {
+        gltf["extensionsUsed"].push_back("EXT_not_known_to_anyone");
+    }
+    std::filesystem::path path = folder / "scene.gltf";
+    writeText(path, gltf.dump());
+    return path;
+}
+
+}  // namespace glint::testing

@@ -1,0 +1,17 @@
+// A scene of a few triangles, written as .gltf and .bin.
+#pragma once
+
+#include <filesystem>
+
+namespace glint::testing {
+
+struct TinyScene {
+    bool unknownExtension = false;  // in extensionsUsed: a warning
+    bool camera = true;
+};
+
+// A smooth metal floor ("Floor"), an unlit wall ("Wall") and a material that nothing uses ("Spare").
+// Writes scene.gltf and scene.bin into `folder`; returns the path of the former.
+std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options = {});
+
+}  // namespace glint::testing

@@ -1,0 +1,76 @@
+// The example scene as the compiler sees it.
+#include "plan/plan.h"
+
+#include "document.h"
+#include "gltf/import.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+namespace gallery::test {
+
+namespace {
+
+const glint::Scene& scene() {
+    static const auto kScene = glint::importScene(document().folder / "gallery.gltf", {.decodeImages = true});
+    if (!kScene.ok()) {
+        throw std::runtime_error(glint::toString(kScene.error()));
+    }
+    return *kScene;
+}
+
+// The keys of each material, by its name.
+std::map<std::string, std::set<glint::FeatureMask>> keysByMaterial(const glint::KeyOptions& options) {
+    std::map<std::string, std::set<glint::FeatureMask>> keys;
+    for (const glint::PrimitiveInputs& primitive : glint::planningInputs(scene())) {
+        const glint::Material& material = scene().materials.at(static_cast<std::size_t>(primitive.material));
+        keys[material.name].insert(glint::makeKey(material, primitive, options));
+    }
+    return keys;
+}
+
+}  // namespace
+
+TEST(GalleryPlan, ImportsWithoutAWarning) {
+    for (const glint::Diagnostic& warning : scene().warnings) {
+        ADD_FAILURE() << glint::toString(warning);
+    }
+    EXPECT_EQ(scene().cameras.size(), 2U);
+    EXPECT_EQ(scene().lights.size(), 5U);
+    EXPECT_EQ(scene().defaultMaterial, -1);
+}
+
+TEST(GalleryPlan, CoversEveryFeature) {
+    const auto inputs = glint::planningInputs(scene());
+    const glint::Plan plan =
+        glint::makePlan(scene().materials, inputs, {{glint::AlphaPolicy::Tested}, glint::MergePolicy::None});
+    for (const glint::FeatureInfo& feature : glint::featureTable()) {
+        EXPECT_NE((plan.always | plan.sometimes) & glint::bit(feature.feature), 0U) << feature.name;
+    }
+}
+
+TEST(GalleryPlan, HasFewerKeysThanMaterials) {
+    const auto inputs = glint::planningInputs(scene());
+    const glint::Plan plan = glint::makePlan(scene().materials, inputs, {{}, glint::MergePolicy::None});
+    EXPECT_LT(plan.keys.size(), scene().materials.size());
+    EXPECT_GT(plan.keys.size(), scene().materials.size() / 2);
+}
+
+// Neutral values must not make a key of their own.
+TEST(GalleryPlan, TwinsShareAKey) {
+    const auto keys = keysByMaterial({});
+    EXPECT_EQ(keys.at("Plaster, chalk"), keys.at("Plaster, petrol"));
+    EXPECT_EQ(keys.at("Ruby"), keys.at("Emerald"));
+    EXPECT_EQ(keys.at("Neon, pink"), keys.at("Neon, cyan"));
+    EXPECT_EQ(keys.at("Wood, beams"), keys.at("Wood, bench"));
+    EXPECT_EQ(keys.at("Marble, table"), keys.at("Marble, dark"));    // identity transform
+    EXPECT_EQ(keys.at("Rubber, red"), keys.at("Plastic, blue"));     // emissive strength 1
+    EXPECT_EQ(keys.at("Plastic, white"), keys.at("Plastic, blue"));  // white vertex colours
+    EXPECT_EQ(keys.at("Gilt frame"), keys.at("Gold"));               // normal scale 0
+    EXPECT_NE(keys.at("Hammered copper"), keys.at("Gold"));
+}
+
+}  // namespace gallery::test

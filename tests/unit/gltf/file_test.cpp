@@ -1,0 +1,188 @@
+// Files: containers, buffers, URIs, JSON.
+#include "gltf/uri.h"
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace glint::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A triangle whose buffer is in the file of that URI.
+std::string triangleWithBuffer(const std::string& uri, Bytes& bytes) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    bytes = builder.buffer;
+    builder.root["buffers"] = Json::array({{{"byteLength", bytes.size()}, {"uri", uri}}});
+    return builder.text();
+}
+
+// Imports a scene in "<folder>/scenes" whose buffer has that URI.
+Result<Scene> importWithUri(const TempFolder& folder, const std::string& uri) {
+    Bytes bytes;
+    const std::string text = triangleWithBuffer(uri, bytes);
+    const fs::path scenes = folder.path() / "scenes";
+    fs::create_directories(scenes / "sub folder");
+    for (const fs::path& path :
+         {folder.path() / "outside.bin", scenes / "a.bin", scenes / "sub folder/b.bin"}) {
+        EXPECT_TRUE(writeFile(path, bytes).ok());
+    }
+    EXPECT_TRUE(writeFile(scenes / "scene.gltf", text).ok());
+    return importScene(scenes / "scene.gltf");
+}
+
+TEST(GltfFiles, OpensRelativeFilesAndRecordsThem) {
+    const TempFolder folder;
+    for (const char* uri :
+         {"a.bin", "./a.bin", "sub%20folder/b.bin", "sub folder/b.bin", "sub%20folder/../a.bin"}) {
+        const Result<Scene> scene = importWithUri(folder, uri);
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        ASSERT_EQ(scene->files.size(), 2U);
+        EXPECT_EQ(scene->path, (folder.path() / "scenes/scene.gltf").string());
+        EXPECT_EQ(scene->files[0].path, scene->path);
+        const Result<Bytes> content = readFile(scene->files[1].path);
+        ASSERT_TRUE(content.ok());
+        EXPECT_EQ(scene->files[1].bytes, content->size());
+        EXPECT_EQ(scene->files[1].hash, hashBytes(*content));
+    }
+}
+
+TEST(GltfFiles, RefusesToLeaveTheFolder) {
+    const TempFolder folder;
+    fs::create_directories(folder.path() / "scenes");
+    fs::create_symlink(folder.path() / "outside.bin", folder.path() / "scenes/link.bin");
+    fs::create_directory_symlink(folder.path(), folder.path() / "scenes/up");
+    const std::string absolute = (folder.path() / "scenes/a.bin").string();
+    for (const std::string& uri :
+         {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"),
+          std::string("sub folder/../../outside.bin"), absolute, std::string("file://") + absolute,
+          std::string("http://localhost/a.bin"), std::string("C:/a.bin"), std::string("link.bin"),
+          std::string("up/outside.bin"), std::string("a.bin%00"), std::string("%2Fetc/passwd"),
+          std::string("\\\\server\\a.bin"), std::string()}) {
+        const Result<Scene> scene = importWithUri(folder, uri);
+        ASSERT_FALSE(scene.ok()) << uri;
+        EXPECT_EQ(scene.error().id, "uri-unsafe") << uri;
+        EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#/buffers/0/uri"));
+        EXPECT_FALSE(scene.error().hint.empty());
+    }
+}
+
+TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
+    const TempFolder folder;
+    const Result<Scene> missing = importWithUri(folder, "none.bin");
+    ASSERT_FALSE(missing.ok());
+    EXPECT_EQ(missing.error().id, "file-open");
+    EXPECT_NE(missing.error().message.find("none.bin"), std::string::npos);
+    const Result<Scene> directory = importWithUri(folder, "sub folder");
+    ASSERT_FALSE(directory.ok());
+    EXPECT_EQ(directory.error().id, "file-open");
+
+    GltfBuilder builder;
+    builder.addTriangle();
+    builder.root["buffers"] = Json::array({{{"byteLength", 36}, {"uri", "data:;base64,AAAA"}}});
+    const Result<Scene> tooShort = import(builder);
+    ASSERT_FALSE(tooShort.ok());
+    EXPECT_EQ(tooShort.error().id, "buffer-size");
+    builder.root["buffers"][0].erase("uri");
+    EXPECT_EQ(import(builder).error().id, "buffer-data");
+
+    EXPECT_EQ(importScene(folder.path() / "none.gltf").error().id, "file-open");
+    EXPECT_EQ(importScene(folder.path()).error().id, "file-open");
+}
+
+TEST(GltfFiles, BoundsTheBytesRead) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    const Result<Scene> scene = import(builder, {.maxFileBytes = 100});
+    ASSERT_FALSE(scene.ok());
+    EXPECT_EQ(scene.error().id, "file-size");
+}
+
+TEST(GltfJson, IsChecked) {
+    const auto idOf = [](const std::string& text) {
+        const Result<Scene> scene = importText(text);
+        if (!scene) {
+            EXPECT_NE(scene.error().where.find("scene.gltf"), std::string::npos);
+            EXPECT_FALSE(scene.error().message.empty());
+        }
+        return scene ? std::string("imported") : scene.error().id;
+    };
+    EXPECT_EQ(idOf(""), "json-syntax");
+    EXPECT_EQ(idOf("{"), "json-syntax");
+    EXPECT_EQ(idOf("[]"), "json-type");
+    EXPECT_EQ(idOf("{}"), "asset-version");
+    EXPECT_EQ(idOf(R"({"asset": {"version": 2}})"), "asset-version");
+    EXPECT_EQ(idOf(R"({"asset": {"version": "1.0"}})"), "asset-version");
+    EXPECT_EQ(idOf(R"({"asset": {"version": "2.0", "minVersion": "2.1"}})"), "asset-version");
+    EXPECT_EQ(idOf(R"({"asset": {"version": "2.0"}})"), "imported");
+    EXPECT_EQ(idOf("\xEF\xBB\xBF{\"asset\": {\"version\": \"2.0\"}}"), "imported");
+    EXPECT_EQ(idOf(R"({"asset": {"version": "2.0"}, "nodes": {}})"), "json-type");
+    EXPECT_EQ(idOf(R"({"asset": {"version": "2.0"}, "nodes": [3]})"), "json-type");
+    EXPECT_EQ(idOf("{\"asset\": {\"version\": \"2.0\"}, \"extras\": " + std::string(200000, '[') + "}"),
+              "json-depth");
+    EXPECT_EQ(idOf("{\"asset\": {\"version\": \"2.0\"}, \"extras\": \"" + std::string(200000, '[') + "\"}"),
+              "imported");
+}
+
+std::string errorOfBytes(const std::string& bytes) {
+    const Result<Scene> scene = importText(bytes);
+    return scene ? "imported" : scene.error().id;
+}
+
+TEST(GltfGlb, IsReadWhateverItsName) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    const Result<Scene> scene = importText(builder.glb());
+    ASSERT_TRUE(scene.ok()) << toString(scene.error());
+    EXPECT_EQ(scene->meshes[0].primitives[0].positions[1], (Float3{1, 0, 0}));
+    EXPECT_EQ(scene->files.size(), 1U);
+}
+
+TEST(GltfGlb, IsChecked) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    const std::string good = builder.glb();
+    EXPECT_EQ(errorOfBytes("glTF"), "glb-length");
+    EXPECT_EQ(errorOfBytes("glTF" + word(1) + good.substr(8)), "glb-version");
+    EXPECT_EQ(errorOfBytes(good.substr(0, good.size() - 1)), "glb-length");
+    EXPECT_EQ(errorOfBytes("glTF" + word(2) + word(0xFFFFFFFFU) + good.substr(12)), "glb-length");
+    EXPECT_EQ(errorOfBytes("glTF" + word(2) + word(3) + good.substr(12)), "glb-length");
+    EXPECT_EQ(errorOfBytes("glTF" + word(2) + word(12)), "glb-chunk");
+    EXPECT_EQ(errorOfBytes("glTF" + word(2) + word(16) + word(0)), "glb-chunk");
+    EXPECT_EQ(errorOfBytes(good.substr(0, 12) + word(0xFFFFFFFFU) + good.substr(16)), "glb-chunk");
+    const std::string binaryFirst = chunk(0x004E4942, "abcd", '\0');
+    EXPECT_EQ(errorOfBytes("glTF" + word(2) + word(static_cast<std::uint32_t>(binaryFirst.size() + 12)) +
+                           binaryFirst),
+              "glb-chunk");
+    EXPECT_EQ(errorOfBytes(good + "more"), "imported");
+}
+
+TEST(GltfUri, DecodesDataUris) {
+    using gltf::decodeDataUri;
+    const auto text = [](std::string_view uri) {
+        const auto data = decodeDataUri(uri);
+        return data ? std::string(data->bytes.begin(), data->bytes.end()) : "malformed";
+    };
+    EXPECT_EQ(text("data:text/plain;base64,aGVsbG8="), "hello");
+    EXPECT_EQ(text("data:text/plain;base64,aGVsbG8"), "hello");
+    EXPECT_EQ(text("DATA:;base64,aGVsbG8%3D"), "hello");
+    EXPECT_EQ(text("data:,a%20b"), "a b");
+    EXPECT_EQ(text("data:;base64,aGVsb*8="), "malformed");
+    EXPECT_EQ(text("data:;base64,aGVsb"), "malformed");
+    EXPECT_EQ(text("data:;base64"), "malformed");
+    EXPECT_EQ(decodeDataUri("data:image/png;charset=x;base64,AAAA")->mimeType, "image/png");
+}
+
+TEST(GltfUri, DecodesPercents) {
+    EXPECT_EQ(gltf::percentDecode("a%20b%2Fc"), "a b/c");
+    EXPECT_EQ(gltf::percentDecode("100%"), "100%");
+    EXPECT_EQ(gltf::percentDecode("%4"), "%4");
+    EXPECT_EQ(gltf::percentDecode("%zz"), "%zz");
+    EXPECT_EQ(gltf::percentDecode("%c3%A4"), "\xC3\xA4");
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,369 @@
+// Accessors, indices, modes and attributes.
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace glint::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// The only primitive of a scene that must import.
+const Primitive& onlyPrimitive(const Result<Scene>& scene) {
+    static const Primitive kNone;
+    if (!scene || scene->meshes.empty() || scene->meshes[0].primitives.empty()) {
+        ADD_FAILURE() << (scene ? "no primitive" : toString(scene.error()));
+        return kNone;
+    }
+    return scene->meshes[0].primitives[0];
+}
+
+void expectError(const Result<Scene>& scene, std::string_view id, std::string_view pointer) {
+    ASSERT_FALSE(scene.ok());
+    EXPECT_EQ(scene.error().id, id) << toString(scene.error());
+    EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#" + std::string(pointer))) << scene.error().where;
+    EXPECT_FALSE(scene.error().message.empty());
+    EXPECT_FALSE(scene.error().hint.empty());
+}
+
+TEST(GltfGeometry, GeneratesIndicesAndLeavesMissingAttributesEmpty) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    const Result<Scene> scene = import(builder);
+    const Primitive& primitive = onlyPrimitive(scene);
+    EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(primitive.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_TRUE(primitive.normals.empty());
+    EXPECT_TRUE(primitive.tangents.empty());
+    EXPECT_TRUE(primitive.texCoords0.empty());
+    EXPECT_EQ(primitive.colorContent, ColorContent::None);
+    EXPECT_EQ(primitive.pointer, "/meshes/0/primitives/0");
+    EXPECT_EQ(scene->defaultMaterial, 0);
+    EXPECT_EQ(primitive.material, 0);
+    EXPECT_TRUE(scene->warnings.empty());
+}
+
+TEST(GltfGeometry, ReadsIndicesOfEveryType) {
+    for (int type = 0; type < 3; ++type) {
+        GltfBuilder builder;
+        Json& primitive = builder.addTriangle();
+        const int indices = type == 0   ? builder.addAccessor<std::uint8_t>({2, 1, 0}, 1)
+                            : type == 1 ? builder.addAccessor<std::uint16_t>({2, 1, 0}, 1)
+                                        : builder.addAccessor<std::uint32_t>({2, 1, 0}, 1);
+        primitive["indices"] = indices;
+        EXPECT_EQ(onlyPrimitive(import(builder)).indices, (std::vector<std::uint32_t>{2, 1, 0}));
+    }
+}
+
+TEST(GltfGeometry, TurnsStripsAndFansIntoLists) {
+    const std::vector<float> square{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    GltfBuilder strip;
+    strip.addMesh({{"attributes", {{"POSITION", strip.addAccessor(square, 3)}}}, {"mode", 5}});
+    EXPECT_EQ(onlyPrimitive(import(strip)).indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+    GltfBuilder fan;
+    fan.addMesh({{"attributes", {{"POSITION", fan.addAccessor(square, 3)}}}, {"mode", 6}});
+    EXPECT_EQ(onlyPrimitive(import(fan)).indices, (std::vector<std::uint32_t>{1, 2, 0, 2, 3, 0}));
+}
+
+TEST(GltfGeometry, SkipsPointsAndLines) {
+    for (const int mode : {0, 1, 2, 3}) {
+        GltfBuilder builder;
+        builder.addTriangle()["mode"] = mode;
+        const Result<Scene> scene = import(builder);
+        ASSERT_TRUE(scene.ok());
+        EXPECT_TRUE(scene->meshes[0].primitives.empty());
+        EXPECT_EQ(countWarnings(*scene, "primitive-skipped"), 1U);
+        EXPECT_EQ(scene->defaultMaterial, -1);
+    }
+    GltfBuilder unknown;
+    unknown.addTriangle()["mode"] = 7;
+    expectError(import(unknown), "primitive-mode", "/meshes/0/primitives/0/mode");
+}
+
+TEST(GltfGeometry, DropsIncompleteTriangles) {
+    GltfBuilder builder;
+    builder.addTriangle()["indices"] = builder.addAccessor<std::uint16_t>({0, 1, 2, 0, 1}, 1);
+    const Result<Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).indices.size(), 3U);
+    EXPECT_NE(findWarning(*scene, "triangle-incomplete").message.find("2 vertices"), std::string::npos);
+}
+
+TEST(GltfGeometry, RefusesBadIndices) {
+    GltfBuilder beyond;
+    beyond.addTriangle()["indices"] = beyond.addAccessor<std::uint16_t>({0, 1, 3}, 1);
+    expectError(import(beyond), "index-range", "/meshes/0/primitives/0/indices");
+    GltfBuilder restart;
+    restart.addTriangle()["indices"] = restart.addAccessor<std::uint8_t>({0, 1, 255}, 1);
+    expectError(import(restart), "primitive-restart", "/meshes/0/primitives/0/indices");
+    GltfBuilder floats;
+    Json& withFloats = floats.addTriangle();
+    withFloats["indices"] = floats.addAccessor<float>({0, 1, 2}, 1);
+    expectError(import(floats), "accessor-component-type", "/accessors/1");
+}
+
+TEST(GltfGeometry, KeepsDegenerateTriangles) {
+    GltfBuilder builder;
+    builder.addTriangle()["indices"] = builder.addAccessor<std::uint8_t>({0, 1, 2, 1, 1, 1}, 1);
+    EXPECT_EQ(onlyPrimitive(import(builder)).indices.size(), 6U);
+}
+
+TEST(GltfGeometry, NormalizesIntegers) {
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    primitive["attributes"]["TEXCOORD_0"] =
+        builder.addAccessor<std::uint16_t>({0, 65535, 13107, 0, 0, 0}, 2, true);
+    primitive["attributes"]["TEXCOORD_1"] =
+        builder.addAccessor<std::int8_t>({127, -127, -128, 0, 0, 0}, 2, true);
+    primitive["attributes"]["COLOR_0"] =
+        builder.addAccessor<std::uint8_t>({255, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, true);
+    const Result<Scene> scene = import(builder);
+    const Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.texCoords0[0], (Float2{0.0F, 1.0F}));
+    EXPECT_FLOAT_EQ(read.texCoords0[1][0], 0.2F);
+    EXPECT_EQ(read.texCoords1[0], (Float2{1.0F, -1.0F}));
+    EXPECT_EQ(read.texCoords1[1], (Float2{-1.0F, 0.0F}));
+    EXPECT_FLOAT_EQ(read.colors[0][1], 0.2F);
+    EXPECT_EQ(read.colorContent, ColorContent::Varying);
+}
+
+TEST(GltfGeometry, ReadsQuantizedAttributes) {
+    GltfBuilder builder;
+    builder.root["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
+    Json primitive;
+    primitive["attributes"]["POSITION"] =
+        builder.addAccessor<std::int16_t>({0, 0, 0, 100, 0, 0, 0, -100, 0}, 3);
+    primitive["attributes"]["NORMAL"] = builder.addAccessor<std::int8_t>({0, 0, 127, 0, 0, 1, 0, 3, 4}, 3);
+    primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<std::uint8_t>({0, 1, 2, 3, 4, 255}, 2);
+    builder.addMesh(primitive);
+    const Result<Scene> scene = import(builder);
+    const Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.positions[2], (Float3{0.0F, -100.0F, 0.0F}));
+    EXPECT_EQ(read.normals[1], (Float3{0.0F, 0.0F, 1.0F}));
+    EXPECT_FLOAT_EQ(read.normals[2][1], 0.6F);
+    EXPECT_EQ(read.texCoords0[2], (Float2{4.0F, 255.0F}));
+}
+
+TEST(GltfGeometry, ClassifiesColors) {
+    GltfBuilder white;
+    white.addTriangle()["attributes"]["COLOR_0"] =
+        white.addAccessor<std::uint16_t>(std::vector<std::uint16_t>(9, 65535), 3, true);
+    const Result<Scene> scene = import(white);
+    EXPECT_EQ(onlyPrimitive(scene).colorContent, ColorContent::White);
+    EXPECT_EQ(onlyPrimitive(scene).colors[2], (Float4{1.0F, 1.0F, 1.0F, 1.0F}));
+    GltfBuilder clear;
+    clear.addTriangle()["attributes"]["COLOR_0"] =
+        clear.addAccessor<float>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0.999F}, 4);
+    EXPECT_EQ(onlyPrimitive(import(clear)).colorContent, ColorContent::Varying);
+}
+
+TEST(GltfGeometry, ReadsStridedViews) {
+    GltfBuilder builder;
+    const std::vector<float> interleaved{0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0, 9};
+    const int view = builder.addView(interleaved.data(), interleaved.size() * 4 - 4, 16);
+    builder.append("accessors",
+                   {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    builder.addMesh({{"attributes", {{"POSITION", 0}}}});
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (Float3{0, 1, 0}));
+    builder.root["bufferViews"][0]["byteStride"] = 8;
+    expectError(import(builder), "accessor-stride", "/bufferViews/0/byteStride");
+}
+
+TEST(GltfGeometry, AppliesSparseAccessors) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    const std::uint16_t indices[] = {1, 2};
+    const float values[] = {5, 6, 7, 8, 9, 10};
+    builder.root["accessors"][0]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", builder.addView(indices, sizeof indices)}, {"componentType", 5123}}},
+        {"values", {{"bufferView", builder.addView(values, sizeof values)}}}};
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions,
+              (std::vector<Float3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
+    // Without a buffer view, the base is zeros.
+    builder.root["accessors"][0].erase("bufferView");
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[0], (Float3{0, 0, 0}));
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (Float3{8, 9, 10}));
+    builder.root["accessors"][0]["count"] = 2;
+    expectError(import(builder), "sparse-index", "/accessors/0/sparse/indices");
+    builder.root["accessors"][0]["count"] = 1;
+    expectError(import(builder), "sparse-count", "/accessors/0/sparse/count");
+}
+
+TEST(GltfGeometry, ReadsIndicesWithoutABufferViewAsZeros) {
+    GltfBuilder builder;
+    builder.addTriangle()["indices"] =
+        builder.append("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
+    EXPECT_EQ(onlyPrimitive(import(builder)).indices, (std::vector<std::uint32_t>{0, 0, 0}));
+}
+
+TEST(GltfGeometry, ChecksBounds) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    Json& accessor = builder.root["accessors"][0];
+    Json& view = builder.root["bufferViews"][0];
+    accessor["byteOffset"] = 4;
+    expectError(import(builder), "accessor-range", "/accessors/0");
+    accessor["byteOffset"] = 9007199254740991;
+    expectError(import(builder), "accessor-range", "/accessors/0");
+    accessor["byteOffset"] = 0;
+    accessor["count"] = 1000000;
+    expectError(import(builder), "accessor-range", "/accessors/0");
+    accessor["count"] = 9007199254740991;
+    expectError(import(builder), "vertex-limit", "/accessors/0");
+    accessor["count"] = -1;
+    expectError(import(builder), "json-range", "/accessors/0/count");
+    accessor["count"] = 3;
+    view["byteLength"] = 9007199254740991;
+    expectError(import(builder), "buffer-view-range", "/bufferViews/0");
+    view["byteLength"] = 36;
+    view["byteOffset"] = 9007199254740991;
+    expectError(import(builder), "buffer-view-range", "/bufferViews/0");
+    view["byteOffset"] = 0;
+    accessor["componentType"] = 5124;
+    expectError(import(builder), "accessor-component-type", "/accessors/0/componentType");
+    accessor["componentType"] = 5126;
+    accessor["type"] = "VEC5";
+    expectError(import(builder), "accessor-type", "/accessors/0/type");
+}
+
+TEST(GltfGeometry, LimitsVertices) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    EXPECT_TRUE(import(builder, {.maxVertices = 3}).ok());
+    expectError(import(builder, {.maxVertices = 2}), "vertex-limit", "/accessors/0");
+    // An accessor that costs the file nothing must not cost memory.
+    builder.root["accessors"][0] = {{"componentType", 5126}, {"count", 200000000}, {"type", "VEC3"}};
+    expectError(import(builder), "accessor-count", "/accessors/0");
+}
+
+TEST(GltfGeometry, RefusesAttributesThatDoNotMatch) {
+    GltfBuilder count;
+    count.addTriangle()["attributes"]["NORMAL"] = count.addAccessor<float>({0, 0, 1}, 3);
+    expectError(import(count), "attribute-count", "/meshes/0/primitives/0/attributes/NORMAL");
+    GltfBuilder type;
+    type.addTriangle()["attributes"]["TEXCOORD_0"] = type.addAccessor<float>(std::vector<float>(9), 3);
+    expectError(import(type), "attribute-type", "/meshes/0/primitives/0/attributes/TEXCOORD_0");
+    GltfBuilder matrix;
+    Json& withMatrix = matrix.addTriangle();
+    withMatrix["attributes"]["COLOR_0"] = matrix.addAccessor<float>(std::vector<float>(48), 16);
+    expectError(import(matrix), "accessor-type", "/accessors/1/type");
+}
+
+TEST(GltfGeometry, NeedsPositionsOnlyWhereDrawn) {
+    GltfBuilder builder;
+    builder.addTriangle()["attributes"].erase("POSITION");
+    expectError(import(builder), "position-missing", "/meshes/0/primitives/0/attributes");
+    builder.root.erase("nodes");
+    const Result<Scene> scene = import(builder);
+    ASSERT_TRUE(scene.ok());
+    EXPECT_EQ(countWarnings(*scene, "position-missing"), 1U);
+    EXPECT_TRUE(scene->meshes[0].primitives.empty());
+}
+
+TEST(GltfRepair, NormalizesNormalsAndReplacesBrokenOnes) {
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 3, 4, 0, 0, 0, kNan, 0, 1}, 3);
+    const Result<Scene> scene = import(builder);
+    const Primitive& read = onlyPrimitive(scene);
+    EXPECT_FLOAT_EQ(read.normals[0][1], 0.6F);
+    EXPECT_FLOAT_EQ(read.normals[0][2], 0.8F);
+    EXPECT_EQ(read.normals[1], (Float3{0, 0, 1}));
+    EXPECT_EQ(read.normals[2], (Float3{0, 0, 1}));
+    EXPECT_EQ(countWarnings(*scene, "normal-invalid"), 1U);
+    EXPECT_EQ(findWarning(*scene, "normal-invalid").message.substr(0, 2), "2 ");
+}
+
+TEST(GltfRepair, TakesTheTrianglesNormal) {
+    GltfBuilder builder;
+    Json primitive;
+    primitive["attributes"]["POSITION"] =
+        builder.addAccessor<float>({0, 0, 0, 0, 1e-20F, 0, 0, 0, 1e-20F}, 3);
+    primitive["attributes"]["NORMAL"] = builder.addAccessor<float>(std::vector<float>(9), 3);
+    builder.addMesh(primitive);
+    EXPECT_EQ(onlyPrimitive(import(builder)).normals[1], (Float3{1, 0, 0}));
+}
+
+TEST(GltfRepair, MakesTangentsUnitAndSigned) {
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 1, 0, 0}, 3);
+    primitive["attributes"]["TANGENT"] =
+        builder.addAccessor<float>({2, 0, 0, -3, 0, 5, 0, 1, 0, 0, 0, kNan}, 4);
+    const Result<Scene> scene = import(builder);
+    const Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.tangents[0], (Float4{1, 0, 0, -1}));
+    EXPECT_EQ(read.tangents[1], (Float4{0, 1, 0, 1}));
+    const Float4& made = read.tangents[2];
+    EXPECT_FLOAT_EQ(std::hypot(made[0], made[1], made[2]), 1.0F);
+    EXPECT_FLOAT_EQ(made[0], 0.0F);  // at right angles to its normal, +X
+    EXPECT_EQ(made[3], 1.0F);
+    EXPECT_EQ(countWarnings(*scene, "tangent-invalid"), 1U);
+}
+
+TEST(GltfRepair, IgnoresTangentsWithoutNormals) {
+    GltfBuilder builder;
+    builder.addTriangle()["attributes"]["TANGENT"] =
+        builder.addAccessor<float>(std::vector<float>(12, 1.0F), 4);
+    const Result<Scene> scene = import(builder);
+    EXPECT_TRUE(onlyPrimitive(scene).tangents.empty());
+    EXPECT_EQ(countWarnings(*scene, "tangent-without-normal"), 1U);
+}
+
+TEST(GltfRepair, DropsTrianglesWithBrokenPositions) {
+    GltfBuilder builder;
+    const float infinite = std::numeric_limits<float>::infinity();
+    Json primitive;
+    primitive["attributes"]["POSITION"] =
+        builder.addAccessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, infinite, 0, 0}, 3);
+    primitive["indices"] = builder.addAccessor<std::uint8_t>({0, 1, 2, 1, 3, 2, 3, 3, 3}, 1);
+    builder.addMesh(primitive);
+    const Result<Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).indices, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(onlyPrimitive(scene).positions[3], (Float3{0, 0, 0}));
+    const std::string message = findWarning(*scene, "position-not-finite").message;
+    EXPECT_NE(message.find("1 positions"), std::string::npos) << message;
+    EXPECT_NE(message.find("2 triangles"), std::string::npos) << message;
+}
+
+TEST(GltfRepair, ReplacesOtherValuesThatAreNotFinite) {
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<float>({0.5F, kNan, 1, 1, 2, 2}, 2);
+    primitive["attributes"]["COLOR_0"] =
+        builder.addAccessor<float>({kNan, 0, 0, 0.5F, 0.5F, 0.5F, 0, 0, 0}, 3);
+    const Result<Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).texCoords0[0], (Float2{0, 0}));
+    EXPECT_EQ(onlyPrimitive(scene).colors[0], (Float4{1, 1, 1, 1}));
+    EXPECT_EQ(countWarnings(*scene, "attribute-not-finite"), 2U);
+}
+
+TEST(GltfGeometry, ListsPlanningInputs) {
+    GltfBuilder builder;
+    builder.append("materials", Json::object());
+    Json& first = builder.addTriangle();
+    first["material"] = 0;
+    first["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    first["attributes"]["TEXCOORD_1"] = builder.addAccessor<float>(std::vector<float>(6), 2);
+    builder.addTriangle();
+    const Result<Scene> scene = import(builder);
+    ASSERT_TRUE(scene.ok());
+    const std::vector<PrimitiveInputs> inputs = planningInputs(*scene);
+    ASSERT_EQ(inputs.size(), 2U);
+    EXPECT_EQ(inputs[0].material, 0);
+    EXPECT_TRUE(inputs[0].hasNormals);
+    EXPECT_FALSE(inputs[0].hasTangents);
+    EXPECT_FALSE(inputs[0].hasTexCoords0);
+    EXPECT_TRUE(inputs[0].hasTexCoords1);
+    EXPECT_EQ(inputs[1].mesh, 1);
+    EXPECT_EQ(inputs[1].primitive, 0);
+    EXPECT_EQ(inputs[1].material, 1);
+    EXPECT_EQ(scene->defaultMaterial, 1);
+    EXPECT_FALSE(inputs[1].hasNormals);
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,144 @@
+#include "unit/gltf/gltf_builder.h"
+
+#include <cstdlib>
+#include <string>
+
+namespace glint::test {
+
+namespace fs = std::filesystem;
+
+TempFolder::TempFolder() {
+    std::string name = (fs::temp_directory_path() / "glint_test_XXXXXX").string();
+    // Null only where the machine's temporary folder is not writable; every later write then fails loudly.
+    if (mkdtemp(name.data()) != nullptr) {
+        path_ = name;
+    }
+}
+
+TempFolder::~TempFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+
+GltfBuilder::GltfBuilder() : root{{"asset", {{"version", "2.0"}}}} {}
+
+int GltfBuilder::append(const std::string& array, Json value) {
+    root[array].push_back(std::move(value));
+    return static_cast<int>(root[array].size()) - 1;
+}
+
+int GltfBuilder::addView(const void* bytes, std::size_t size, std::size_t stride) {
+    buffer.resize((buffer.size() + 3) / 4 * 4);
+    Json view{{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", size}};
+    if (stride > 0) {
+        view["byteStride"] = stride;
+    }
+    const auto* first = static_cast<const std::uint8_t*>(bytes);
+    buffer.insert(buffer.end(), first, first + size);
+    return append("bufferViews", std::move(view));
+}
+
+Json& GltfBuilder::addMesh(Json primitive) {
+    Json mesh;
+    mesh["primitives"] = Json::array({std::move(primitive)});
+    const int index = append("meshes", std::move(mesh));
+    append("nodes", {{"mesh", index}});
+    return root["meshes"][static_cast<std::size_t>(index)]["primitives"][0];
+}
+
+Json& GltfBuilder::addTriangle() {
+    const int positions = addAccessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+    return addMesh({{"attributes", {{"POSITION", positions}}}});
+}
+
+const char* GltfBuilder::typeName(int components) {
+    switch (components) {
+        case 1:
+            return "SCALAR";
+        case 2:
+            return "VEC2";
+        case 3:
+            return "VEC3";
+        case 4:
+            return "VEC4";
+        default:
+            return "MAT4";
+    }
+}
+
+std::string GltfBuilder::text() const {
+    Json document = root;
+    if (!buffer.empty() && !document.contains("buffers")) {
+        document["buffers"].push_back({{"byteLength", buffer.size()},
+                                       {"uri", "data:application/octet-stream;base64," + base64(buffer)}});
+    }
+    return document.dump();
+}
+
+std::string GltfBuilder::glb() const {
+    Json document = root;
+    if (!document.contains("buffers")) {
+        document["buffers"].push_back({{"byteLength", buffer.size()}});
+    }
+    const std::string body = chunk(0x4E4F534A, document.dump(), ' ') +
+                             chunk(0x004E4942, std::string(buffer.begin(), buffer.end()), '\0');
+    return "glTF" + word(2) + word(static_cast<std::uint32_t>(body.size() + 12)) + body;
+}
+
+std::string word(std::uint32_t value) {
+    std::string bytes(4, '\0');
+    std::memcpy(bytes.data(), &value, 4);
+    return bytes;
+}
+
+std::string chunk(std::uint32_t type, std::string payload, char padding) {
+    payload.resize((payload.size() + 3) / 4 * 4, padding);
+    return word(static_cast<std::uint32_t>(payload.size())) + word(type) + payload;
+}
+
+std::string base64(const Bytes& bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t k = i; k < i + 3; ++k) {
+            bits = bits << 8U | (k < bytes.size() ? bytes[k] : 0U);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+        }
+    }
+    return text;
+}
+
+Result<Scene> importText(const std::string& text, const ImportOptions& options) {
+    const TempFolder folder;
+    const fs::path path = folder.path() / "scene.gltf";
+    if (const Status status = writeFile(path, text); !status) {
+        return status.error();
+    }
+    return importScene(path, options);
+}
+
+Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options) {
+    return importText(builder.text(), options);
+}
+
+std::size_t countWarnings(const Scene& scene, std::string_view id) {
+    std::size_t count = 0;
+    for (const Diagnostic& warning : scene.warnings) {
+        count += warning.id == id ? 1 : 0;
+    }
+    return count;
+}
+
+Diagnostic findWarning(const Scene& scene, std::string_view id) {
+    for (const Diagnostic& warning : scene.warnings) {
+        if (warning.id == id) {
+            return warning;
+        }
+    }
+    return {};
+}
+
+}  // namespace glint::test

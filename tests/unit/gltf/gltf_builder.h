@@ -1,0 +1,125 @@
+// Small glTF files made by tests, and a folder of their own to put them in.
+#pragma once
+
+#include "base/files.h"
+#include "gltf/import.h"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::test {
+
+using Json = nlohmann::json;
+
+// A fresh folder, removed with its contents at the end.
+class TempFolder {
+public:
+    TempFolder();
+    ~TempFolder();
+    TempFolder(const TempFolder&) = delete;
+    TempFolder& operator=(const TempFolder&) = delete;
+
+    const std::filesystem::path& path() const {
+        return path_;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+// glTF's numbers.
+template <typename T>
+constexpr int componentTypeOf() {
+    if constexpr (std::is_same_v<T, std::int8_t>) {
+        return 5120;
+    } else if constexpr (std::is_same_v<T, std::uint8_t>) {
+        return 5121;
+    } else if constexpr (std::is_same_v<T, std::int16_t>) {
+        return 5122;
+    } else if constexpr (std::is_same_v<T, std::uint16_t>) {
+        return 5123;
+    } else if constexpr (std::is_same_v<T, std::uint32_t>) {
+        return 5125;
+    } else {
+        return 5126;
+    }
+}
+
+// A glTF document under construction: `root` is free to change, the buffer grows by accessors.
+class GltfBuilder {
+public:
+    GltfBuilder();
+
+    // Appends raw bytes as a buffer view; returns its index.
+    int addView(const void* bytes, std::size_t size, std::size_t stride = 0);
+
+    // Appends an accessor of `components` (1 to 4, or more for matrices) values an element; returns its
+    // index.
+    template <typename T>
+    int addAccessor(const std::vector<T>& values, int components, bool normalized = false) {
+        const int view = addView(values.data(), values.size() * sizeof(T));
+        Json accessor{{"bufferView", view},
+                      {"componentType", componentTypeOf<T>()},
+                      {"count", values.size() / static_cast<std::size_t>(components)},
+                      {"type", typeName(components)}};
+        if (normalized) {
+            accessor["normalized"] = true;
+        }
+        return append("accessors", std::move(accessor));
+    }
+
+    // Appends to the array of that name; returns the index.
+    int append(const std::string& array, Json value);
+    // Appends a mesh of one primitive and a node that draws it; returns the primitive.
+    Json& addMesh(Json primitive);
+    // A triangle (0,0,0) (1,0,0) (0,1,0), drawn: POSITION only.
+    Json& addTriangle();
+
+    // The document with its buffer as a data URI.
+    std::string text() const;
+    // The document as a GLB.
+    std::string glb() const;
+
+    Json root;
+    Bytes buffer;
+
+private:
+    static const char* typeName(int components);
+};
+
+// Four-byte little-endian number, as GLB headers are made of.
+std::string word(std::uint32_t value);
+// A GLB chunk, padded to four bytes.
+std::string chunk(std::uint32_t type, std::string payload, char padding);
+
+std::string base64(const Bytes& bytes);
+
+// Writes `text` to a file of a fresh folder and imports that.
+Result<Scene> importText(const std::string& text, const ImportOptions& options = {});
+Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options = {});
+
+// Warnings of that kind.
+std::size_t countWarnings(const Scene& scene, std::string_view id);
+// The first warning of that kind; an empty one where there is none.
+Diagnostic findWarning(const Scene& scene, std::string_view id);
+
+// PNG, 1 x 2 pixels of 8 bits, RGBA: (255, 0, 128, 64) above (1, 2, 3, 4).
+inline constexpr const char* kPng8 =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAACCAYAAACZgbYnAAAAEklEQVR4nGP4z9DgwMDIxMwCAA4VAcozrSjMAAAAAElFTkSuQmCC";
+// PNG, 2 x 1 pixels of 16 bits, RGB: (FFFF, 8000, 0000) and (1234, 5678, 9ABC).
+inline constexpr const char* kPng16 =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR4nGP4/"
+    "7+BgYFByCSsYtYeACIWBOlPR491AAAAAElFTkSuQmCC";
+// PNG that announces 16000 x 16000 pixels and holds none of them.
+inline constexpr const char* kPngBomb =
+    "iVBORw0KGgoAAAANSUhEUgAAPoAAAD6ACAYAAABBft/eAAAACUlEQVR4nGMAAAABAAFe/335AAAAAElFTkSuQmCC";
+
+}  // namespace glint::test

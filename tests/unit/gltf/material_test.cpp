@@ -1,0 +1,314 @@
+// Materials, textures, images and extensions.
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace glint::test {
+namespace {
+
+std::string pngUri(const char* base64Text) {
+    return std::string("data:image/png;base64,") + base64Text;
+}
+
+// A file with one texture and one material, whose base colour uses it; the rest is the test's.
+GltfBuilder texturedMaterial() {
+    GltfBuilder builder;
+    builder.append("images", {{"uri", pngUri(kPng8)}});
+    builder.append("textures", {{"source", 0}});
+    Json material;
+    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    builder.append("materials", std::move(material));
+    return builder;
+}
+
+Scene mustImport(const GltfBuilder& builder, const ImportOptions& options = {}) {
+    Result<Scene> scene = import(builder, options);
+    if (!scene) {
+        ADD_FAILURE() << toString(scene.error());
+        return {};
+    }
+    return std::move(*scene);
+}
+
+TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
+    GltfBuilder builder;
+    builder.append("materials", Json::object());
+    const Scene scene = mustImport(builder);
+    ASSERT_EQ(scene.materials.size(), 1U);
+    const Material& read = scene.materials[0];
+    const Material expected;
+    EXPECT_EQ(read.baseColorFactor, expected.baseColorFactor);
+    EXPECT_EQ(read.metallicFactor, 1.0F);
+    EXPECT_EQ(read.roughnessFactor, 1.0F);
+    EXPECT_EQ(read.emissiveFactor, expected.emissiveFactor);
+    EXPECT_EQ(read.emissiveStrength, 1.0F);
+    EXPECT_EQ(read.normalScale, 1.0F);
+    EXPECT_EQ(read.occlusionStrength, 1.0F);
+    EXPECT_EQ(read.alphaCutoff, 0.5F);
+    EXPECT_EQ(read.alphaMode, AlphaMode::Opaque);
+    EXPECT_FALSE(read.doubleSided);
+    EXPECT_FALSE(read.unlit);
+    for (const TextureInfo& info : read.textures) {
+        EXPECT_EQ(info.texture, -1);
+    }
+    EXPECT_EQ(scene.defaultMaterial, -1);
+}
+
+TEST(GltfMaterials, ReadsEveryValue) {
+    GltfBuilder builder = texturedMaterial();
+    builder.root["materials"][0] = Json::parse(R"({
+        "name": "paint", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25,
+        "emissiveFactor": [0.125, 0.25, 0.5],
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 0.75], "metallicFactor": 0.25,
+            "roughnessFactor": 0.75, "baseColorTexture": {"index": 0, "texCoord": 1},
+            "metallicRoughnessTexture": {"index": 0}},
+        "normalTexture": {"index": 0, "scale": -2, "extensions": {"KHR_texture_transform":
+            {"offset": [0.5, -1], "rotation": 3, "scale": [2, 0.5]}}},
+        "occlusionTexture": {"index": 0, "strength": 0.5, "texCoord": 0, "extensions":
+            {"KHR_texture_transform": {"texCoord": 1}}},
+        "emissiveTexture": {"index": 0},
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3000000000},
+            "KHR_materials_unlit": {}}})");
+    const Scene scene = mustImport(builder);
+    const Material& read = scene.materials.at(0);
+    EXPECT_EQ(read.name, "paint");
+    EXPECT_TRUE(read.doubleSided);
+    EXPECT_TRUE(read.unlit);
+    EXPECT_EQ(read.alphaMode, AlphaMode::Mask);
+    EXPECT_EQ(read.alphaCutoff, 0.25F);
+    EXPECT_EQ(read.baseColorFactor, (std::array{0.5F, 0.25F, 0.125F, 0.75F}));
+    EXPECT_EQ(read.emissiveFactor, (std::array{0.125F, 0.25F, 0.5F}));
+    EXPECT_EQ(read.emissiveStrength, 3e9F);
+    EXPECT_EQ(read.metallicFactor, 0.25F);
+    EXPECT_EQ(read.roughnessFactor, 0.75F);
+    EXPECT_EQ(read.normalScale, -2.0F);
+    EXPECT_EQ(read.occlusionStrength, 0.5F);
+    for (const TextureInfo& info : read.textures) {
+        EXPECT_EQ(info.texture, 0);
+    }
+    EXPECT_EQ(read.texture(TextureSlot::BaseColor).texCoord, 1);
+    EXPECT_EQ(read.texture(TextureSlot::Occlusion).texCoord, 1);
+    const TextureTransform& transform = read.texture(TextureSlot::Normal).transform;
+    EXPECT_EQ(transform.offset, (std::array{0.5F, -1.0F}));
+    EXPECT_EQ(transform.rotation, 3.0F);
+    EXPECT_EQ(transform.scale, (std::array{2.0F, 0.5F}));
+    EXPECT_EQ(scene.textures.size(), 1U);
+    EXPECT_EQ(scene.images.size(), 1U);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfMaterials, ClampsFactorsWithAWarning) {
+    GltfBuilder builder;
+    builder.append("materials", Json::parse(R"({"pbrMetallicRoughness": {"metallicFactor": 1.5,
+        "roughnessFactor": -1, "baseColorFactor": [2, 0, 0, 1]}, "alphaMode": "GLASS"})"));
+    const Scene scene = mustImport(builder);
+    EXPECT_EQ(scene.materials.at(0).metallicFactor, 1.0F);
+    EXPECT_EQ(scene.materials.at(0).roughnessFactor, 0.0F);
+    EXPECT_EQ(scene.materials.at(0).baseColorFactor[0], 1.0F);
+    EXPECT_EQ(countWarnings(scene, "material-range"), 3U);
+    EXPECT_EQ(countWarnings(scene, "alpha-mode"), 1U);
+    EXPECT_TRUE(findWarning(scene, "material-range")
+                    .where.ends_with("#/materials/0/pbrMetallicRoughness/baseColorFactor/0"));
+}
+
+TEST(GltfMaterials, RefusesWrongTypesAndNumbers) {
+    const auto idOf = [](const char* material) {
+        const Result<Scene> scene =
+            importText(std::string(R"({"asset": {"version": "2.0"}, "materials": [)") + material + "]}");
+        return scene ? std::string("imported") : scene.error().id;
+    };
+    EXPECT_EQ(idOf(R"({"emissiveFactor": [1, 1]})"), "json-type");
+    EXPECT_EQ(idOf(R"({"emissiveFactor": [1, 1, "x"]})"), "json-type");
+    EXPECT_EQ(idOf(R"({"alphaCutoff": 1e300})"), "json-range");
+    EXPECT_EQ(idOf(R"({"alphaCutoff": 1e999})"), "json-syntax");
+    EXPECT_EQ(idOf(R"({"alphaCutoff": NaN})"), "json-syntax");
+    EXPECT_EQ(idOf(R"({"doubleSided": 1})"), "json-type");
+    EXPECT_EQ(idOf(R"({"normalTexture": {"index": 0}})"), "index-range");
+    EXPECT_EQ(idOf(R"({"normalTexture": {}})"), "json-missing");
+    EXPECT_EQ(idOf("null"), "json-type");
+    EXPECT_EQ(idOf(R"({"alphaCutoff": 1})"), "imported");
+}
+
+TEST(GltfMaterials, LeavesOutUvSetsBeyondTheSecond) {
+    GltfBuilder builder = texturedMaterial();
+    builder.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 2;
+    const Scene scene = mustImport(builder);
+    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+    EXPECT_EQ(countWarnings(scene, "texture-uv-set"), 1U);
+}
+
+TEST(GltfMaterials, NamesUnsupportedExtensions) {
+    GltfBuilder builder;
+    builder.root["extensionsUsed"] = Json::array({"KHR_materials_clearcoat", "KHR_materials_unlit"});
+    builder.append("materials", Json::parse(R"({"extensions": {"KHR_materials_clearcoat": {},
+        "KHR_materials_sheen": {}, "KHR_materials_unlit": {}}})"));
+    const Scene scene = mustImport(builder);
+    EXPECT_EQ(scene.materials.at(0).unsupportedExtensions,
+              (std::vector<std::string>{"KHR_materials_clearcoat", "KHR_materials_sheen"}));
+    EXPECT_EQ(countWarnings(scene, "extension-ignored"), 1U);
+}
+
+TEST(GltfExtensions, RefusesWhatIsRequiredAndUnknown) {
+    for (const char* name : {"KHR_materials_iridescence", "KHR_draco_mesh_compression", "KHR_texture_basisu",
+                             "EXT_texture_webp", "EXT_meshopt_compression", "ACME_magic"}) {
+        GltfBuilder builder;
+        builder.root["extensionsRequired"] = Json::array({"KHR_texture_transform", name});
+        const Result<Scene> scene = import(builder);
+        ASSERT_FALSE(scene.ok()) << name;
+        EXPECT_EQ(scene.error().id, "extension-unsupported");
+        EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#/extensionsRequired/1"));
+        EXPECT_NE(scene.error().message.find(name), std::string::npos);
+        EXPECT_FALSE(scene.error().hint.empty());
+    }
+}
+
+TEST(GltfExtensions, WarnsOnceOfWhatIsUsedAndUnknown) {
+    GltfBuilder builder;
+    builder.root["extensionsUsed"] = Json::array({"ACME_magic", "KHR_lights_punctual", "ACME_magic"});
+    EXPECT_EQ(countWarnings(mustImport(builder), "extension-ignored"), 1U);
+    builder.root["extensionsUsed"] = Json::array({1});
+    EXPECT_FALSE(import(builder).ok());
+}
+
+TEST(GltfExtensions, NeverReadsCompressedGeometryAsZeros) {
+    GltfBuilder draco;
+    Json& primitive = draco.addTriangle();
+    primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0},
+                                                             {"attributes", Json::object()}};
+    EXPECT_TRUE(import(draco).ok());  // uncompressed accessors are there
+    draco.root["accessors"][0].erase("bufferView");
+    const Result<Scene> bare = import(draco);
+    ASSERT_FALSE(bare.ok());
+    EXPECT_EQ(bare.error().id, "extension-unsupported");
+    EXPECT_TRUE(bare.error().where.ends_with("#/meshes/0/primitives/0"));
+
+    GltfBuilder meshopt;
+    meshopt.addTriangle();
+    meshopt.root["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0}};
+    EXPECT_TRUE(import(meshopt).ok());
+    meshopt.root["buffers"] = Json::array({{{"byteLength", 36}}});
+    const Result<Scene> compressed = import(meshopt);
+    ASSERT_FALSE(compressed.ok());
+    EXPECT_EQ(compressed.error().id, "extension-unsupported");
+    EXPECT_NE(compressed.error().message.find("EXT_meshopt_compression"), std::string::npos);
+}
+
+TEST(GltfExtensions, UsesTheFallbackOfTextures) {
+    GltfBuilder builder = texturedMaterial();
+    builder.root["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+    EXPECT_EQ(mustImport(builder).materials.at(0).texture(TextureSlot::BaseColor).texture, 0);
+    builder.root["textures"][0].erase("source");
+    const Scene scene = mustImport(builder);
+    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+    EXPECT_TRUE(scene.textures.empty());
+    EXPECT_TRUE(scene.images.empty());
+    EXPECT_NE(findWarning(scene, "texture-source").message.find("EXT_texture_webp"), std::string::npos);
+    EXPECT_TRUE(findWarning(scene, "texture-source").where.ends_with("#/textures/0"));
+}
+
+TEST(GltfExtensions, LeavesSlotsOfUnreadableFormatsEmpty) {
+    for (const Json& image :
+         {Json{{"uri", "a.ktx2"}}, Json{{"uri", "a.webp"}}, Json{{"uri", "data:image/webp;base64,AAAA"}},
+          Json{{"uri", "a.bin"}, {"mimeType", "image/ktx2"}}}) {
+        GltfBuilder builder = texturedMaterial();
+        builder.root["images"][0] = image;
+        const Scene scene = mustImport(builder, {.decodeImages = true});
+        EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+        EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
+    }
+}
+
+TEST(GltfTextures, ReadsSamplers) {
+    GltfBuilder builder = texturedMaterial();
+    builder.root["samplers"] = Json::parse(R"([
+        {"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9728},
+        {"minFilter": 9985}, {"minFilter": 9986}, {"minFilter": 1, "magFilter": 2, "wrapS": 3, "wrapT": 4}])");
+    builder.root["textures"][0]["sampler"] = 1;
+    const Scene scene = mustImport(builder);
+    ASSERT_EQ(scene.samplers.size(), 4U);
+    EXPECT_EQ(scene.textures.at(0).sampler, 1);
+    const Sampler& first = scene.samplers[0];
+    EXPECT_EQ(first.wrapU, Wrap::ClampToEdge);
+    EXPECT_EQ(first.wrapV, Wrap::MirroredRepeat);
+    EXPECT_EQ(first.magnification, Filter::Nearest);
+    EXPECT_EQ(first.minification, Filter::Nearest);
+    EXPECT_FALSE(first.mipmapped);
+    EXPECT_EQ(scene.samplers[1].minification, Filter::Linear);
+    EXPECT_EQ(scene.samplers[1].mip, Filter::Nearest);
+    EXPECT_EQ(scene.samplers[2].minification, Filter::Nearest);
+    EXPECT_EQ(scene.samplers[2].mip, Filter::Linear);
+    EXPECT_TRUE(scene.samplers[2].mipmapped);
+    EXPECT_EQ(scene.samplers[3], Sampler{});
+    EXPECT_EQ(countWarnings(scene, "sampler-value"), 4U);
+}
+
+TEST(GltfTextures, AppendsADefaultSampler) {
+    GltfBuilder builder = texturedMaterial();
+    builder.append("samplers", {{"wrapS", 33071}});
+    const Scene scene = mustImport(builder);
+    ASSERT_EQ(scene.samplers.size(), 2U);
+    EXPECT_EQ(scene.textures.at(0).sampler, 1);
+    EXPECT_EQ(scene.samplers[1], Sampler{});
+}
+
+TEST(GltfImages, DecodesWhereAsked) {
+    const Scene headers = mustImport(texturedMaterial());
+    EXPECT_TRUE(headers.images.at(0).rgba8.empty());
+    EXPECT_EQ(headers.images.at(0).name, "image 0");
+    EXPECT_EQ(headers.images.at(0).pointer, "/images/0");
+    const Scene decoded = mustImport(texturedMaterial(), {.decodeImages = true});
+    EXPECT_EQ(decoded.images.at(0).width, 1);
+    EXPECT_EQ(decoded.images.at(0).height, 2);
+    EXPECT_EQ(decoded.images.at(0).rgba8, (std::vector<std::uint8_t>{255, 0, 128, 64, 1, 2, 3, 4}));
+}
+
+TEST(GltfImages, ReducesSixteenBitsToEight) {
+    GltfBuilder builder = texturedMaterial();
+    builder.root["images"][0] = {{"uri", pngUri(kPng16)}, {"name", "deep"}};
+    const Scene scene = mustImport(builder, {.decodeImages = true});
+    EXPECT_EQ(scene.images.at(0).name, "deep");
+    EXPECT_EQ(scene.images.at(0).rgba8,
+              (std::vector<std::uint8_t>{0xFF, 0x80, 0, 255, 0x12, 0x56, 0x9A, 255}));
+}
+
+TEST(GltfImages, ExplainsWhatItCannotDecode) {
+    const auto idOf = [](const Json& image, const ImportOptions& options) {
+        GltfBuilder builder = texturedMaterial();
+        builder.root["images"][0] = image;
+        const Result<Scene> scene = import(builder, options);
+        if (scene) {
+            return std::string("imported");
+        }
+        EXPECT_NE(scene.error().where.find("#/images/0"), std::string::npos) << scene.error().where;
+        EXPECT_FALSE(scene.error().hint.empty());
+        return scene.error().id;
+    };
+    const ImportOptions decode{.decodeImages = true};
+    EXPECT_EQ(idOf({{"uri", "data:image/png;base64,AAAAAAAA"}}, decode), "image-decode");
+    EXPECT_EQ(idOf({{"uri", "data:image/png;base64,"}}, decode), "image-decode");
+    EXPECT_EQ(idOf({{"uri", "data:image/png;base64,A*"}}, decode), "data-uri");
+    EXPECT_EQ(idOf({{"uri", pngUri(kPngBomb)}}, decode), "image-decode");
+    EXPECT_EQ(idOf({{"uri", pngUri(kPng8)}}, {.decodeImages = true, .maxImageSize = 1}), "image-size");
+    EXPECT_EQ(idOf({{"uri", "missing.png"}}, decode), "file-open");
+    EXPECT_EQ(idOf({{"uri", "missing.png"}}, {}), "imported");
+    EXPECT_EQ(idOf(Json::object(), {}), "image-data");
+    EXPECT_EQ(idOf({{"uri", "data:image/png;base64," + std::string(kPng8).substr(0, 60)}}, decode),
+              "image-decode");
+}
+
+TEST(GltfImages, DecodesFromBufferViews) {
+    GltfBuilder builder = texturedMaterial();
+    const std::string uri = pngUri(kPng8);
+    // The same bytes by way of the buffer: decoded by the importer's own data URI.
+    builder.root["buffers"] = Json::array({{{"byteLength", 75}, {"uri", uri}}});
+    builder.root["bufferViews"] = Json::array({{{"buffer", 0}, {"byteLength", 75}}});
+    builder.root["images"][0] = {{"bufferView", 0}, {"mimeType", "image/png"}};
+    const Scene scene = mustImport(builder, {.decodeImages = true});
+    EXPECT_EQ(scene.images.at(0).rgba8.size(), 8U);
+    EXPECT_EQ(scene.images.at(0).rgba8[4], 1);
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,166 @@
+// Scenes by others: each imports, or ends in a diagnostic that says why.
+#include "gltf/import.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models";
+
+// Every .gltf and .glb below a folder, sorted.
+std::vector<fs::path> findModels(const fs::path& folder) {
+    std::vector<fs::path> models;
+    std::error_code error;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension == ".gltf" || extension == ".glb") {
+            models.push_back(entry.path());
+        }
+    }
+    std::sort(models.begin(), models.end());
+    return models;
+}
+
+// What every reader of a Scene relies on.
+void expectSound(const Scene& scene) {
+    const int materials = static_cast<int>(scene.materials.size());
+    const auto inRange = [](int index, std::size_t size) {
+        return index >= -1 && index < static_cast<int>(size);
+    };
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) {
+            const std::size_t count = primitive.positions.size();
+            EXPECT_TRUE(primitive.material >= 0 && primitive.material < materials) << primitive.pointer;
+            EXPECT_EQ(primitive.indices.size() % 3, 0U);
+            EXPECT_TRUE(std::all_of(primitive.indices.begin(), primitive.indices.end(),
+                                    [&](std::uint32_t index) { return index < count; }));
+            for (const std::size_t size :
+                 {primitive.normals.size(), primitive.tangents.size(), primitive.texCoords0.size(),
+                  primitive.texCoords1.size(), primitive.colors.size()}) {
+                EXPECT_TRUE(size == 0 || size == count) << primitive.pointer;
+            }
+            for (const Float3& normal : primitive.normals) {
+                ASSERT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1.0F, 1e-5F) << primitive.pointer;
+            }
+        }
+    }
+    for (const Material& material : scene.materials) {
+        for (const TextureInfo& info : material.textures) {
+            EXPECT_TRUE(inRange(info.texture, scene.textures.size()));
+        }
+    }
+    for (const Texture& texture : scene.textures) {
+        EXPECT_TRUE(texture.image >= 0 && inRange(texture.image, scene.images.size()));
+        EXPECT_TRUE(texture.sampler >= 0 && inRange(texture.sampler, scene.samplers.size()));
+    }
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        EXPECT_TRUE(inRange(scene.nodes[i].parent, i));
+        EXPECT_TRUE(inRange(scene.nodes[i].mesh, scene.meshes.size()));
+        EXPECT_TRUE(inRange(scene.nodes[i].camera, scene.cameras.size()));
+        EXPECT_TRUE(inRange(scene.nodes[i].light, scene.lights.size()));
+    }
+    for (const Diagnostic& warning : scene.warnings) {
+        EXPECT_EQ(warning.severity, Severity::Warning);
+        EXPECT_FALSE(warning.where.empty());
+        EXPECT_FALSE(warning.message.empty());
+    }
+}
+
+// The files that need an extension that Glint does not support, and which.
+const std::map<std::string, std::string> kUnsupported{
+    {"Avocado.gltf", "KHR_draco_mesh_compression"},
+    {"IridescenceSuzanne.glb", "KHR_materials_iridescence"},
+    {"box-textured-separate.gltf", "EXT_texture_webp"},
+    {"pirate.glb", "EXT_meshopt_compression"},
+};
+
+TEST(GltfModels, ImportOrNameTheExtension) {
+    std::vector<fs::path> models = findModels(kModels / "features");
+    const std::vector<fs::path> large = findModels(kModels / "large");
+    models.insert(models.end(), large.begin(), large.end());
+    if (models.empty()) {
+        GTEST_SKIP() << "no models in " << kModels;
+    }
+    for (const fs::path& path : models) {
+        const Result<Scene> scene = importScene(path, {.decodeImages = true});
+        const auto unsupported = kUnsupported.find(path.filename().string());
+        if (unsupported != kUnsupported.end()) {
+            ASSERT_FALSE(scene.ok()) << path;
+            EXPECT_EQ(scene.error().id, "extension-unsupported");
+            EXPECT_NE(scene.error().message.find(unsupported->second), std::string::npos) << path;
+            continue;
+        }
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        expectSound(*scene);
+        EXPECT_FALSE(planningInputs(*scene).empty()) << path;
+        for (const Image& image : scene->images) {
+            EXPECT_EQ(image.rgba8.size(), 4U * static_cast<std::size_t>(image.width * image.height))
+                << image.name;
+        }
+    }
+}
+
+TEST(GltfModels, InvalidFilesAreExplained) {
+    const std::vector<fs::path> models = findModels(kModels / "invalid");
+    if (models.empty()) {
+        GTEST_SKIP() << "no models in " << kModels;
+    }
+    for (const fs::path& path : models) {
+        for (const bool decodeImages : {false, true}) {
+            const Result<Scene> scene = importScene(path, {.decodeImages = decodeImages});
+            if (scene) {
+                expectSound(*scene);
+                continue;
+            }
+            EXPECT_NE(scene.error().where.find(path.filename().string()), std::string::npos) << path;
+            EXPECT_FALSE(scene.error().message.empty()) << path;
+            EXPECT_FALSE(scene.error().id.empty()) << path;
+            EXPECT_FALSE(scene.error().hint.empty()) << path;
+        }
+    }
+}
+
+TEST(GltfModels, HaveTheirKnownContent) {
+    const fs::path features = kModels / "features";
+    if (!fs::exists(features)) {
+        GTEST_SKIP() << "no models in " << kModels;
+    }
+    const Result<Scene> multi =
+        importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb");
+    ASSERT_TRUE(multi.ok());
+    EXPECT_EQ(multi->materials.size(), 29U);
+    EXPECT_EQ(planningInputs(*multi).size(), 29U);
+    const Result<Scene> modes = importScene(features / "MeshPrimitiveModes/MeshPrimitiveModes.gltf");
+    ASSERT_TRUE(modes.ok());
+    EXPECT_EQ(planningInputs(*modes).size(), 3U);
+    EXPECT_EQ(modes->defaultMaterial, 0);
+    const Result<Scene> sparse = importScene(features / "SimpleSparseAccessor/SimpleSparseAccessor.gltf");
+    ASSERT_TRUE(sparse.ok());
+    EXPECT_EQ(sparse->meshes.at(0).primitives.at(0).positions.at(8), (Float3{1.0F, 2.0F, 0.0F}));
+    const Result<Scene> spheres =
+        importScene(kModels / "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb");
+    ASSERT_TRUE(spheres.ok());
+    std::size_t triangles = 0;
+    for (const Node& node : spheres->nodes) {
+        if (node.mesh >= 0) {
+            for (const Primitive& primitive :
+                 spheres->meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                triangles += primitive.indices.size() / 3;
+            }
+        }
+    }
+    EXPECT_GT(triangles, 1000000U);
+}
+
+}  // namespace
+}  // namespace glint::test

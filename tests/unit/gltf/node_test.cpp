@@ -1,0 +1,224 @@
+// Hierarchy, transforms, cameras, lights.
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace glint::test {
+namespace {
+
+Result<Scene> importMembers(const std::string& members) {
+    return importText(R"({"asset": {"version": "2.0"}, )" + members + "}");
+}
+
+Scene mustImport(const std::string& members) {
+    Result<Scene> scene = importMembers(members);
+    if (!scene) {
+        ADD_FAILURE() << toString(scene.error());
+        return {};
+    }
+    return std::move(*scene);
+}
+
+std::string errorId(const std::string& members) {
+    const Result<Scene> scene = importMembers(members);
+    return scene ? "imported" : scene.error().id;
+}
+
+void expectNear(const Matrix4& actual, const Matrix4& expected) {
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+        EXPECT_NEAR(actual[i], expected[i], 1e-12) << "element " << i;
+    }
+}
+
+TEST(GltfNodes, ComposesTransforms) {
+    // Turned by 90 degrees about Z, then moved; the child mirrored and stretched.
+    const Scene scene = mustImport(R"("nodes": [
+        {"name": "top", "translation": [1, 2, 3], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476],
+         "children": [1]},
+        {"name": "low", "translation": [10, 0, 0], "scale": [-2, 3, 0]}])");
+    ASSERT_EQ(scene.nodes.size(), 2U);
+    EXPECT_EQ(scene.nodes[0].parent, -1);
+    EXPECT_EQ(scene.nodes[1].parent, 0);
+    EXPECT_EQ(scene.nodes[1].name, "low");
+    expectNear(scene.nodes[0].world, {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+    expectNear(scene.nodes[1].world, {0, -2, 0, 0, -3, 0, 0, 0, 0, 0, 0, 0, 1, 12, 3, 1});
+}
+
+TEST(GltfNodes, ReadsMatrices) {
+    const Scene scene = mustImport(R"("nodes": [
+        {"matrix": [1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 10, 0, 11, 12, 13, 1]},
+        {"matrix": [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2], "scale": [2, 2, 2]}])");
+    expectNear(scene.nodes.at(0).world, {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 10, 0, 11, 12, 13, 1});
+    expectNear(scene.nodes.at(1).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    EXPECT_EQ(countWarnings(scene, "node-matrix"), 2U);
+}
+
+TEST(GltfNodes, TakesTheDefaultScene) {
+    const std::string nodes = R"("nodes": [{"name": "a"}, {"name": "b", "children": [2]}, {"name": "c"}])";
+    const Scene second = mustImport(nodes + R"(, "scene": 1, "scenes": [{"nodes": [0]}, {"nodes": [1]}])");
+    ASSERT_EQ(second.nodes.size(), 2U);
+    EXPECT_EQ(second.nodes[0].name, "b");
+    EXPECT_EQ(second.nodes[1].name, "c");
+    EXPECT_EQ(mustImport(nodes + R"(, "scenes": [{"nodes": [0]}, {"nodes": [1]}])").nodes.at(0).name, "a");
+    EXPECT_EQ(mustImport(nodes).nodes.size(), 3U);
+    EXPECT_EQ(mustImport(nodes + R"(, "scenes": [{}])").nodes.size(), 0U);
+    EXPECT_EQ(errorId(nodes + R"(, "scene": 1, "scenes": [{}])"), "index-range");
+}
+
+TEST(GltfNodes, DrawsEachNodeOnce) {
+    const Scene scene = mustImport(R"("nodes": [{"children": [1]}, {}],
+        "scenes": [{"nodes": [0, 1, 0]}])");
+    EXPECT_EQ(scene.nodes.size(), 2U);
+    EXPECT_EQ(countWarnings(scene, "scene-node-child"), 1U);
+    EXPECT_EQ(countWarnings(scene, "scene-node-repeated"), 1U);
+}
+
+TEST(GltfNodes, RefusesGraphsThatAreNoForest) {
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [0]}])"), "node-cycle");
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [1]}, {"children": [2]}, {"children": [0]}])"), "node-cycle");
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [2]}, {"children": [2]}, {}])"), "node-parents");
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [1, 1]}, {}])"), "node-parents");
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [-1]}])"), "index-range");
+    EXPECT_EQ(errorId(R"("nodes": [{"children": [1.5]}])"), "json-type");
+    EXPECT_EQ(errorId(R"("nodes": [{"scale": [1e30, 1, 1], "children": [1]}, {"scale": [1e30, 1, 1]}])"),
+              "node-transform");
+}
+
+TEST(GltfNodes, FollowsDeepHierarchies) {
+    constexpr int kDepth = 20000;
+    Json nodes = Json::array();
+    for (int i = 0; i < kDepth; ++i) {
+        nodes.push_back({{"translation", {0, 1, 0}}});
+        if (i + 1 < kDepth) {
+            nodes.back()["children"] = Json::array({i + 1});
+        }
+    }
+    const Scene scene = mustImport("\"nodes\": " + nodes.dump());
+    ASSERT_EQ(scene.nodes.size(), static_cast<std::size_t>(kDepth));
+    EXPECT_EQ(scene.nodes.back().world[13], kDepth);
+}
+
+TEST(GltfNodes, NormalizesRotations) {
+    const Scene scene = mustImport(R"("nodes": [{"rotation": [0, 0, 0, 2]}, {"rotation": [0, 0, 0, 0]}])");
+    expectNear(scene.nodes.at(0).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    expectNear(scene.nodes.at(1).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    EXPECT_EQ(countWarnings(scene, "node-rotation"), 2U);
+}
+
+TEST(GltfCameras, ArePlacedWithoutScale) {
+    const Scene scene = mustImport(R"(
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
+                    {"name": "flat", "type": "orthographic",
+                     "orthographic": {"xmag": 2, "ymag": -3, "znear": 0, "zfar": 10}}],
+        "nodes": [{"camera": 0, "scale": [-2, 2, 3], "translation": [1, 2, 3]}, {"camera": 1}, {}])");
+    ASSERT_EQ(scene.cameras.size(), 2U);
+    EXPECT_EQ(scene.nodes[0].camera, 0);
+    EXPECT_EQ(scene.nodes[2].camera, -1);
+    EXPECT_FALSE(scene.cameras[0].orthographic);
+    EXPECT_EQ(scene.cameras[0].yfov, 0.5);
+    EXPECT_EQ(scene.cameras[0].zfar, 0.0);
+    expectNear(scene.cameras[0].world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+    EXPECT_TRUE(scene.cameras[1].orthographic);
+    EXPECT_EQ(scene.cameras[1].name, "flat");
+    EXPECT_EQ(scene.cameras[1].xmag, 2.0);
+    EXPECT_EQ(scene.cameras[1].ymag, 3.0);
+    EXPECT_EQ(scene.cameras[1].zfar, 10.0);
+    EXPECT_EQ(countWarnings(scene, "camera-range"), 1U);
+}
+
+TEST(GltfCameras, AreChecked) {
+    const auto perspective = [](const std::string& values) {
+        return errorId(R"("nodes": [{"camera": 0}], "cameras": [{"type": "perspective", "perspective": )" +
+                       values + "}]");
+    };
+    EXPECT_EQ(perspective(R"({"yfov": 1, "znear": 1, "zfar": 2})"), "imported");
+    EXPECT_EQ(perspective(R"({"yfov": 0, "znear": 1})"), "camera-range");
+    EXPECT_EQ(perspective(R"({"yfov": 4, "znear": 1})"), "camera-range");
+    EXPECT_EQ(perspective(R"({"yfov": 1, "znear": 0})"), "camera-range");
+    EXPECT_EQ(perspective(R"({"yfov": 1, "znear": 1, "zfar": 1})"), "camera-range");
+    EXPECT_EQ(perspective(R"({"yfov": 1, "znear": 1, "zfar": 0})"), "camera-range");
+    EXPECT_EQ(perspective(R"({"yfov": 1})"), "json-missing");
+    EXPECT_EQ(errorId(R"("cameras": [{"type": "fisheye"}])"), "camera-type");
+    EXPECT_EQ(errorId(R"("cameras": [{"type": "orthographic"}])"), "json-missing");
+    EXPECT_EQ(errorId(R"("nodes": [{"camera": 0}], "cameras": [{"type": "orthographic",
+        "orthographic": {"xmag": 0, "ymag": 1, "znear": 0, "zfar": 1}}])"),
+              "camera-range");
+}
+
+TEST(GltfCameras, SurviveZeroScale) {
+    const Scene scene = mustImport(R"(
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+        "nodes": [{"camera": 0, "scale": [0, 0, 0], "translation": [1, 2, 3]}])");
+    expectNear(scene.cameras.at(0).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+    EXPECT_EQ(countWarnings(scene, "pose-degenerate"), 1U);
+}
+
+std::string withLight(const std::string& light, const std::string& node = "") {
+    return R"("extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [)" +
+           light + R"(]}}, "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0}})" + node + "}]";
+}
+
+TEST(GltfLights, ArePlaced) {
+    const Scene scene = mustImport(withLight(
+        R"({"name": "lamp", "type": "spot", "color": [1, 0.5, 0.25], "intensity": 20, "range": 7,
+            "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}})",
+        R"(, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
+            "scale": [1, 1, 5])"));
+    ASSERT_EQ(scene.lights.size(), 1U);
+    const Light& light = scene.lights[0];
+    EXPECT_EQ(scene.nodes.at(0).light, 0);
+    EXPECT_EQ(light.name, "lamp");
+    EXPECT_EQ(light.type, LightType::Spot);
+    EXPECT_EQ(light.color, (Float3{1.0F, 0.5F, 0.25F}));
+    EXPECT_EQ(light.intensity, 20.0F);
+    EXPECT_EQ(light.range, 7.0F);
+    EXPECT_EQ(light.innerConeAngle, 0.25F);
+    EXPECT_EQ(light.outerConeAngle, 0.5F);
+    EXPECT_EQ(light.position, (Float3{1, 2, 3}));
+    // A quarter turn about Y takes -Z to -X.
+    EXPECT_NEAR(light.direction[0], -1.0F, 1e-6F);
+    EXPECT_NEAR(light.direction[1], 0.0F, 1e-6F);
+    EXPECT_NEAR(light.direction[2], 0.0F, 1e-6F);
+}
+
+TEST(GltfLights, HaveTheExtensionsDefaults) {
+    const Scene scene = mustImport(withLight(R"({"type": "spot"})"));
+    const Light& light = scene.lights.at(0);
+    EXPECT_EQ(light.color, (Float3{1, 1, 1}));
+    EXPECT_EQ(light.intensity, 1.0F);
+    EXPECT_EQ(light.range, 0.0F);
+    EXPECT_EQ(light.innerConeAngle, 0.0F);
+    EXPECT_FLOAT_EQ(light.outerConeAngle, std::numbers::pi_v<float> / 4);
+    EXPECT_EQ(light.direction, (Float3{0, 0, -1}));
+}
+
+TEST(GltfLights, AreChecked) {
+    const Scene scene = mustImport(withLight(R"({"type": "spot", "intensity": -1, "color": [-1, 0, 0],
+        "spot": {"innerConeAngle": 3, "outerConeAngle": 2}})",
+                                             R"(, "scale": [0, 0, 0])"));
+    EXPECT_EQ(scene.lights.at(0).intensity, 0.0F);
+    EXPECT_LE(scene.lights.at(0).innerConeAngle, scene.lights.at(0).outerConeAngle);
+    EXPECT_EQ(countWarnings(scene, "light-range"), 4U);
+    EXPECT_EQ(countWarnings(scene, "pose-degenerate"), 1U);
+    EXPECT_EQ(scene.lights.at(0).direction, (Float3{0, 0, -1}));
+    EXPECT_EQ(errorId(withLight(R"({"type": "laser"})")), "light-type");
+    EXPECT_EQ(errorId(withLight(R"({})")), "json-missing");
+    EXPECT_EQ(errorId(withLight("")), "index-range");
+}
+
+TEST(GltfMotion, IsLeftOutWithOneWarningOfEachKind) {
+    const Scene scene = mustImport(R"("animations": [{}, {}], "skins": [{}, {}],
+        "nodes": [{"skin": 7}],
+        "meshes": [{"primitives": [{"attributes": {}, "mode": 0, "targets": [{"POSITION": 9}]}]},
+                   {"primitives": [{"attributes": {}, "mode": 0, "targets": [{}]}]}])");
+    EXPECT_EQ(countWarnings(scene, "animation-ignored"), 1U);
+    EXPECT_EQ(countWarnings(scene, "skin-ignored"), 1U);
+    EXPECT_EQ(countWarnings(scene, "morph-ignored"), 1U);
+}
+
+}  // namespace
+}  // namespace glint::test

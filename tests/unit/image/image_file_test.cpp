@@ -1,0 +1,152 @@
+#include "image/image_file.h"
+
+#include "base/files.h"
+#include "image/tone.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFile : public testing::Test {
+protected:
+    void SetUp() override {
+        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        folder_ = fs::path(GLINT_BINARY_DIR) / "tests" / "tmp" / ("image_" + name);
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override {
+        fs::remove_all(folder_);
+    }
+    fs::path path(const std::string& name) const {
+        return folder_ / name;
+    }
+
+private:
+    fs::path folder_;
+};
+
+LinearImage ramp(std::uint32_t width, std::uint32_t height) {
+    LinearImage image{width, height, {}};
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+        const auto value = static_cast<float>(i);
+        image.pixels.push_back({value / 7.0F, value * 1e4F, -value / 3.0F, 0.25F});
+    }
+    return image;
+}
+
+TEST_F(ImageFile, ExrKeepsEveryBit) {
+    const LinearImage image = ramp(13, 7);
+    ASSERT_TRUE(writeImage(path("a.exr"), image, 3.0));
+    const Result<LinearImage> read = readImage(path("a.exr"));
+    ASSERT_TRUE(read) << toString(read.error());
+    EXPECT_EQ(read->width, 13U);
+    EXPECT_EQ(read->height, 7U);
+    EXPECT_EQ(read->pixels, image.pixels);
+}
+
+TEST_F(ImageFile, ExrKeepsNanAndInfinity) {
+    LinearImage image{2, 1, {}};
+    image.pixels = {{std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F},
+                    {std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 1.0F}};
+    ASSERT_TRUE(writeImage(path("a.exr"), image, 0.0));
+    const Result<LinearImage> read = readImage(path("a.exr"));
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(std::isnan(read->pixels[0][0]));
+    EXPECT_TRUE(std::isinf(read->pixels[1][0]));
+}
+
+TEST_F(ImageFile, PngRoundTripsDisplayColours) {
+    DisplayImage image{16, 16, {}};
+    for (int i = 0; i < 256; ++i) {
+        const auto level = static_cast<std::uint8_t>(i);
+        image.pixels.push_back({level, static_cast<std::uint8_t>(255 - i), 7});
+    }
+    ASSERT_TRUE(writeImage(path("a.png"), image));
+    const Result<LinearImage> read = readImage(path("a.png"));
+    ASSERT_TRUE(read) << toString(read.error());
+    for (std::size_t i = 0; i < 256; ++i) {
+        EXPECT_NEAR(linearToSrgb(read->pixels[i][0]) * 255.0F, image.pixels[i][0], 0.01F);
+        EXPECT_NEAR(linearToSrgb(read->pixels[i][1]) * 255.0F, image.pixels[i][1], 0.01F);
+        EXPECT_EQ(read->pixels[i][3], 1.0F);
+    }
+}
+
+TEST_F(ImageFile, PngIsToneMapped) {
+    LinearImage image{1, 1, {{0.5F, 0.3F, 0.2F, 1.0F}}};
+    ASSERT_TRUE(writeImage(path("a.PNG"), image, -1.0));
+    const Result<LinearImage> read = readImage(path("a.PNG"));
+    ASSERT_TRUE(read);
+    const Rgb expected = toneMapNeutral({0.25F, 0.15F, 0.1F});
+    EXPECT_NEAR(read->pixels[0][0], expected[0], 4e-3F);
+    EXPECT_NEAR(read->pixels[0][2], expected[2], 4e-3F);
+}
+
+TEST_F(ImageFile, WritesTheSameBytesEveryTime) {
+    for (const char* name : {"a.png", "a.exr"}) {
+        ASSERT_TRUE(writeImage(path(name), ramp(33, 17), 0.0));
+        const Result<Bytes> first = readFile(path(name));
+        fs::remove(path(name));
+        ASSERT_TRUE(writeImage(path(name), ramp(33, 17), 0.0));
+        const Result<Bytes> second = readFile(path(name));
+        ASSERT_TRUE(first && second);
+        EXPECT_EQ(*first, *second) << name;
+    }
+}
+
+TEST_F(ImageFile, RefusesUnknownExtensions) {
+    for (const char* name : {"a.jpg", "a", "a.png.bak"}) {
+        const Status status = writeImage(path(name), ramp(2, 2), 0.0);
+        ASSERT_FALSE(status) << name;
+        EXPECT_EQ(status.error().id, "image-extension");
+        EXPECT_FALSE(fs::exists(path(name)));
+    }
+    EXPECT_EQ(writeImage(path("a.exr"), DisplayImage{1, 1, {{1, 2, 3}}}).error().id, "image-extension");
+}
+
+TEST_F(ImageFile, RefusesMissingAndBrokenFiles) {
+    EXPECT_EQ(readImage(path("none.png")).error().id, "file-open");
+    for (const char* name : {"a.png", "a.exr"}) {
+        ASSERT_TRUE(writeFile(path(name), std::string_view("not an image at all")));
+        const Result<LinearImage> read = readImage(path(name));
+        ASSERT_FALSE(read) << name;
+        EXPECT_EQ(read.error().id, "image-format");
+        EXPECT_EQ(read.error().where, path(name).string());
+    }
+}
+
+// Cut anywhere, a file is refused or, where only trailing bytes are missing, read; it never crashes.
+TEST_F(ImageFile, SurvivesTruncation) {
+    for (const char* name : {"a.png", "a.exr"}) {
+        ASSERT_TRUE(writeImage(path(name), ramp(9, 9), 0.0));
+        const Result<Bytes> whole = readFile(path(name));
+        ASSERT_TRUE(whole);
+        int refused = 0;
+        for (std::size_t size = 0; size < whole->size(); size += 7) {
+            const Bytes part(whole->begin(), whole->begin() + static_cast<std::ptrdiff_t>(size));
+            ASSERT_TRUE(writeFile(path(name), part));
+            refused += readImage(path(name)) ? 0 : 1;
+        }
+        EXPECT_GT(refused, 10) << name;
+    }
+}
+
+TEST(ImageSize, HasLimits) {
+    EXPECT_TRUE(checkImageSize(1, 1, ""));
+    EXPECT_TRUE(checkImageSize(16384, 4096, ""));
+    EXPECT_FALSE(checkImageSize(0, 4, ""));
+    EXPECT_FALSE(checkImageSize(16385, 1, ""));
+    EXPECT_FALSE(checkImageSize(16384, 4097, ""));
+    EXPECT_FALSE(checkImageSize(std::int64_t{1} << 40, std::int64_t{1} << 40, ""));
+}
+
+}  // namespace
+}  // namespace glint

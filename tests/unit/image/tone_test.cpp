@@ -1,0 +1,82 @@
+#include "image/tone.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glint {
+namespace {
+
+TEST(Tone, SrgbIsItsOwnInverse) {
+    for (int i = 0; i <= 255; ++i) {
+        const float encoded = static_cast<float>(i) / 255.0F;
+        EXPECT_NEAR(linearToSrgb(srgbToLinear(encoded)), encoded, 1e-6F) << i;
+    }
+    // IEC 61966-2-1: half of the code range is about 21 % of the light.
+    EXPECT_NEAR(srgbToLinear(0.5F), 0.21404F, 1e-5F);
+}
+
+// Values worked out by hand from the specification's formulas.
+TEST(Tone, NeutralMatchesTheSpecification) {
+    // In the dark: x - x² / 0.16 is taken away, so grey 0.04 becomes 0.01.
+    EXPECT_NEAR(toneMapNeutral({0.04F, 0.04F, 0.04F})[0], 0.01F, 1e-6F);
+    // In between: 0.04 is taken away.
+    const Rgb middle = toneMapNeutral({0.5F, 0.3F, 0.2F});
+    EXPECT_NEAR(middle[0], 0.46F, 1e-6F);
+    EXPECT_NEAR(middle[1], 0.26F, 1e-6F);
+    EXPECT_NEAR(middle[2], 0.16F, 1e-6F);
+    // Above: grey 1.04 has p = 1, and 1 - 0.24² / (1 + 1 - 1.52) = 0.88.
+    EXPECT_NEAR(toneMapNeutral({1.04F, 1.04F, 1.04F})[1], 0.88F, 1e-6F);
+}
+
+TEST(Tone, NeutralStaysInRangeAndIsMonotonic) {
+    float previous = -1.0F;
+    for (float value = 0.0F; value < 1e6F; value = value * 1.1F + 1e-3F) {
+        const Rgb mapped = toneMapNeutral({value, value * 0.5F, value * 0.1F});
+        for (const float channel : mapped) {
+            EXPECT_GE(channel, 0.0F);
+            EXPECT_LE(channel, 1.0F);
+        }
+        EXPECT_GE(mapped[0], previous);
+        previous = mapped[0];
+    }
+}
+
+TEST(Tone, ExposureBringsGreyToTheKey) {
+    LinearImage image{2, 2, {}};
+    image.pixels.assign(4, {0.72F, 0.72F, 0.72F, 1.0F});
+    EXPECT_NEAR(automaticExposure(image), -2.0, 1e-6);
+    // Black, NaN and infinite pixels are not lit.
+    image.pixels[1] = {0.0F, 0.0F, 0.0F, 1.0F};
+    image.pixels[2] = {std::numeric_limits<float>::quiet_NaN(), 1.0F, 1.0F, 1.0F};
+    image.pixels[3] = {std::numeric_limits<float>::infinity(), 1.0F, 1.0F, 1.0F};
+    EXPECT_NEAR(automaticExposure(image), -2.0, 1e-6);
+}
+
+TEST(Tone, ExposureOfBlackIsZeroAndOfExtremesIsClamped) {
+    LinearImage image{1, 1, {{0.0F, 0.0F, 0.0F, 1.0F}}};
+    EXPECT_EQ(automaticExposure(image), 0.0);
+    image.pixels[0] = {1e30F, 1e30F, 1e30F, 1.0F};
+    EXPECT_EQ(automaticExposure(image), -16.0);
+    image.pixels[0] = {1.5e-6F, 1.5e-6F, 1.5e-6F, 1.0F};
+    EXPECT_EQ(automaticExposure(image), 16.0);
+}
+
+TEST(Tone, DisplayShowsWhatIsNotFinite) {
+    const std::array<std::uint8_t, 3> magenta{255, 0, 255};
+    EXPECT_EQ(toDisplay({std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F}, 0.0), magenta);
+    EXPECT_EQ(toDisplay({0.0F, std::numeric_limits<float>::infinity(), 0.0F}, 0.0), magenta);
+    const std::array<std::uint8_t, 3> black{0, 0, 0};
+    EXPECT_EQ(toDisplay({-1.0F, 0.0F, 0.0F}, 0.0), black);
+    // A huge colour and exposure together stay finite.
+    EXPECT_GE(toDisplay({1e38F, 1e38F, 1e38F}, 100.0)[0], 254);
+}
+
+TEST(Tone, DisplayDoublesWithEveryStop) {
+    EXPECT_EQ(toDisplay({0.2F, 0.1F, 0.3F}, 1.0), toDisplay({0.4F, 0.2F, 0.6F}, 0.0));
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,234 @@
+#include "cli/camera.h"
+
+#include "cli/suggest.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+using Double3 = std::array<double, 3>;
+
+double dot(const Double3& a, const Double3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Double3 cross(const Double3& a, const Double3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Double3 scaled(const Double3& a, double factor) {
+    return {a[0] * factor, a[1] * factor, a[2] * factor};
+}
+
+Double3 sum(const Double3& a, const Double3& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// Nothing where the length is 0 or not finite.
+std::optional<Double3> normalized(const Double3& a) {
+    const double length = std::hypot(a[0], a[1], a[2]);
+    if (!(length > 0.0) || !std::isfinite(length)) {
+        return std::nullopt;
+    }
+    return scaled(a, 1.0 / length);
+}
+
+Float3 toFloat(const Double3& a) {
+    return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Bounds kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+
+void extend(Bounds& bounds, const Double3& point) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        bounds.min[i] = std::min(bounds.min[i], point[i]);
+        bounds.max[i] = std::max(bounds.max[i], point[i]);
+    }
+}
+
+Double3 corner(const Bounds& bounds, unsigned number) {
+    Double3 point{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        point[i] = ((number >> i) & 1U) != 0 ? bounds.max[i] : bounds.min[i];
+    }
+    return point;
+}
+
+// Of each mesh in its own space; by mesh number.
+std::vector<Bounds> meshBounds(const SceneViewData& scene) {
+    std::vector<Bounds> bounds;
+    for (const PrimitiveView& primitive : scene.primitives) {
+        bounds.resize(std::max<std::size_t>(bounds.size(), primitive.mesh + std::size_t{1}), kNothing);
+        for (const Float3& position : primitive.positions) {
+            extend(bounds[primitive.mesh], {position[0], position[1], position[2]});
+        }
+    }
+    return bounds;
+}
+
+Bounds transformed(const Bounds& box, const std::array<float, 12>& rows) {
+    Bounds bounds = kNothing;
+    for (unsigned number = 0; number < 8; ++number) {
+        const Double3 point = corner(box, number);
+        Double3 world{};
+        for (std::size_t row = 0; row < 3; ++row) {
+            world[row] =
+                dot({rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]}, point) + rows[4 * row + 3];
+        }
+        extend(bounds, world);
+    }
+    return bounds;
+}
+
+bool isFinite(const Bounds& bounds) {
+    return std::all_of(bounds.min.begin(), bounds.min.end(), [](double v) { return std::isfinite(v); }) &&
+           std::all_of(bounds.max.begin(), bounds.max.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::string cameraName(const Scene& scene, std::size_t index) {
+    const std::string& name = scene.cameras[index].name;
+    return name.empty() ? std::to_string(index) : name;
+}
+
+std::optional<std::size_t> findCamera(const Scene& scene, const std::string& wanted) {
+    std::size_t number = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto parsed = std::from_chars(wanted.data(), end, number);
+    if (parsed.ec == std::errc() && parsed.ptr == end && number < scene.cameras.size()) {
+        return number;
+    }
+    const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                    [&](const Camera& camera) { return camera.name == wanted; });
+    if (found == scene.cameras.end()) {
+        return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - scene.cameras.begin());
+}
+
+Diagnostic unknownCamera(const Scene& scene, const std::string& wanted) {
+    std::vector<std::string> names{"auto"};
+    for (const Camera& camera : scene.cameras) {
+        names.push_back(camera.name);
+    }
+    const std::string count = std::to_string(scene.cameras.size());
+    return makeError("camera-unknown", scene.path,
+                     "has no camera \"" + wanted + "\" (it has " + count + ")" + suggestion(wanted, names),
+                     "use --camera auto, a name, or a number from 0");
+}
+
+}  // namespace
+
+bool Bounds::empty() const {
+    return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
+}
+
+Bounds worldBounds(const SceneViewData& scene) {
+    const std::vector<Bounds> meshes = meshBounds(scene);
+    Bounds bounds = kNothing;
+    for (const InstanceView& instance : scene.instances) {
+        const Bounds& mesh = meshes[instance.mesh];
+        if (mesh.empty()) {
+            continue;
+        }
+        const Bounds placed = transformed(mesh, instance.objectToWorld);
+        if (isFinite(placed)) {
+            extend(bounds, placed.min);
+            extend(bounds, placed.max);
+        }
+    }
+    return bounds;
+}
+
+CameraView framingCamera(const Bounds& bounds, double aspect) {
+    constexpr double kHalfHeight = 0.41421356237309503;  // tan(45° / 2)
+    constexpr double kMargin = 1.05;
+    const Double3 backward = *normalized({0.8, 0.55, 1.0});
+    const Double3 right = *normalized(cross({0.0, 1.0, 0.0}, backward));
+    const Double3 up = cross(backward, right);
+
+    // A box with some extent, whatever the scene holds.
+    Bounds box = bounds.empty() ? Bounds{} : bounds;
+    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
+    const Double3 extent = sum(box.max, scaled(box.min, -1.0));
+    if (*std::max_element(extent.begin(), extent.end()) <= 0.0) {
+        box = {sum(centre, {-0.5, -0.5, -0.5}), sum(centre, {0.5, 0.5, 0.5})};
+    }
+
+    // The nearest distance from which every corner is inside the pyramid of view.
+    double distance = 0.0;
+    double radius = 0.0;
+    for (unsigned number = 0; number < 8; ++number) {
+        const Double3 offset = sum(corner(box, number), scaled(centre, -1.0));
+        const double toward = dot(offset, backward);
+        const double horizontal = std::abs(dot(offset, right)) / (kHalfHeight * aspect);
+        const double vertical = std::abs(dot(offset, up)) / kHalfHeight;
+        distance = std::max(distance, toward + std::max(horizontal, vertical) * kMargin);
+        radius = std::max(radius, std::sqrt(dot(offset, offset)));
+    }
+
+    CameraView view;
+    view.position = toFloat(sum(centre, scaled(backward, distance)));
+    view.forward = toFloat(scaled(backward, -1.0));
+    view.up = toFloat(up);
+    view.halfHeight = static_cast<float>(kHalfHeight);
+    view.halfWidth = static_cast<float>(kHalfHeight * aspect);
+    // Nothing is nearer than the box; a thousandth of the distance keeps the plane off the camera itself.
+    view.near = static_cast<float>(std::max(distance - radius, distance * 1e-3));
+    return view;
+}
+
+Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double aspect) {
+    const Camera& camera = scene.cameras[index];
+    const Matrix4& m = camera.world;
+    const std::optional<Double3> forward = normalized({-m[8], -m[9], -m[10]});
+    const Double3 upward{m[4], m[5], m[6]};
+    const std::optional<Double3> up =
+        forward ? normalized(sum(upward, scaled(*forward, -dot(upward, *forward)))) : std::nullopt;
+    if (!up) {
+        return makeError("camera-matrix", scene.path,
+                         "the node of camera " + cameraName(scene, index) + " has a scale of 0",
+                         "give it another scale, or use --camera auto");
+    }
+    CameraView view;
+    view.position = toFloat({m[12], m[13], m[14]});
+    view.forward = toFloat(*forward);
+    view.up = toFloat(*up);
+    view.orthographic = camera.orthographic;
+    const double halfHeight = camera.orthographic ? camera.ymag : std::tan(0.5 * camera.yfov);
+    view.halfHeight = static_cast<float>(halfHeight);
+    view.halfWidth = static_cast<float>(halfHeight * aspect);
+    view.near = static_cast<float>(camera.znear);
+    view.far = static_cast<float>(camera.zfar);
+    return view;
+}
+
+Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
+                                  double aspect) {
+    std::optional<std::size_t> index;
+    if (wanted.empty()) {
+        index = scene.cameras.empty() ? std::nullopt : std::optional<std::size_t>(0);
+    } else if (wanted != "auto") {
+        index = findCamera(scene, wanted);
+        if (!index) {
+            return unknownCamera(scene, wanted);
+        }
+    }
+    if (!index) {
+        return CameraChoice{framingCamera(worldBounds(view), aspect), "auto"};
+    }
+    const Result<CameraView> camera = sceneCamera(scene, *index, aspect);
+    if (!camera) {
+        return camera.error();
+    }
+    return CameraChoice{*camera, cameraName(scene, *index)};
+}
+
+}  // namespace glint

@@ -1,0 +1,45 @@
+// Where a picture is taken from.
+#pragma once
+
+#include "cli/scene_view.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <array>
+#include <string>
+
+namespace glint {
+
+// An axis-aligned box in world space; empty where any min is above its max.
+struct Bounds {
+    std::array<double, 3> min{};
+    std::array<double, 3> max{};
+    bool empty() const;
+};
+
+// Of the transformed boxes of all instances: at most as tight as the geometry. Instances whose box is not
+// finite are left out.
+Bounds worldBounds(const SceneViewData& scene);
+
+// Frames `bounds` from a three-quarter view (from +X, +Y, +Z) with a vertical field of view of 45° and a
+// margin of 5 %. An empty or flat box is taken as one of 1 m around its centre or the origin. aspect is width
+// / height.
+CameraView framingCamera(const Bounds& bounds, double aspect);
+
+// A camera of the scene: its vertical field of view or height stays, its width follows `aspect`.
+// Error "camera-matrix" where its node squashes it flat.
+Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double aspect);
+
+struct CameraChoice {
+    CameraView view;
+    std::string name;  // for people: "auto", or the camera's name or number
+};
+
+// `wanted`: "auto", the number or the name of a camera of the scene; empty: its first, else "auto".
+// Error "camera-unknown".
+Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
+                                  double aspect);
+
+}  // namespace glint

@@ -1,0 +1,16 @@
+// The subcommands. Each declares its options and, when the command line names it, sets `chosen` to its work.
+#pragma once
+
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace glint {
+
+void addCompile(CLI::App& app, Action& chosen);
+void addExplain(CLI::App& app, Action& chosen);
+void addInspect(CLI::App& app, Action& chosen);
+void addRender(CLI::App& app, Action& chosen);
+void addCompare(CLI::App& app, Action& chosen);
+
+}  // namespace glint

@@ -1,0 +1,141 @@
+// glint compare: how far two images are apart.
+#include "image/compare.h"
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "image/image_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+namespace glint {
+
+namespace {
+
+struct CompareArguments {
+    std::string image;
+    std::string reference;
+    std::string diff;
+    bool json = false;
+    std::optional<double> maxError;
+};
+
+constexpr const char* kChannels[] = {"red", "green", "blue"};
+
+Json toJson(const LargestError& error) {
+    return {{"value", error.value}, {"x", error.x}, {"y", error.y}, {"channel", kChannels[error.channel]}};
+}
+
+// PSNR of equal images is infinite, which JSON can't say: null.
+Json toJson(const ImageDifference& difference, const LinearImage& image) {
+    return {{"width", image.width},
+            {"height", image.height},
+            {"maxAbsolute", toJson(difference.absolute)},
+            {"maxRelative", toJson(difference.relative)},
+            {"mean", difference.mean},
+            {"rmse", difference.rmse},
+            {"relMse", difference.relMse},
+            {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json(nullptr)},
+            {"pixels", difference.pixels},
+            {"differing", difference.differing},
+            {"nonFinite", difference.nonFinite},
+            {"referenceNonFinite", difference.referenceNonFinite}};
+}
+
+std::string toText(const LargestError& error) {
+    if (error.value == 0.0) {
+        return "0";
+    }
+    return fmt::format("{:.6g} at ({}, {}) {}", error.value, error.x, error.y, kChannels[error.channel]);
+}
+
+std::string toText(const ImageDifference& difference, const LinearImage& image) {
+    return formatFields(
+        {{"size", fmt::format("{} x {}", image.width, image.height)},
+         {"largest error", toText(difference.absolute)},
+         {"largest relative", toText(difference.relative)},
+         {"mean", fmt::format("{:.6g}", difference.mean)},
+         {"RMSE", fmt::format("{:.6g}", difference.rmse)},
+         {"relMSE", fmt::format("{:.6g}", difference.relMse)},
+         {"PSNR", std::isfinite(difference.psnr) ? fmt::format("{:.2f} dB", difference.psnr) : "infinite"},
+         {"pixels that differ", fmt::format("{} of {}", difference.differing, difference.pixels)},
+         {"NaN or infinity",
+          fmt::format("{} in A, {} in B", difference.nonFinite, difference.referenceNonFinite)}});
+}
+
+// Nothing if the images are near enough.
+std::optional<Diagnostic> judge(const CompareArguments& arguments, const ImageDifference& difference) {
+    if (!arguments.maxError) {
+        return std::nullopt;
+    }
+    if (difference.nonFinite + difference.referenceNonFinite > 0) {
+        return makeError("max-error", arguments.image,
+                         "or the reference has pixels that are NaN or infinite");
+    }
+    if (difference.relative.value > *arguments.maxError) {
+        return makeError("max-error", arguments.image,
+                         fmt::format("differs from {} by {:.6g}; the limit is {:.6g}", arguments.reference,
+                                     difference.relative.value, *arguments.maxError));
+    }
+    return std::nullopt;
+}
+
+int fail(const Console& console, const Diagnostic& error) {
+    console.report(error);
+    return kExitFailed;
+}
+
+int compare(const Console& console, const CompareArguments& arguments) {
+    const Result<LinearImage> image = readImage(arguments.image);
+    if (!image) {
+        return fail(console, image.error());
+    }
+    const Result<LinearImage> reference = readImage(arguments.reference);
+    if (!reference) {
+        return fail(console, reference.error());
+    }
+    const Result<ImageDifference> difference =
+        compareImages(*image, *reference, arguments.image, arguments.reference);
+    if (!difference) {
+        return fail(console, difference.error());
+    }
+    if (!arguments.diff.empty()) {
+        if (Status written = writeImage(arguments.diff, differenceMap(*image, *reference)); !written) {
+            return fail(console, written.error());
+        }
+    }
+    console.print(arguments.json ? glint::toText(toJson(*difference, *image)) : toText(*difference, *image));
+    const std::optional<Diagnostic> verdict = judge(arguments, *difference);
+    return verdict ? fail(console, *verdict) : kExitDone;
+}
+
+}  // namespace
+
+void addCompare(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<CompareArguments>();
+    auto maxError = std::make_shared<double>(0.0);
+    CLI::App& command = addCommand(app, "compare", "Measure how far two images are apart, in linear light",
+                                   "glint compare uber.exr visibility.exr --max-error 1e-3 --diff diff.png");
+    addText(command, "A", arguments->image, "IMAGE", "the image, .png or .exr").required();
+    addText(command, "B", arguments->reference, "IMAGE", "the reference, of the same size").required();
+    addImageOutput(command, "--diff", arguments->diff, {".png"},
+                   "write a map of the relative errors: black up to 1e-4,\n"
+                   "then violet, red, orange to pale yellow at 1 and above;\ngreen: NaN or infinity");
+    CLI::Option& limit = addReal(command, "--max-error", *maxError, 0.0, 1e30,
+                                 "exit 1 if any |A - B| / max(1, |B|) is above X (0 to 1e30),\n"
+                                 "or any pixel is NaN or infinite (default: no limit)");
+    addFlag(command, "--json", arguments->json, "print as JSON");
+    command.callback([arguments, maxError, &limit, &chosen] {
+        if (limit.count() > 0) {
+            arguments->maxError = *maxError;
+        }
+        chosen = [arguments](const Console& console) { return compare(console, *arguments); };
+    });
+}
+
+}  // namespace glint

@@ -1,0 +1,249 @@
+// glint compile: a scene's materials into a package.
+#include "emit/compile.h"
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "gltf/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace glint {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct CompileArguments {
+    std::string scene;
+    std::string output;
+    std::string strategy = "all";
+    PlanArguments plan;
+    std::int64_t maxShaders = 0;
+    std::vector<std::string> emit{"header"};
+    std::int64_t jobs = 0;
+    bool debugInfo = false;
+    bool warningsAsErrors = false;
+    bool json = false;
+    bool dryRun = false;
+};
+
+// What there is to tell at the end. The package is absent after a dry run.
+struct Outcome {
+    const CompileArguments& arguments;
+    const Scene& scene;
+    const Plan& plan;
+    const CompiledPackage* package = nullptr;
+    double milliseconds = 0.0;
+
+    std::uint64_t packageBytes() const {
+        std::uint64_t bytes = 0;
+        for (const PackageFile& file : package->files) {
+            bytes += file.bytes.size();
+        }
+        return bytes;
+    }
+};
+
+CompileSettings settingsOf(const CompileArguments& arguments) {
+    const auto emits = [&](const char* what) {
+        return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
+    };
+    CompileSettings settings;
+    settings.strategies = arguments.strategy == "uber"         ? package::kStrategyUber
+                          : arguments.strategy == "visibility" ? package::kStrategyVisibility
+                                                               : settings.strategies;
+    settings.plan = arguments.plan.options();
+    settings.maxShaders = static_cast<int>(arguments.maxShaders);
+    settings.jobs = static_cast<int>(arguments.jobs);
+    settings.emitHeader = emits("header");
+    settings.emitGlsl = emits("glsl");
+    settings.debugInfo = arguments.debugInfo;
+    return settings;
+}
+
+// The shading module of each case, if the package has them one by one.
+std::map<int, const CompiledModule*> caseModules(const CompiledPackage* package) {
+    std::map<int, const CompiledModule*> modules;
+    if (package != nullptr) {
+        for (const CompiledModule& module : package->modules) {
+            if (module.role == package::ModuleRole::ShadeCase) {
+                modules[module.shaderId] = &module;
+            }
+        }
+    }
+    return modules;
+}
+
+Json shadersToJson(const Outcome& outcome) {
+    const std::map<int, const CompiledModule*> modules = caseModules(outcome.package);
+    Json list = Json::array();
+    for (const Case& shader : outcome.plan.cases) {
+        Json entry{{"id", shader.shaderId},
+                   {"name", shader.name},
+                   {"always", featuresToJson(shader.always)},
+                   {"sometimes", featuresToJson(shader.sometimes)},
+                   {"keys", shader.keys.size()},
+                   {"materials", materialsToJson(outcome.scene, shader.materials)}};
+        const auto found = modules.find(shader.shaderId);
+        if (found != modules.end()) {
+            const CompiledModule& module = *found->second;
+            entry["spirv"] = Json{{"file", module.file},
+                                  {"bytes", module.statistics.bytes},
+                                  {"instructions", module.statistics.instructions},
+                                  {"textureFetches", module.statistics.textureFetches},
+                                  {"rayQueries", module.statistics.rayQueries}};
+        }
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+// 2^n as a whole number as long as it fits.
+Json countToJson(double count) {
+    constexpr double kLargest = 9007199254740992.0;  // 2^53, up to which every JSON reader is exact
+    return count <= kLargest ? Json(static_cast<std::uint64_t>(count)) : Json(count);
+}
+
+Json toJson(const Outcome& outcome) {
+    const CompiledPackage* package = outcome.package;
+    const auto orNull = [&](auto value) { return package ? Json(value()) : Json(nullptr); };
+    return {{"counts",
+             {{"materials", outcome.scene.materials.size()},
+              {"keysPossible", countToJson(outcome.plan.keysPossible)},
+              {"keysPresent", outcome.plan.keys.size()},
+              {"cases", outcome.plan.cases.size()},
+              {"uniqueSpirv", orNull([&] { return package->uniqueSpirv; })}}},
+            {"spirvBytes", orNull([&] { return package->spirvBytes; })},
+            {"packageBytes", orNull([&] { return outcome.packageBytes(); })},
+            {"milliseconds", outcome.milliseconds},
+            {"shaders", shadersToJson(outcome)},
+            {"dropped", droppedToJson(outcome.scene, outcome.plan)},
+            {"warnings", glint::toJson(outcome.scene.warnings)},
+            {"output", orNull([&] { return outcome.arguments.output; })}};
+}
+
+std::string toText(const Outcome& outcome) {
+    const Plan& plan = outcome.plan;
+    std::vector<std::vector<std::string>> rows{
+        {"materials", fmt::format("{}", outcome.scene.materials.size())},
+        {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
+        {"keys present", fmt::format("{}", plan.keys.size())},
+        {"cases", fmt::format("{}", plan.cases.size())}};
+    if (outcome.package != nullptr) {
+        rows.push_back({"unique SPIR-V", fmt::format("{}", outcome.package->uniqueSpirv)});
+        rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
+        rows.push_back({"package bytes", formatBytes(outcome.packageBytes())});
+    }
+    rows.push_back({"time", fmt::format("{:.0f} ms", outcome.milliseconds)});
+    const bool written = outcome.package != nullptr;
+    rows.push_back({"output", written ? outcome.arguments.output : "none (dry run)"});
+    return formatFields(rows) + droppedText(plan);
+}
+
+void tell(const Console& console, Outcome outcome, Clock::time_point start) {
+    outcome.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    console.print(outcome.arguments.json ? glint::toText(toJson(outcome)) : toText(outcome));
+}
+
+int fail(const Console& console, const Diagnostic& error) {
+    console.report(error);
+    return kExitFailed;
+}
+
+int planOnly(const Console& console, const CompileArguments& arguments, const Scene& scene,
+             Clock::time_point start) {
+    const CompileSettings settings = settingsOf(arguments);
+    const Plan plan = makePlan(scene.materials, planningInputs(scene), settings.plan);
+    const std::optional<std::string> excess = describeExcess(plan, settings.plan.merge, settings.maxShaders);
+    if (settings.maxShaders > 0 && excess) {
+        return fail(console, makeError("max-shaders", scene.path, *excess));
+    }
+    tell(console, Outcome{arguments, scene, plan}, start);
+    return kExitDone;
+}
+
+int compile(const Console& console, const CompileArguments& arguments) {
+    const Clock::time_point start = Clock::now();
+    console.progress("reading " + arguments.scene);
+    const Result<Scene> scene = importScene(arguments.scene);
+    if (!scene) {
+        return fail(console, scene.error());
+    }
+    console.report(scene->warnings);
+    if (arguments.warningsAsErrors && !scene->warnings.empty()) {
+        return fail(console,
+                    makeError("werror", arguments.scene, "has warnings, and --werror makes them errors",
+                              "mend them, or leave out --werror"));
+    }
+    if (arguments.dryRun) {
+        return planOnly(console, arguments, *scene, start);
+    }
+    console.progress("compiling " + arguments.scene);
+    const Result<CompiledPackage> package = compilePackage(*scene, settingsOf(arguments));
+    if (!package) {
+        return fail(console, package.error());
+    }
+    console.progress("writing " + arguments.output);
+    if (Status written = writePackage(*package, arguments.output); !written) {
+        return fail(console, written.error());
+    }
+    tell(console, Outcome{arguments, *scene, package->plan, &*package}, start);
+    return kExitDone;
+}
+
+void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
+    addChoice(command, "--strategy", arguments.strategy, {"uber", "visibility", "all"},
+              "which passes the package can run:\nuber: one shader traces and shades; visibility: hits\n"
+              "are ordered by shader first; all: both")
+        .group("Shaders");
+    addPlanOptions(command, arguments.plan);
+    addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
+               "fail if the scene needs more shaders;\n0: no limit")
+        .group("Shaders");
+    addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
+        .group("Shaders");
+}
+
+void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
+    addText(command, "-o,--output", arguments.output, "DIR",
+            "folder of the package; one that is there is replaced\n(required without --dry-run)")
+        .group("Output");
+    addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
+               "what else the package holds, separated by commas:\n"
+               "glsl: the shaders' sources; header: C++ tables")
+        .group("Output");
+    addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile and write nothing").group("Output");
+    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one a core")
+        .group("Output");
+}
+
+}  // namespace
+
+void addCompile(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<CompileArguments>();
+    CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
+                                   "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
+    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addOutputOptions(command, *arguments);
+    addShaderOptions(command, *arguments);
+    addFlag(command, "--werror", arguments->warningsAsErrors,
+            "fail on any warning, before anything is written")
+        .group("Report");
+    addFlag(command, "--json", arguments->json, "print the summary as JSON").group("Report");
+    command.callback([arguments, &chosen] {
+        if (arguments->output.empty() && !arguments->dryRun) {
+            throw CLI::RequiredError("-o DIR (or --dry-run)");
+        }
+        chosen = [arguments](const Console& console) { return compile(console, *arguments); };
+    });
+}
+
+}  // namespace glint

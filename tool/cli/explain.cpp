@@ -1,0 +1,203 @@
+// glint explain: which key and which case each material gets, and why.
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/suggest.h"
+#include "cli/table.h"
+#include "gltf/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <set>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+struct ExplainArguments {
+    std::string scene;
+    std::string material;
+    PlanArguments plan;
+    bool json = false;
+};
+
+// The scene, and what planning makes of it.
+struct Planned {
+    const Scene& scene;
+    std::vector<PrimitiveInputs> inputs;
+    PlanOptions options;
+    Plan plan;
+};
+
+using Drop = std::pair<std::string, std::string>;  // feature, reason
+
+// What a material asks for and does not get, over all of its primitives.
+std::set<Drop> dropsOf(const Planned& planned, int material) {
+    std::set<Drop> drops;
+    for (const PrimitiveInputs& inputs : planned.inputs) {
+        if (inputs.material == material) {
+            std::vector<Drop> found;
+            makeKey(planned.scene.materials[static_cast<std::size_t>(material)], inputs, planned.options.keys,
+                    &found);
+            drops.insert(found.begin(), found.end());
+        }
+    }
+    return drops;
+}
+
+std::vector<const Key*> keysOf(const Planned& planned, int material) {
+    std::vector<const Key*> keys;
+    for (const Key& key : planned.plan.keys) {
+        if (std::binary_search(key.materials.begin(), key.materials.end(), material)) {
+            keys.push_back(&key);
+        }
+    }
+    return keys;
+}
+
+// The primitives of one material that have this key, as JSON pointers.
+std::vector<std::string> primitivesOf(const Planned& planned, const Key& key, int material) {
+    std::vector<std::string> pointers;
+    for (const int index : key.primitives) {
+        const PrimitiveInputs& inputs = planned.inputs[static_cast<std::size_t>(index)];
+        if (inputs.material == material) {
+            pointers.push_back(fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive));
+        }
+    }
+    return pointers;
+}
+
+const Case& caseOf(const Planned& planned, const Key& key) {
+    return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
+}
+
+Json toJson(const Planned& planned, int material) {
+    Json keys = Json::array();
+    for (const Key* key : keysOf(planned, material)) {
+        const Case& shader = caseOf(planned, *key);
+        keys.push_back(Json{{"mask", fmt::format("0x{:016x}", key->mask)},
+                            {"features", featuresToJson(key->mask)},
+                            {"case",
+                             {{"id", shader.shaderId},
+                              {"name", shader.name},
+                              {"always", featuresToJson(shader.always)},
+                              {"sometimes", featuresToJson(shader.sometimes)}}},
+                            {"primitives", primitivesOf(planned, *key, material)}});
+    }
+    Json dropped = Json::array();
+    for (const auto& [feature, reason] : dropsOf(planned, material)) {
+        dropped.push_back(Json{{"feature", feature}, {"reason", reason}});
+    }
+    return {{"index", material},
+            {"name", materialName(planned.scene, material)},
+            {"keys", keys},
+            {"dropped", dropped}};
+}
+
+std::string toText(const Planned& planned, int material) {
+    std::string text = fmt::format("material {}: {}\n", material, materialName(planned.scene, material));
+    const std::vector<const Key*> keys = keysOf(planned, material);
+    if (keys.empty()) {
+        return text + "  no primitive uses it: no key, no shader\n";
+    }
+    std::vector<std::vector<std::string>> rows;
+    for (const Key* key : keys) {
+        const Case& shader = caseOf(planned, *key);
+        const std::vector<std::string> primitives = primitivesOf(planned, *key, material);
+        const std::string more =
+            primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
+        rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
+        rows.push_back({"    features", featureList(key->mask)});
+        rows.push_back({"    case", fmt::format("{} {}", shader.shaderId, shader.name)});
+        rows.push_back({"    branches on", featureList(shader.sometimes)});
+        rows.push_back({"    primitives", primitives.front() + more});
+    }
+    for (const auto& [feature, reason] : dropsOf(planned, material)) {
+        rows.push_back({"  dropped", feature + ": " + reason});
+    }
+    return text + formatFields(rows);
+}
+
+// Every material of that number, else of that name; all if none is asked for.
+Result<std::vector<int>> chooseMaterials(const Scene& scene, const std::string& wanted) {
+    const int count = static_cast<int>(scene.materials.size());
+    int number = -1;
+    const char* end = wanted.data() + wanted.size();
+    const auto parsed = std::from_chars(wanted.data(), end, number);
+    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0 && number < count) {
+        return std::vector<int>{number};
+    }
+    std::vector<int> chosen;
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) {
+        names.push_back(materialName(scene, i));
+        if (wanted.empty() || names.back() == wanted) {
+            chosen.push_back(i);
+        }
+    }
+    if (chosen.empty() && !wanted.empty()) {
+        return makeError(
+            "material-unknown", scene.path,
+            fmt::format("has no material \"{}\" (it has {}){}", wanted, count, suggestion(wanted, names)),
+            "use a name, or a number from 0");
+    }
+    return chosen;
+}
+
+int explain(const Console& console, const ExplainArguments& arguments) {
+    const Result<Scene> scene = importScene(arguments.scene);
+    if (!scene) {
+        console.report(scene.error());
+        return kExitFailed;
+    }
+    console.report(scene->warnings);
+    const Result<std::vector<int>> materials = chooseMaterials(*scene, arguments.material);
+    if (!materials) {
+        console.report(materials.error());
+        return kExitFailed;
+    }
+    Planned planned{*scene, planningInputs(*scene), arguments.plan.options(), {}};
+    planned.plan = makePlan(scene->materials, planned.inputs, planned.options);
+
+    if (arguments.json) {
+        Json list = Json::array();
+        for (const int material : *materials) {
+            list.push_back(toJson(planned, material));
+        }
+        console.print(glint::toText(Json{{"scene", arguments.scene},
+                                         {"merge", arguments.plan.merge},
+                                         {"alpha", arguments.plan.alpha},
+                                         {"materials", list}}));
+        return kExitDone;
+    }
+    for (const int material : *materials) {
+        console.print(toText(planned, material));
+    }
+    if (materials->empty()) {
+        console.print("no materials\n");
+    }
+    return kExitDone;
+}
+
+}  // namespace
+
+void addExplain(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<ExplainArguments>();
+    CLI::App& command =
+        addCommand(app, "explain", "Say which key and which shader each material gets, and what was dropped",
+                   "glint explain scene.gltf --material Leaves --alpha tested");
+    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addText(command, "--material", arguments->material, "NAME|INDEX",
+            "only this one; a number counts from 0 (default: all)");
+    addPlanOptions(command, arguments->plan);
+    addFlag(command, "--json", arguments->json, "print as JSON").group("Report");
+    command.callback([arguments, &chosen] {
+        chosen = [arguments](const Console& console) { return explain(console, *arguments); };
+    });
+}
+
+}  // namespace glint

@@ -1,0 +1,263 @@
+// glint inspect: what a package holds.
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/manifest.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "spirv/statistics.h"
+
+#include <glint/package.h>
+
+#include <fmt/format.h>
+
+#include <interop/scene.h>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace glint {
+
+namespace {
+
+using package::ModuleRole;
+
+struct InspectArguments {
+    std::string folder;
+    bool json = false;
+};
+
+struct Module {
+    const package::ModuleEntry* entry = nullptr;
+    SpirvStatistics statistics;
+};
+
+struct Contents {
+    const Package& package;
+    const Manifest& manifest;
+    std::vector<Module> modules;
+    std::map<std::uint32_t, std::set<std::uint32_t>> materials;  // by shader ID
+};
+
+const char* roleName(ModuleRole role) {
+    switch (role) {
+        case ModuleRole::GBufferVertex:
+            return "g-buffer vertex";
+        case ModuleRole::GBufferFragment:
+            return "g-buffer fragment";
+        case ModuleRole::Lighting:
+            return "lighting";
+        case ModuleRole::ReflectionRays:
+            return "reflection rays";
+        case ModuleRole::RayDispatch:
+            return "ray dispatch";
+        case ModuleRole::UberShade:
+            return "uber shade";
+        case ModuleRole::Trace:
+            return "trace";
+        case ModuleRole::BucketCount:
+            return "bucket count";
+        case ModuleRole::BucketOffset:
+            return "bucket offset";
+        case ModuleRole::BucketCopy:
+            return "bucket copy";
+        case ModuleRole::ShadeMiss:
+            return "shade miss";
+        case ModuleRole::ShadeCase:
+            return "shade case";
+        case ModuleRole::Compose:
+            return "compose";
+    }
+    return "unknown";
+}
+
+Result<Contents> gather(const Package& package, const Manifest& manifest) {
+    Contents contents{package, manifest, {}, {}};
+    for (const package::ModuleEntry& entry : package.modules()) {
+        const Result<SpirvStatistics> statistics = measureSpirv(package.spirv(entry.role, entry.shaderId));
+        if (!statistics) {
+            return statistics.error();
+        }
+        contents.modules.push_back({&entry, *statistics});
+    }
+    for (const package::PrimitiveEntry& primitive : package.primitives()) {
+        contents.materials[primitive.shaderId].insert(primitive.materialIndex);
+    }
+    return contents;
+}
+
+std::string nameOf(const Contents& contents, std::uint32_t material) {
+    const auto found = contents.manifest.materialNames.find(material);
+    return found != contents.manifest.materialNames.end() ? found->second
+                                                          : fmt::format("material {}", material);
+}
+
+std::vector<std::string> strategies(const Package& package) {
+    std::vector<std::string> names;
+    if (package.supports(package::kStrategyUber)) {
+        names.emplace_back("uber");
+    }
+    if (package.supports(package::kStrategyVisibility)) {
+        names.emplace_back("visibility");
+    }
+    return names;
+}
+
+// Modules that share a file count once.
+std::uint64_t spirvBytes(const Contents& contents, std::size_t& files) {
+    std::map<std::string_view, std::uint64_t> bytes;
+    for (const Module& module : contents.modules) {
+        bytes[contents.package.string(module.entry->file)] = module.entry->bytes;
+    }
+    std::uint64_t total = 0;
+    for (const auto& [file, size] : bytes) {
+        total += size;
+    }
+    files = bytes.size();
+    return total;
+}
+
+Json modulesToJson(const Contents& contents) {
+    Json list = Json::array();
+    for (const Module& module : contents.modules) {
+        const bool isCase = module.entry->role == ModuleRole::ShadeCase;
+        list.push_back(Json{{"role", roleName(module.entry->role)},
+                            {"shaderId", isCase ? Json(module.entry->shaderId) : Json(nullptr)},
+                            {"file", std::string(contents.package.string(module.entry->file))},
+                            {"bytes", module.entry->bytes},
+                            {"instructions", module.statistics.instructions},
+                            {"textureFetches", module.statistics.textureFetches},
+                            {"rayQueries", module.statistics.rayQueries},
+                            {"branches", module.statistics.branches}});
+    }
+    return list;
+}
+
+Json shadersToJson(const Contents& contents) {
+    Json list = Json::array();
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : contents.package.cases()) {
+        Json materials = Json::array();
+        const auto found = contents.materials.find(id);
+        if (found != contents.materials.end()) {
+            for (const std::uint32_t material : found->second) {
+                materials.push_back(Json{{"index", material}, {"name", nameOf(contents, material)}});
+            }
+        }
+        list.push_back(Json{{"id", id},
+                            {"name", std::string(contents.package.string(shader.name))},
+                            {"always", featuresToJson(shader.always)},
+                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"keys", shader.keyCount},
+                            {"materials", materials}});
+        ++id;
+    }
+    return list;
+}
+
+Json toJson(const Contents& contents, const std::string& folder) {
+    std::size_t files = 0;
+    const std::uint64_t bytes = spirvBytes(contents, files);
+    const Package& package = contents.package;
+    return {{"package", folder},
+            {"version", package::kVersion},
+            {"tool", contents.manifest.toolVersion},
+            {"strategies", strategies(package)},
+            {"merge", contents.manifest.merge},
+            {"alpha", package.alphaTested() ? "tested" : "opaque"},
+            {"counts",
+             {{"materials", package.materials().size()},
+              {"primitives", package.primitives().size()},
+              {"cases", package.caseCount()},
+              {"buckets", package.bucketCount()},
+              {"textures", package.textures().size()},
+              {"samplers", package.samplers().size()},
+              {"modules", package.modules().size()},
+              {"uniqueSpirv", files}}},
+            {"spirvBytes", bytes},
+            {"shaders", shadersToJson(contents)},
+            {"modules", modulesToJson(contents)}};
+}
+
+std::string shaderTable(const Contents& contents) {
+    std::vector<std::vector<std::string>> rows{{"id", "shader", "keys", "materials", "always", "sometimes"}};
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : contents.package.cases()) {
+        const auto found = contents.materials.find(id);
+        const std::size_t materials = found == contents.materials.end() ? 0 : found->second.size();
+        rows.push_back({fmt::format("{}", id), std::string(contents.package.string(shader.name)),
+                        fmt::format("{}", shader.keyCount), fmt::format("{}", materials),
+                        featureList(shader.always), featureList(shader.sometimes)});
+        ++id;
+    }
+    return formatTable(rows);
+}
+
+std::string moduleTable(const Contents& contents) {
+    std::vector<std::vector<std::string>> rows{
+        {"module", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
+    for (const Module& module : contents.modules) {
+        const bool isCase = module.entry->role == ModuleRole::ShadeCase;
+        const std::string id = isCase ? fmt::format(" {}", module.entry->shaderId) : std::string();
+        rows.push_back(
+            {roleName(module.entry->role) + id, std::string(contents.package.string(module.entry->file)),
+             fmt::format("{}", module.entry->bytes), fmt::format("{}", module.statistics.instructions),
+             fmt::format("{}", module.statistics.textureFetches),
+             fmt::format("{}", module.statistics.rayQueries), fmt::format("{}", module.statistics.branches)});
+    }
+    return formatTable(rows);
+}
+
+std::string toText(const Contents& contents, const std::string& folder) {
+    std::size_t files = 0;
+    const std::uint64_t bytes = spirvBytes(contents, files);
+    const Package& package = contents.package;
+    const std::string summary = formatFields(
+        {{"package", folder},
+         {"made by", fmt::format("glint {}, format {}", contents.manifest.toolVersion, package::kVersion)},
+         {"strategies", join(strategies(package))},
+         {"merge", contents.manifest.merge},
+         {"alpha", package.alphaTested() ? "tested" : "opaque"},
+         {"materials", fmt::format("{}", package.materials().size())},
+         {"primitives", fmt::format("{}", package.primitives().size())},
+         {"textures", fmt::format("{}", package.textures().size())},
+         {"cases", fmt::format("{}", package.caseCount())},
+         {"SPIR-V",
+          fmt::format("{} modules, {} unique, {}", package.modules().size(), files, formatBytes(bytes))}});
+    return summary + "\n" + shaderTable(contents) + "\n" + moduleTable(contents);
+}
+
+int inspect(const Console& console, const InspectArguments& arguments) {
+    const auto fail = [&](const Diagnostic& error) {
+        console.report(error);
+        return kExitFailed;
+    };
+    const Result<Package> package = Package::load(arguments.folder);
+    if (!package) {
+        return fail(package.error());
+    }
+    const Result<Manifest> manifest = readManifest(arguments.folder);
+    if (!manifest) {
+        return fail(manifest.error());
+    }
+    const Result<Contents> contents = gather(*package, *manifest);
+    if (!contents) {
+        return fail(contents.error());
+    }
+    console.print(arguments.json ? glint::toText(toJson(*contents, arguments.folder))
+                                 : toText(*contents, arguments.folder));
+    return kExitDone;
+}
+
+}  // namespace
+
+void addInspect(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<InspectArguments>();
+    CLI::App& command = addCommand(app, "inspect", "Show what a package holds", "glint inspect scene.glint");
+    addText(command, "DIR", arguments->folder, "DIR", "folder of the package").required();
+    addFlag(command, "--json", arguments->json, "print as JSON");
+    command.callback([arguments, &chosen] {
+        chosen = [arguments](const Console& console) { return inspect(console, *arguments); };
+    });
+}
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+#include "cli/manifest.h"
+
+#include "base/files.h"
+
+#include <glint/package_format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <exception>
+
+namespace glint {
+
+Result<Manifest> readManifest(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / package::kManifestFile;
+    const Result<Bytes> bytes = readFile(path);
+    if (!bytes) {
+        return bytes.error();
+    }
+    try {
+        const auto json = nlohmann::json::parse(bytes->begin(), bytes->end());
+        Manifest manifest;
+        manifest.toolVersion = json.at("toolVersion").get<std::string>();
+        manifest.merge = json.at("merge").get<std::string>();
+        for (const auto& shader : json.at("shaders")) {
+            for (const auto& material : shader.at("materials")) {
+                manifest.materialNames[material.at("index").get<std::uint32_t>()] =
+                    material.at("name").get<std::string>();
+            }
+        }
+        return manifest;
+    } catch (const std::exception& error) {
+        return makeError("manifest-format", path.string(),
+                         std::string("is no manifest that can be read: ") + error.what(),
+                         "compile the package again");
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,22 @@
+// What manifest.json says beyond tables.bin.
+#pragma once
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace glint {
+
+struct Manifest {
+    std::string toolVersion;
+    std::string merge;
+    std::map<std::uint32_t, std::string> materialNames;  // of the materials that shaders list
+};
+
+// Errors of readFile(), and "manifest-format" where the file is not JSON or lacks a member.
+Result<Manifest> readManifest(const std::filesystem::path& folder);
+
+}  // namespace glint

@@ -1,0 +1,59 @@
+// How every subcommand declares its options: choices, ranges and defaults are checked and stated in one
+// place.
+#pragma once
+
+#include "cli/console.h"
+#include "plan/plan.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// What a subcommand does once its command line is parsed; returns the exit code.
+using Action = std::function<int(const Console&)>;
+
+// A subcommand with an example at the end of its help.
+CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
+                     const std::string& example);
+
+// One of `choices`; the text in `value` is the default. A misspelt value suggests the nearest.
+CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
+                       const std::vector<std::string>& choices, const std::string& help);
+// Any of `choices`, separated by commas.
+CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
+                        const std::vector<std::string>& choices, const std::string& help);
+// A whole number within [min, max]; `value` is the default.
+CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_t& value, std::int64_t min,
+                        std::int64_t max, const std::string& help);
+// A number within [min, max].
+CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value, double min, double max,
+                     const std::string& help);
+// A path or a name: any text but the empty one.
+CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
+                     const std::string& help);
+// An image to write: error unless its extension is one of `extensions`.
+CLI::Option& addImageOutput(CLI::App& command, const std::string& flags, std::string& value,
+                            const std::vector<std::string>& extensions, const std::string& help);
+CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, const std::string& help);
+
+// Which permutations a scene has, and which share code: the same options for every command that plans.
+struct PlanArguments {
+    std::string merge = "family";
+    std::string alpha = "opaque";
+    PlanOptions options() const;
+};
+struct PlanFlags {
+    CLI::Option* merge;
+    CLI::Option* alpha;
+};
+PlanFlags addPlanOptions(CLI::App& command, PlanArguments& arguments);
+
+// A number within [min, max], the whole of `text`; NaN is outside of every range.
+bool parseReal(const std::string& text, double min, double max, double& value);
+
+}  // namespace glint

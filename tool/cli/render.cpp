@@ -1,0 +1,314 @@
+// glint render: a picture of a scene through the runtime.
+#include "cli/camera.h"
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/render_input.h"
+#include "cli/render_report.h"
+#include "cli/scene_view.h"
+#include "gltf/import.h"
+#include "image/image_file.h"
+#include "image/tone.h"
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+namespace glint {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kMaxExposure = 32.0;
+
+struct RenderArguments {
+    std::string scene;
+    std::string output;
+    std::string strategy = "visibility";
+    PlanArguments plan;
+    std::string package;
+    std::string size = "960x540";
+    std::int64_t samples = 1;
+    std::int64_t seed = 0;
+    std::string camera;
+    std::string exposure = "auto";
+    bool noReflections = false;
+    double maxRoughness = 0.3;
+    std::string sun = "auto";
+    bool validate = false;
+    std::string stats;
+    std::string device;
+    bool json = false;
+};
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// "960x540"; false unless it is two numbers that checkImageSize() takes.
+bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, width);
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') {
+        return false;
+    }
+    const auto second = std::from_chars(first.ptr + 1, end, height);
+    return second.ec == std::errc() && second.ptr == end && checkImageSize(width, height, "").ok();
+}
+
+package::Strategy strategyOf(const RenderArguments& arguments) {
+    return arguments.strategy == "uber" ? package::kStrategyUber : package::kStrategyVisibility;
+}
+
+SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
+    SceneViewData data = makeSceneView(scene);
+    if (arguments.sun == "on" || (arguments.sun == "auto" && scene.lights.empty())) {
+        data.lights.push_back(sunLight());
+    }
+    return data;
+}
+
+// The package that is asked for, checked, or one that is made now; fills in what the report says of it.
+Result<Package> obtainPackage(const RenderArguments& arguments, const Scene& scene, RenderReport& report) {
+    if (!arguments.package.empty()) {
+        Result<Package> package = Package::load(arguments.package);
+        if (!package) {
+            return package;
+        }
+        Status checked = checkPackage(*package, arguments.package, strategyOf(arguments), scene);
+        return checked ? std::move(package) : Result<Package>(checked.error());
+    }
+    const Clock::time_point start = Clock::now();
+    Result<Package> package = compileTemporary(scene, strategyOf(arguments), arguments.plan.options());
+    report.compileMs = millisecondsSince(start);
+    report.merge = arguments.plan.merge;
+    return package;
+}
+
+Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
+    HeadlessOptions options;
+    options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
+    options.deviceName = arguments.device;
+    return Context::createHeadless(options);
+}
+
+// Renders, and fills in what was measured.
+Result<LinearImage> renderFrame(Context& context, const Package& package, const SceneViewData& data,
+                                const RenderArguments& arguments, const CameraView& camera,
+                                RenderReport& report) {
+    const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(context, package, data.view());
+    if (!scene) {
+        return scene.error();
+    }
+    report.sceneStatistics = (*scene)->statistics();
+    const Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(context, package, **scene, {strategyOf(arguments), report.width, report.height});
+    if (!renderer) {
+        return renderer.error();
+    }
+    report.pipelineCreationMs = (*renderer)->pipelineCreationMs();
+
+    FrameOptions frame;
+    frame.camera = camera;
+    frame.maxReflectionRoughness = static_cast<float>(arguments.maxRoughness);
+    frame.reflections = !arguments.noReflections;
+    frame.seed = report.seed;
+    const Clock::time_point start = Clock::now();
+    Result<LinearImage> image = (*renderer)->render(frame, report.samples);
+    report.renderMs = millisecondsSince(start);
+    if (!image) {
+        return image;
+    }
+    Result<std::vector<PassTiming>> passes = (*renderer)->timings();
+    if (!passes) {
+        return passes.error();
+    }
+    Result<FrameCounters> counters = (*renderer)->counters();
+    if (!counters) {
+        return counters.error();
+    }
+    report.passes = std::move(*passes);
+    report.counters = std::move(*counters);
+    return image;
+}
+
+// Error "validation" with the number of messages, each of which is reported.
+Status checkValidation(const Console& console, const Context& context) {
+    const std::vector<std::string> messages = context.validationMessages();
+    for (const std::string& message : messages) {
+        console.report(makeWarning("validation", "", message));
+    }
+    if (messages.empty()) {
+        return okStatus();
+    }
+    return makeError("validation", "", fmt::format("the validation layers have {} messages", messages.size()),
+                     "this is a defect of Glint or of the driver: please report it");
+}
+
+Status writeResults(const RenderArguments& arguments, const LinearImage& image, RenderReport& report) {
+    report.exposure = automaticExposure(image);
+    if (arguments.exposure != "auto") {
+        parseReal(arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
+    }
+    if (Status written = writeImage(arguments.output, image, report.exposure); !written) {
+        return written;
+    }
+    return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
+}
+
+// Everything between the scene and the files.
+Status render(const Console& console, const RenderArguments& arguments, const Scene& scene,
+              RenderReport& report) {
+    const SceneViewData data = sceneView(arguments, scene);
+    const double aspect = static_cast<double>(report.width) / report.height;
+    const Result<CameraChoice> camera = chooseCamera(scene, data, arguments.camera, aspect);
+    if (!camera) {
+        return camera.error();
+    }
+    report.camera = camera->name;
+    // Before the compilation, which takes longer than finding out that there is no device.
+    const Result<std::unique_ptr<Context>> context = makeContext(arguments);
+    if (!context) {
+        return context.error();
+    }
+    report.device = (*context)->deviceName();
+    report.driver = (*context)->driverName();
+    console.progress("compiling " + arguments.scene);
+    const Result<Package> package = obtainPackage(arguments, scene, report);
+    if (!package) {
+        return package.error();
+    }
+    report.alpha = package->alphaTested() ? "tested" : "opaque";
+    report.cases = package->caseCount();
+    console.progress("rendering " + arguments.scene);
+    const Result<LinearImage> image = renderFrame(**context, *package, data, arguments, camera->view, report);
+    Status valid = checkValidation(console, **context);
+    if (!image) {
+        return image.error();
+    }
+    return valid ? writeResults(arguments, *image, report) : valid;
+}
+
+int run(const Console& console, const RenderArguments& arguments) {
+    RenderReport report;
+    report.scene = arguments.scene;
+    report.image = arguments.output;
+    report.strategy = arguments.strategy;
+    report.samples = static_cast<std::uint32_t>(arguments.samples);
+    report.seed = static_cast<std::uint32_t>(arguments.seed);
+    parseSize(arguments.size, report.width, report.height);
+
+    Status status = checkOutputFile(arguments.output);
+    if (status && !arguments.stats.empty()) {
+        status = checkOutputFile(arguments.stats);
+    }
+    if (!status) {
+        console.report(status.error());
+        return kExitFailed;
+    }
+    console.progress("reading " + arguments.scene);
+    ImportOptions import;
+    import.decodeImages = true;
+    const Result<Scene> scene = importScene(arguments.scene, import);
+    if (!scene) {
+        console.report(scene.error());
+        return kExitFailed;
+    }
+    console.report(scene->warnings);
+    status = render(console, arguments, *scene, report);
+    if (!status) {
+        console.report(status.error());
+        return kExitFailed;
+    }
+    console.print(arguments.json ? toText(toJson(report)) : toText(report));
+    return kExitDone;
+}
+
+void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
+    const std::string group = "Picture";
+    addText(command, "--size", arguments.size, "WxH",
+            "pixels, 1 to 16384 each way (default: " + arguments.size + ")")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                std::uint32_t width = 0;
+                std::uint32_t height = 0;
+                return parseSize(text, width, height) ? std::string()
+                                                      : "\"" + text + "\" is no size such as 960x540";
+            },
+            ""))
+        ->group(group);
+    addInteger(command, "--spp", arguments.samples, 1, 65536, "samples a pixel").group(group);
+    addInteger(command, "--seed", arguments.seed, 0, 0xFFFFFFFFLL, "of the random numbers").group(group);
+    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto",
+            "a camera of the scene by name or number from 0;\nauto: one that frames everything\n"
+            "(default: the first of the scene, else auto)")
+        .group(group);
+    addText(command, "--exposure", arguments.exposure, "auto|EV",
+            "stops, -32 to 32, of PNG files; auto: log-average luminance\nto 18 % grey (default: auto)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                double stops = 0.0;
+                return text == "auto" || parseReal(text, -kMaxExposure, kMaxExposure, stops)
+                           ? std::string()
+                           : "\"" + text + "\" is neither auto nor a number from -32 to 32";
+            },
+            ""))
+        ->group(group);
+    addFlag(command, "--no-reflections", arguments.noReflections, "send no reflection rays").group(group);
+    addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
+            "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
+        .group(group);
+    addChoice(command, "--sun", arguments.sun, {"auto", "on", "off"},
+              "add a directional light; auto: if the scene has no light")
+        .group(group);
+}
+
+void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
+    addText(command, "--device", arguments.device, "NAME",
+            "part of the GPU's name (default: the first that will do)")
+        .group("Device");
+    addFlag(command, "--validate", arguments.validate,
+            "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
+        .group("Device");
+    addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addFlag(command, "--json", arguments.json, "print times and counters as JSON").group("Report");
+}
+
+}  // namespace
+
+void addRender(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<RenderArguments>();
+    CLI::App& command =
+        addCommand(app, "render", "Render a scene with its compiled shaders",
+                   "glint render scene.gltf -o scene.png --size 1280x720 --spp 16 --strategy uber");
+    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
+                   "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
+                   "linear, 32-bit float")
+        .required();
+    addPictureOptions(command, *arguments);
+    addChoice(command, "--strategy", arguments->strategy, {"uber", "visibility"}, "how hits are shaded")
+        .group("Shaders");
+    const PlanFlags plan = addPlanOptions(command, arguments->plan);
+    addText(command, "--package", arguments->package, "DIR",
+            "use this package of the scene instead of compiling it\n(excludes --merge and --alpha)")
+        .group("Shaders");
+    addDeviceOptions(command, *arguments);
+    command.callback([arguments, plan, &chosen] {
+        for (const CLI::Option* option : {plan.merge, plan.alpha}) {
+            if (option->count() > 0 && !arguments->package.empty()) {
+                throw CLI::ExcludesError(option->get_name(), "--package");
+            }
+        }
+        chosen = [arguments](const Console& console) { return run(console, *arguments); };
+    });
+}
+
+}  // namespace glint

@@ -1,0 +1,75 @@
+#include "cli/render_input.h"
+
+#include "cli/temporary_folder.h"
+#include "emit/compile.h"
+#include "gltf/import.h"
+
+#include <fmt/format.h>
+
+namespace glint {
+
+namespace {
+
+Diagnostic mismatch(const std::filesystem::path& folder, const std::string& message) {
+    return makeError("package-mismatch", folder.string(), message,
+                     "compile the package again, or leave out --package");
+}
+
+FeatureMask maskOf(const package::PrimitiveEntry& entry) {
+    return FeatureMask{entry.featureLobes} | FeatureMask{entry.featureInputs} << 32U;
+}
+
+}  // namespace
+
+Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
+                    const Scene& scene) {
+    if (!package.supports(strategy)) {
+        return mismatch(folder, "was compiled without the strategy that is asked for");
+    }
+    if (package.materials().size() != scene.materials.size()) {
+        return mismatch(folder, fmt::format("has {} materials, but the scene has {}",
+                                            package.materials().size(), scene.materials.size()));
+    }
+    const KeyOptions keys{package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque};
+    for (const PrimitiveInputs& inputs : planningInputs(scene)) {
+        const package::PrimitiveEntry* entry = package.findPrimitive(
+            static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));
+        const std::string pointer = fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive);
+        if (entry == nullptr) {
+            return mismatch(folder, "does not know the scene's " + pointer);
+        }
+        const Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
+        if (entry->materialIndex != static_cast<std::uint32_t>(inputs.material) ||
+            maskOf(*entry) != makeKey(material, inputs, keys)) {
+            return mismatch(folder, "has another material or other features for the scene's " + pointer);
+        }
+    }
+    for (const package::TextureEntry& texture : package.textures()) {
+        if (texture.image >= scene.images.size()) {
+            return mismatch(folder, fmt::format("uses image {}, but the scene has {} images", texture.image,
+                                                scene.images.size()));
+        }
+    }
+    return okStatus();
+}
+
+Result<Package> compileTemporary(const Scene& scene, package::Strategy strategy, const PlanOptions& plan) {
+    const Result<TemporaryFolder> folder = TemporaryFolder::create();
+    if (!folder) {
+        return folder.error();
+    }
+    CompileSettings settings;
+    settings.strategies = strategy;
+    settings.plan = plan;
+    settings.emitHeader = false;
+    const Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    if (!compiled) {
+        return compiled.error();
+    }
+    if (Status written = writePackage(*compiled, folder->path()); !written) {
+        return written.error();
+    }
+    return Package::load(folder->path());
+}
+
+}  // namespace glint

@@ -1,0 +1,93 @@
+#include "cli/render_report.h"
+
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+namespace glint {
+
+namespace {
+
+template <typename T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+std::string milliseconds(double value) {
+    return fmt::format("{:.3f} ms", value);
+}
+
+}  // namespace
+
+Json toJson(const RenderReport& report) {
+    const GpuScene::Statistics& scene = report.sceneStatistics;
+    const FrameCounters& counters = report.counters;
+    Json passes = Json::array();
+    for (const PassTiming& pass : report.passes) {
+        passes.push_back(Json{{"name", pass.name}, {"milliseconds", pass.milliseconds}});
+    }
+    return {{"scene", report.scene},
+            {"image", report.image},
+            {"device", report.device},
+            {"driver", report.driver},
+            {"strategy", report.strategy},
+            {"merge", orNull(report.merge)},
+            {"alpha", report.alpha},
+            {"width", report.width},
+            {"height", report.height},
+            {"spp", report.samples},
+            {"seed", report.seed},
+            {"camera", report.camera},
+            {"exposure", report.exposure},
+            {"cases", report.cases},
+            {"compileMs", orNull(report.compileMs)},
+            {"sceneStatistics",
+             {{"triangles", scene.triangles},
+              {"geometries", scene.geometries},
+              {"instances", scene.instances},
+              {"blasCount", scene.blasCount},
+              {"blasBytes", scene.blasBytes},
+              {"blasUncompactedBytes", scene.blasUncompactedBytes},
+              {"blasBuildMs", scene.blasBuildMs},
+              {"tlasBuildMs", scene.tlasBuildMs}}},
+            {"pipelineCreationMs", report.pipelineCreationMs},
+            {"renderMs", report.renderMs},
+            {"passes", passes},
+            {"counters",
+             {{"rays", counters.rays},
+              {"skippedSky", counters.skippedSky},
+              {"skippedRough", counters.skippedRough},
+              {"skippedUnlit", counters.skippedUnlit},
+              {"unknownShader", counters.unknownShader},
+              {"buckets", counters.bucketCounts}}}};
+}
+
+std::string toText(const RenderReport& report) {
+    const GpuScene::Statistics& scene = report.sceneStatistics;
+    const FrameCounters& counters = report.counters;
+    std::vector<std::vector<std::string>> rows{
+        {"image",
+         fmt::format("{}, {} x {}, {} spp", report.image, report.width, report.height, report.samples)},
+        {"device", fmt::format("{} ({})", report.device, report.driver)},
+        {"strategy", fmt::format("{}, {} cases", report.strategy, report.cases)},
+        {"camera", report.camera},
+        {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
+        {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
+        {"BLAS", fmt::format("{} in {}", formatBytes(scene.blasBytes), milliseconds(scene.blasBuildMs))}};
+    if (report.compileMs) {
+        rows.push_back({"compile", milliseconds(*report.compileMs)});
+    }
+    rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
+    rows.push_back({"render", milliseconds(report.renderMs)});
+    for (const PassTiming& pass : report.passes) {
+        rows.push_back({"  " + pass.name, milliseconds(pass.milliseconds)});
+    }
+    rows.push_back({"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit)", counters.rays,
+                                        counters.skippedSky, counters.skippedRough, counters.skippedUnlit)});
+    if (counters.unknownShader > 0) {
+        rows.push_back({"unknown shader", fmt::format("{} hits", counters.unknownShader)});
+    }
+    return formatFields(rows);
+}
+
+}  // namespace glint

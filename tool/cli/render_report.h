@@ -1,0 +1,41 @@
+// What glint render says of a picture: the JSON of --stats and --json, and the table.
+#pragma once
+
+#include "cli/report.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct RenderReport {
+    std::string scene;
+    std::string image;
+    std::string device;
+    std::string driver;
+    std::string strategy;
+    std::optional<std::string> merge;  // absent: a package was given
+    std::string alpha;
+    std::uint32_t width = 0;   // pixels
+    std::uint32_t height = 0;  // pixels
+    std::uint32_t samples = 0;
+    std::uint32_t seed = 0;
+    std::string camera;
+    double exposure = 0.0;            // stops
+    std::optional<double> compileMs;  // absent: a package was given
+    std::uint32_t cases = 0;
+    GpuScene::Statistics sceneStatistics;
+    double pipelineCreationMs = 0.0;
+    double renderMs = 0.0;           // wall clock, all samples and the read-back
+    std::vector<PassTiming> passes;  // of the last sample
+    FrameCounters counters;          // of the last sample
+};
+
+Json toJson(const RenderReport& report);
+std::string toText(const RenderReport& report);
+
+}  // namespace glint

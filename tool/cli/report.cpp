@@ -1,0 +1,97 @@
+#include "cli/report.h"
+
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+namespace glint {
+
+std::string toText(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json toJson(const Diagnostic& diagnostic) {
+    static constexpr const char* kNames[] = {"note", "warning", "error"};
+    return {{"severity", kNames[static_cast<int>(diagnostic.severity)]},
+            {"id", diagnostic.id},
+            {"where", diagnostic.where},
+            {"message", diagnostic.message},
+            {"hint", diagnostic.hint}};
+}
+
+Json toJson(std::span<const Diagnostic> diagnostics) {
+    Json list = Json::array();
+    for (const Diagnostic& diagnostic : diagnostics) {
+        list.push_back(toJson(diagnostic));
+    }
+    return list;
+}
+
+Json featuresToJson(FeatureMask mask) {
+    Json list = Json::array();
+    for (const std::string_view name : featureNames(mask)) {
+        list.push_back(std::string(name));
+    }
+    return list;
+}
+
+Json materialsToJson(const Scene& scene, std::span<const int> materials) {
+    Json list = Json::array();
+    for (const int material : materials) {
+        list.push_back(Json{{"index", material}, {"name", materialName(scene, material)}});
+    }
+    return list;
+}
+
+Json droppedToJson(const Scene& scene, const Plan& plan) {
+    Json list = Json::array();
+    for (const DroppedFeature& dropped : plan.dropped) {
+        list.push_back(Json{{"feature", dropped.feature},
+                            {"reason", dropped.reason},
+                            {"materials", materialsToJson(scene, dropped.materials)}});
+    }
+    return list;
+}
+
+std::string featureList(FeatureMask mask) {
+    std::vector<std::string> names;
+    for (const std::string_view name : featureNames(mask)) {
+        names.emplace_back(name);
+    }
+    return join(names);
+}
+
+std::string materialName(const Scene& scene, int material) {
+    if (material == scene.defaultMaterial) {
+        return "(default)";
+    }
+    const std::string& name = scene.materials[static_cast<std::size_t>(material)].name;
+    return name.empty() ? fmt::format("material {}", material) : name;
+}
+
+std::string droppedText(const Plan& plan) {
+    std::vector<std::vector<std::string>> rows;
+    for (const DroppedFeature& dropped : plan.dropped) {
+        const std::size_t count = dropped.materials.size();
+        rows.push_back({"  " + dropped.feature, fmt::format("{} material{}", count, count == 1 ? "" : "s"),
+                        dropped.reason});
+    }
+    return rows.empty() ? std::string() : "\ndropped\n" + formatFields(rows);
+}
+
+Status checkOutputFile(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";
+    if (!std::filesystem::is_directory(parent, error)) {
+        return makeError("output-folder", file.string(), "is to be written where there is no folder",
+                         "make the folder " + parent.string() + " first");
+    }
+    if (std::filesystem::is_directory(file, error)) {
+        return makeError("output-folder", file.string(), "is a folder", "name a file within it");
+    }
+    return okStatus();
+}
+
+}  // namespace glint

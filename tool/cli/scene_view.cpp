@@ -1,0 +1,116 @@
+#include "cli/scene_view.h"
+
+#include <cmath>
+
+namespace glint {
+
+namespace {
+
+LightView toView(const Light& light) {
+    LightView view;
+    switch (light.type) {
+        case LightType::Directional:
+            view.type = LightView::Type::Directional;
+            break;
+        case LightType::Point:
+            view.type = LightView::Type::Point;
+            break;
+        case LightType::Spot:
+            view.type = LightView::Type::Spot;
+            break;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        view.intensity[i] = light.color[i] * light.intensity;
+    }
+    view.position = light.position;
+    view.direction = light.direction;
+    view.range = light.range;
+    view.innerConeAngle = light.innerConeAngle;
+    view.outerConeAngle = light.outerConeAngle;
+    return view;
+}
+
+PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t index) {
+    PrimitiveView view;
+    view.mesh = static_cast<std::uint32_t>(mesh);
+    view.primitive = static_cast<std::uint32_t>(index);
+    view.positions = primitive.positions;
+    view.normals = primitive.normals;
+    view.tangents = primitive.tangents;
+    view.texCoords0 = primitive.texCoords0;
+    view.texCoords1 = primitive.texCoords1;
+    view.colors = primitive.colors;
+    view.indices = primitive.indices;
+    return view;
+}
+
+bool hasTriangles(const Primitive& primitive) {
+    return primitive.indices.size() >= 3;
+}
+
+// For each mesh, whether a node places it.
+std::vector<bool> placedMeshes(const Scene& scene) {
+    std::vector<bool> placed(scene.meshes.size(), false);
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0) {
+            placed[static_cast<std::size_t>(node.mesh)] = true;
+        }
+    }
+    return placed;
+}
+
+}  // namespace
+
+SceneView SceneViewData::view() const {
+    return {primitives, instances, images, lights};
+}
+
+std::array<float, 12> toRows(const Matrix4& matrix) {
+    std::array<float, 12> rows{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 4; ++column) {
+            rows[4 * row + column] = static_cast<float>(matrix[4 * column + row]);
+        }
+    }
+    return rows;
+}
+
+SceneViewData makeSceneView(const Scene& scene) {
+    SceneViewData data;
+    const std::vector<bool> placed = placedMeshes(scene);
+    std::vector<bool> visible(scene.meshes.size(), false);
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        const std::vector<Primitive>& primitives = scene.meshes[mesh].primitives;
+        for (std::size_t index = 0; placed[mesh] && index < primitives.size(); ++index) {
+            if (hasTriangles(primitives[index])) {
+                data.primitives.push_back(toView(primitives[index], mesh, index));
+                visible[mesh] = true;
+            }
+        }
+    }
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0 && visible[static_cast<std::size_t>(node.mesh)]) {
+            data.instances.push_back({static_cast<std::uint32_t>(node.mesh), toRows(node.world)});
+        }
+    }
+    for (const Image& image : scene.images) {
+        data.images.push_back(
+            {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.rgba8});
+    }
+    for (const Light& light : scene.lights) {
+        data.lights.push_back(toView(light));
+    }
+    return data;
+}
+
+LightView sunLight() {
+    LightView sun;
+    sun.type = LightView::Type::Directional;
+    sun.intensity = {3.0F, 2.85F, 2.6F};
+    const std::array<float, 3> way{0.5F, -1.0F, -0.6F};
+    const float length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    sun.direction = {way[0] / length, way[1] / length, way[2] / length};
+    return sun;
+}
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+#include "cli/suggest.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace glint {
+
+int editDistance(std::string_view a, std::string_view b) {
+    // Row i holds the distances of the first i characters of `a` to every beginning of `b`.
+    std::vector<std::vector<int>> rows(a.size() + 1, std::vector<int>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                rows[i][j] = static_cast<int>(i + j);
+                continue;
+            }
+            const int substitution = a[i - 1] == b[j - 1] ? 0 : 1;
+            rows[i][j] =
+                std::min({rows[i - 1][j] + 1, rows[i][j - 1] + 1, rows[i - 1][j - 1] + substitution});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return rows[a.size()][b.size()];
+}
+
+std::string nearest(std::string_view word, std::span<const std::string> candidates) {
+    // Nobody mistypes a name this long by three edits; bounds the table of editDistance().
+    constexpr std::size_t kLongestWord = 64;
+    if (word.size() > kLongestWord) {
+        return {};
+    }
+    int best = std::clamp(static_cast<int>(word.size()) / 3, 1, 3) + 1;
+    std::string found;
+    for (const std::string& candidate : candidates) {
+        if (candidate.size() > kLongestWord) {
+            continue;
+        }
+        const int distance = editDistance(word, candidate);
+        if (distance < best) {
+            best = distance;
+            found = candidate;
+        }
+    }
+    return found;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
+    const std::string found = nearest(word, candidates);
+    return found.empty() ? std::string() : "; did you mean " + found + "?";
+}
+
+}  // namespace glint

@@ -1,0 +1,103 @@
+#include "emit/compile.h"
+
+#include "emit/header.h"
+#include "emit/manifest.h"
+#include "emit/modules.h"
+#include "emit/sources.h"
+#include "emit/tables.h"
+
+#include "gltf/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+Bytes toBytes(std::string_view text) {
+    return {text.begin(), text.end()};
+}
+
+Bytes toBytes(const std::vector<std::uint32_t>& words) {
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(words.data());
+    return {first, first + words.size() * sizeof(std::uint32_t)};
+}
+
+// The modules' files; modules of equal SPIR-V share one.
+void addModuleFiles(CompiledPackage& package, bool emitGlsl) {
+    std::set<std::string_view> written;
+    for (const CompiledModule& module : package.modules) {
+        if (written.insert(module.file).second) {
+            package.files.push_back({module.file, toBytes(module.spirv)});
+            package.spirvBytes += module.statistics.bytes;
+            ++package.uniqueSpirv;
+        }
+        if (emitGlsl) {
+            package.files.push_back({"glsl/" + module.name, toBytes(module.glsl)});
+        }
+    }
+}
+
+Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& settings) {
+    constexpr std::uint32_t kKnown = package::kStrategyUber | package::kStrategyVisibility;
+    if (settings.strategies == 0 || (settings.strategies & ~kKnown) != 0) {
+        return makeError("strategy", scene.path,
+                         fmt::format("{:#x} is no set of strategies", settings.strategies),
+                         "choose uber, visibility or both");
+    }
+    if (Status valid = checkScene(scene); !valid) {
+        return valid.error();
+    }
+    const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
+    CompiledPackage package;
+    package.plan = makePlan(scene.materials, primitives, settings.plan);
+    if (const auto excess = describeExcess(package.plan, settings.plan.merge, settings.maxShaders)) {
+        return makeError("max-shaders", scene.path, *excess);
+    }
+
+    // Plan to GLSL to SPIR-V.
+    const SourceSet sources = makeSourceSet(scene, package.plan, settings.plan.keys.alpha);
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, package.plan, sources, settings);
+    if (!modules) {
+        return modules.error();
+    }
+    Result<std::vector<CompiledModule>> compiled =
+        compileModules(std::move(*modules), settings.jobs, settings.debugInfo);
+    if (!compiled) {
+        return compiled.error();
+    }
+    package.modules = std::move(*compiled);
+
+    // Files; the manifest last, as it lists the others.
+    addModuleFiles(package, settings.emitGlsl);
+    package.files.push_back({package::kTablesFile,
+                             makeTables(scene, primitives, package.plan, package.modules, settings)});
+    if (settings.emitHeader) {
+        Result<std::string> header = makeHeader(scene, package.plan, sources, settings.plan);
+        if (!header) {
+            return header.error();
+        }
+        package.files.push_back({package::kHeaderFile, toBytes(*header)});
+    }
+    std::ranges::sort(package.files, {}, &PackageFile::name);
+    package.files.push_back({package::kManifestFile, toBytes(makeManifest(scene, package, settings))});
+    std::ranges::sort(package.files, {}, &PackageFile::name);
+    return package;
+}
+
+}  // namespace
+
+Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {
+    try {
+        return compile(scene, settings);
+    } catch (const std::exception& error) {
+        return makeError("internal", scene.path, fmt::format("compiling failed: {}", error.what()),
+                         "this is a defect of Glint, or memory ran out");
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,99 @@
+#include "emit/context.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace glint {
+
+namespace mustache = kainjow::mustache;
+
+namespace {
+
+constexpr std::size_t kMaxNameLength = 64;
+constexpr std::size_t kMaxNamesListed = 8;
+
+std::string featureList(FeatureMask mask) {
+    const std::vector<std::string_view> names = featureNames(mask);
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string materialList(const Scene& scene, const std::vector<int>& materials) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < materials.size() && i < kMaxNamesListed; ++i) {
+        const std::string& name = scene.materials[materials[i]].name;
+        names.push_back(name.empty() ? fmt::format("material {}", materials[i]) : commentText(name));
+    }
+    std::string list = fmt::format("{}", fmt::join(names, ", "));
+    if (materials.size() > kMaxNamesListed) {
+        list += fmt::format(" and {} more", materials.size() - kMaxNamesListed);
+    }
+    return list;
+}
+
+std::string literal(FeatureMask word) {
+    return fmt::format("{:#x}u", word);
+}
+
+}  // namespace
+
+std::string_view toolVersion() {
+    return GLINT_VERSION;
+}
+
+std::string commentText(std::string_view text) {
+    std::string line;
+    for (const char character : text.substr(0, kMaxNameLength)) {
+        const bool printable = character >= ' ' && character <= '~';
+        // A backslash could continue the comment's line, a star or slash end or open a comment.
+        const bool special = character == '\\' || character == '*' || character == '/';
+        line += !printable ? '?' : special ? '_' : character;
+    }
+    return text.size() > kMaxNameLength ? line + "..." : line;
+}
+
+void addCase(mustache::data& context, const Scene& scene, const Case& shaderCase) {
+    context.set("id", fmt::format("{}", shaderCase.shaderId));
+    context.set("name", shaderCase.name);
+    context.set("alwaysLobes", literal(shaderCase.always & kLobeMask));
+    context.set("alwaysInputs", literal(shaderCase.always >> 32U));
+    context.set("sometimesLobes", literal(shaderCase.sometimes & kLobeMask));
+    context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
+    context.set("always", featureList(shaderCase.always));
+    context.set("sometimes", featureList(shaderCase.sometimes));
+    context.set("materials", materialList(scene, shaderCase.materials));
+}
+
+mustache::data makeContext(const Scene& scene, const Plan& plan, const PlanOptions& options) {
+    mustache::data context;
+    context.set("version", std::string(toolVersion()));
+    context.set("source", commentText(std::filesystem::path(scene.path).filename().string()));
+    context.set("merge", std::string(toString(options.merge)));
+    context.set("alpha", std::string(toString(options.keys.alpha)));
+    mustache::data cases(mustache::data::type::list);
+    for (const Case& shaderCase : plan.cases) {
+        mustache::data entry;
+        addCase(entry, scene, shaderCase);
+        cases.push_back(entry);
+    }
+    context.set("cases", cases);
+    return context;
+}
+
+Result<std::string> renderTemplate(const SourceSet& sources, std::string_view name,
+                                   const mustache::data& context) {
+    const std::optional<std::string_view> text = sources.find(name);
+    if (!text) {
+        return makeError("template", std::string(name), "there is no such template");
+    }
+    mustache::mustache parsed{std::string(*text)};
+    if (!parsed.is_valid()) {
+        return makeError("template", std::string(name), parsed.error_message());
+    }
+    parsed.set_custom_escape([](const std::string& value) { return value; });
+    return parsed.render(context);
+}
+
+}  // namespace glint

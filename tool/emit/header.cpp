@@ -1,0 +1,129 @@
+#include "emit/header.h"
+
+#include "emit/context.h"
+#include "emit/interop_layouts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+namespace mustache = kainjow::mustache;
+
+namespace {
+
+// A string literal of ASCII. Octal escapes end after three digits, whatever follows.
+std::string quote(std::string_view text) {
+    std::string literal = "\"";
+    for (const char character : text) {
+        const auto code = static_cast<unsigned char>(character);
+        if (character == '"' || character == '\\') {
+            literal += '\\';
+            literal += character;
+        } else if (code < 0x20 || code > 0x7E || character == '?') {
+            literal += fmt::format("\\{:03o}", code);
+        } else {
+            literal += character;
+        }
+    }
+    return literal + "\"";
+}
+
+mustache::data featureList() {
+    std::vector<FeatureInfo> rows(featureTable().begin(), featureTable().end());
+    std::ranges::sort(rows, {}, &FeatureInfo::feature);
+    mustache::data list(mustache::data::type::list);
+    for (const FeatureInfo& info : rows) {
+        std::string name(info.name);
+        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+        mustache::data entry;
+        entry.set("name", name);
+        entry.set("bit", fmt::format("{}", static_cast<int>(info.feature)));
+        entry.set("gltf", commentText(info.gltf));
+        list.push_back(entry);
+    }
+    return list;
+}
+
+mustache::data caseMasks(const Plan& plan) {
+    mustache::data list(mustache::data::type::list);
+    for (const Case& shaderCase : plan.cases) {
+        mustache::data entry;
+        entry.set("name", shaderCase.name);
+        entry.set("always", fmt::format("{:#x}ULL", shaderCase.always));
+        entry.set("sometimes", fmt::format("{:#x}ULL", shaderCase.sometimes));
+        list.push_back(entry);
+    }
+    return list;
+}
+
+mustache::data materialList(const Scene& scene) {
+    mustache::data list(mustache::data::type::list);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        mustache::data entry;
+        entry.set("index", fmt::format("{}", i));
+        entry.set("literal", quote(scene.materials[i].name));
+        list.push_back(entry);
+    }
+    return list;
+}
+
+mustache::data layoutList() {
+    mustache::data list(mustache::data::type::list);
+    for (const StructLayout& layout : interopLayouts()) {
+        mustache::data members(mustache::data::type::list);
+        for (const MemberLayout& member : layout.members) {
+            mustache::data entry;
+            entry.set("member", std::string(member.name));
+            entry.set("offset", fmt::format("{}", member.offset));
+            members.push_back(entry);
+        }
+        mustache::data entry;
+        entry.set("struct", std::string(layout.name));
+        entry.set("bytes", fmt::format("{}", layout.bytes));
+        entry.set("members", members);
+        list.push_back(entry);
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string headerNamespace(const std::string& scenePath) {
+    std::string name = "scene_";
+    for (const char character : std::filesystem::path(scenePath).stem().string()) {
+        const bool valid = std::isalnum(static_cast<unsigned char>(character)) != 0;
+        // Never two underscores in a row, which C++ reserves.
+        if (valid || name.back() != '_') {
+            name += valid ? character : '_';
+        }
+    }
+    return name;
+}
+
+Result<std::string> makeHeader(const Scene& scene, const Plan& plan, const SourceSet& sources,
+                               const PlanOptions& options) {
+    Result<std::string> interop = interopDeclarations();
+    if (!interop) {
+        return interop.error();
+    }
+    mustache::data context = makeContext(scene, plan, options);
+    context.set("namespace", headerNamespace(scene.path));
+    context.set("interop", *interop);
+    context.set("features", featureList());
+    context.set("hasCases", !plan.cases.empty());
+    context.set("hasMaterials", !scene.materials.empty());
+    context.set("caseCount", fmt::format("{}", plan.cases.size()));
+    context.set("caseMasks", caseMasks(plan));
+    context.set("materialCount", fmt::format("{}", scene.materials.size()));
+    context.set("materialNames", materialList(scene));
+    context.set("layouts", layoutList());
+    return renderTemplate(sources, "glint_tables.h.mustache", context);
+}
+
+}  // namespace glint

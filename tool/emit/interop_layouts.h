@@ -1,0 +1,24 @@
+// Sizes and offsets of the structures that host and device share, as the C++ compiler lays them out.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace glint {
+
+struct MemberLayout {
+    std::string_view name;
+    std::uint32_t offset;  // bytes
+};
+
+struct StructLayout {
+    std::string_view name;
+    std::uint32_t bytes;
+    std::span<const MemberLayout> members;  // all of them, in order
+};
+
+// Every structure of shaders/interop. Static storage.
+std::span<const StructLayout> interopLayouts();
+
+}  // namespace glint

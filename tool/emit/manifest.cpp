@@ -1,0 +1,209 @@
+#include "emit/manifest.h"
+
+#include "emit/context.h"
+#include "emit/modules.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json strategyNames(std::uint32_t strategies) {
+    Json names = Json::array();
+    if ((strategies & package::kStrategyUber) != 0) {
+        names.push_back("uber");
+    }
+    if ((strategies & package::kStrategyVisibility) != 0) {
+        names.push_back("visibility");
+    }
+    return names;
+}
+
+// The path below the scene's folder; a package must not tell where it was built.
+std::string relativeName(const std::string& path, const std::string& scenePath) {
+    const std::filesystem::path folder = std::filesystem::path(scenePath).parent_path().lexically_normal();
+    const std::filesystem::path file = std::filesystem::path(path).lexically_normal();
+    const std::filesystem::path relative = folder.empty() ? file : file.lexically_relative(folder);
+    const bool isBelow = !relative.empty() && relative.is_relative() && *relative.begin() != "..";
+    return (isBelow ? relative : file.filename()).generic_string();
+}
+
+Json sources(const Scene& scene) {
+    Json list = Json::array();
+    for (const SourceFile& file : scene.files) {
+        list.push_back({{"file", relativeName(file.path, scene.path)},
+                        {"bytes", file.bytes},
+                        {"hash", hexHash(file.hash)}});
+    }
+    return list;
+}
+
+Json features() {
+    std::vector<FeatureInfo> rows(featureTable().begin(), featureTable().end());
+    std::ranges::sort(rows, {}, &FeatureInfo::feature);
+    Json list = Json::array();
+    for (const FeatureInfo& info : rows) {
+        list.push_back({{"name", info.name},
+                        {"bit", static_cast<int>(info.feature)},
+                        {"macro", info.macro},
+                        {"gltf", info.gltf},
+                        {"neutral", info.neutral}});
+    }
+    return list;
+}
+
+Json materialList(const Scene& scene, const std::vector<int>& materials) {
+    Json list = Json::array();
+    for (const int material : materials) {
+        list.push_back({{"index", material}, {"name", scene.materials[material].name}});
+    }
+    return list;
+}
+
+Json moduleEntry(const CompiledModule& module) {
+    return {{"name", module.name},
+            {"file", module.file},
+            {"bytes", module.statistics.bytes},
+            {"instructions", module.statistics.instructions},
+            {"textureFetches", module.statistics.textureFetches},
+            {"rayQueries", module.statistics.rayQueries},
+            {"branches", module.statistics.branches},
+            {"hash", hexHash(module.hash)}};
+}
+
+// A case's own modules by strategy. In the uber shader a case is a function, listed under passes.
+Json stages(const CompiledPackage& package, int shaderId) {
+    Json object = Json::object();
+    for (const CompiledModule& module : package.modules) {
+        if (module.role == package::ModuleRole::ShadeCase && module.shaderId == shaderId) {
+            object["visibility"] = moduleEntry(module);
+        }
+    }
+    return object;
+}
+
+Json shaders(const Scene& scene, const CompiledPackage& package) {
+    Json list = Json::array();
+    for (const Case& shaderCase : package.plan.cases) {
+        list.push_back({{"id", shaderCase.shaderId},
+                        {"name", shaderCase.name},
+                        {"always", featureNames(shaderCase.always)},
+                        {"sometimes", featureNames(shaderCase.sometimes)},
+                        {"keys", shaderCase.keys.size()},
+                        {"materials", materialList(scene, shaderCase.materials)},
+                        {"stages", stages(package, shaderCase.shaderId)}});
+    }
+    return list;
+}
+
+Json passes(const CompiledPackage& package) {
+    Json list = Json::array();
+    for (const CompiledModule& module : package.modules) {
+        if (module.role != package::ModuleRole::ShadeCase) {
+            Json entry = {{"role", toString(module.role)}};
+            entry.update(moduleEntry(module));
+            list.push_back(std::move(entry));
+        }
+    }
+    return list;
+}
+
+Json keys(const CompiledPackage& package) {
+    Json list = Json::array();
+    for (const Key& key : package.plan.keys) {
+        list.push_back({{"features", featureNames(key.mask)},
+                        {"mask", fmt::format("{:#018x}", key.mask)},
+                        {"primitives", key.primitives.size()},
+                        {"materials", key.materials},
+                        {"shaderId", key.shaderId}});
+    }
+    return list;
+}
+
+Json dropped(const CompiledPackage& package) {
+    Json list = Json::array();
+    for (const DroppedFeature& feature : package.plan.dropped) {
+        list.push_back({{"feature", feature.feature},
+                        {"materials", feature.materials},
+                        {"reason", feature.reason}});
+    }
+    return list;
+}
+
+Json effects() {
+    return Json::array({{{"name", "reflection"},
+                         {"chosen", true},
+                         {"reason", "reflection rays are part of every package"}}});
+}
+
+Json counts(const Scene& scene, const CompiledPackage& package) {
+    return {{"materials", scene.materials.size()},
+            {"keysPossible", package.plan.keysPossible},
+            {"keysPresent", package.plan.keys.size()},
+            {"cases", package.plan.cases.size()},
+            {"modules", package.modules.size()},
+            {"uniqueSpirv", package.uniqueSpirv},
+            {"spirvBytes", package.spirvBytes}};
+}
+
+Json files(const CompiledPackage& package) {
+    Json list = Json::array();
+    for (const PackageFile& file : package.files) {
+        list.push_back(
+            {{"file", file.name}, {"bytes", file.bytes.size()}, {"hash", hexHash(hashBytes(file.bytes))}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string makeManifest(const Scene& scene, const CompiledPackage& package,
+                         const CompileSettings& settings) {
+    Json manifest;
+    manifest["format"] = kManifestFormat;
+    manifest["version"] = package::kVersion;
+    manifest["toolVersion"] = toolVersion();
+    manifest["source"] = std::filesystem::path(scene.path).filename().string();
+    manifest["sources"] = sources(scene);
+    manifest["strategies"] = strategyNames(settings.strategies);
+    manifest["merge"] = toString(settings.plan.merge);
+    manifest["alpha"] = toString(settings.plan.keys.alpha);
+    manifest["counts"] = counts(scene, package);
+    manifest["buckets"] = 1 + package.plan.cases.size();
+    manifest["effects"] = effects();
+    manifest["features"] = features();
+    manifest["shaders"] = shaders(scene, package);
+    manifest["passes"] = passes(package);
+    manifest["keys"] = keys(package);
+    manifest["dropped"] = dropped(package);
+    manifest["files"] = files(package);
+    // Names come from the scene: what is not UTF-8 is replaced rather than refused.
+    return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
+    const Json manifest = Json::parse(text, nullptr, false);
+    if (!manifest.is_object() || manifest.value("format", Json()) != Json(kManifestFormat)) {
+        return {};
+    }
+    std::set<std::string, std::less<>> names{package::kManifestFile, package::kTablesFile};
+    const Json list = manifest.value("files", Json::array());
+    for (const Json& file : list) {
+        const Json name = file.is_object() ? file.value("file", Json()) : Json();
+        if (name.is_string()) {
+            names.insert(name.get<std::string>());
+        }
+    }
+    return names;
+}
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+// The shader modules of a package: which there are, and compiling them in parallel.
+#pragma once
+
+#include "emit/compile.h"
+#include "emit/sources.h"
+
+#include "spirv/compiler.h"
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// A module before it is compiled.
+struct ModuleSource {
+    package::ModuleRole role = package::ModuleRole::Trace;
+    int shaderId = 0;  // ShadeCase only
+    ShaderStage stage = ShaderStage::Compute;
+    std::string name;  // "uber.comp"
+    std::string glsl;  // flattened
+};
+
+// "GBufferVertex": stable, as in the manifest.
+std::string_view toString(package::ModuleRole role);
+
+// Those that the settings call for, in order of role, then shader ID. Errors as renderTemplate() and
+// flatten().
+Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Plan& plan,
+                                                    const SourceSet& sources,
+                                                    const CompileSettings& settings);
+
+// Compiles on `jobs` threads (0: one a core). The result, and which error is reported, do not depend on
+// `jobs`: of several, that of the first module. Modules of equal SPIR-V get the same `file`, that of the
+// first.
+Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
+                                                   bool debugInfo);
+
+}  // namespace glint

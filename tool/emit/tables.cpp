@@ -1,0 +1,251 @@
+#include "emit/tables.h"
+
+#include "emit/sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace glint {
+
+using namespace package;
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "tables.bin is little endian");
+
+// Strings, each once.
+class StringTable {
+public:
+    StringRef add(const std::string& text) {
+        const auto [place, isNew] = offsets_.try_emplace(text, static_cast<std::uint32_t>(bytes_.size()));
+        if (isNew) {
+            bytes_ += text;
+        }
+        return {place->second, static_cast<std::uint32_t>(text.size())};
+    }
+    const std::string& bytes() const {
+        return bytes_;
+    }
+
+private:
+    std::map<std::string, std::uint32_t> offsets_;
+    std::string bytes_;
+};
+
+// Collects sections; the header comes last, as it holds the hash of the rest.
+class TableWriter {
+public:
+    template <typename Elements>
+    void add(SectionKind kind, const Elements& elements) {
+        using Element = typename Elements::value_type;
+        static_assert(std::is_trivially_copyable_v<Element>);
+        sections_.push_back({kind, sizeof(Element), content_.size(), elements.size()});
+        const auto* const first = reinterpret_cast<const std::uint8_t*>(elements.data());
+        content_.insert(content_.end(), first, first + elements.size() * sizeof(Element));
+        constexpr std::size_t kAlignment = 8;
+        content_.resize((content_.size() + kAlignment - 1) / kAlignment * kAlignment);
+    }
+
+    Bytes finish(PackageHeader header) {
+        const std::size_t start = sizeof(PackageHeader) + sections_.size() * sizeof(PackageSection);
+        for (PackageSection& section : sections_) {
+            section.offset += start;
+        }
+        Bytes file(start);
+        std::memcpy(file.data() + sizeof header, sections_.data(), start - sizeof header);
+        file.insert(file.end(), content_.begin(), content_.end());
+        header.sectionCount = static_cast<std::uint32_t>(sections_.size());
+        header.fileBytes = file.size();
+        header.contentHash = hashBytes(std::span(file).subspan(sizeof header));
+        std::memcpy(file.data(), &header, sizeof header);
+        return file;
+    }
+
+private:
+    std::vector<PackageSection> sections_;
+    Bytes content_;
+};
+
+bool isColor(TextureSlot slot) {
+    return slot == TextureSlot::BaseColor || slot == TextureSlot::Emissive;
+}
+
+// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
+// points down; the extension's GLSL listing turns the other way, its text and test models this one
+// (KhronosGroup/glTF issue 1563).
+void setTransform(const TextureTransform& transform, gpu::TextureRecord& record) {
+    const double sine = std::sin(static_cast<double>(transform.rotation));
+    const double cosine = std::cos(static_cast<double>(transform.rotation));
+    const double scaleU = transform.scale[0];
+    const double scaleV = transform.scale[1];
+    record.rowU = {static_cast<float>(cosine * scaleU), static_cast<float>(sine * scaleV),
+                   transform.offset[0]};
+    record.rowV = {static_cast<float>(-sine * scaleU), static_cast<float>(cosine * scaleV),
+                   transform.offset[1]};
+}
+
+gpu::MaterialRecord makeRecord(const Material& material) {
+    gpu::MaterialRecord record{};
+    const auto& base = material.baseColorFactor;
+    const auto& emissive = material.emissiveFactor;
+    record.baseColorFactor = {base[0], base[1], base[2], base[3]};
+    record.emissiveFactor = {emissive[0], emissive[1], emissive[2]};
+    record.emissiveStrength = material.emissiveStrength;
+    record.metallicFactor = material.metallicFactor;
+    record.roughnessFactor = material.roughnessFactor;
+    record.normalScale = material.normalScale;
+    record.occlusionStrength = material.occlusionStrength;
+    record.alphaCutoff = material.alphaCutoff;
+    return record;
+}
+
+std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPolicy alpha) {
+    const bool tested = alpha == AlphaPolicy::Tested && (key & bit(Feature::AlphaMask)) != 0;
+    return (tested ? gpu::kGeometryAlphaTested : 0U) |
+           (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
+           (material.alphaMode == AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
+}
+
+std::vector<PrimitiveEntry> makePrimitives(const Scene& scene, std::span<const PrimitiveInputs> primitives,
+                                           const Plan& plan, AlphaPolicy alpha) {
+    std::vector<PrimitiveEntry> entries;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const PrimitiveInputs& inputs = primitives[i];
+        const Key& key = plan.keys[plan.keyOfPrimitive[i]];
+        const Material& material = scene.materials[inputs.material];
+        PrimitiveEntry entry{};
+        entry.mesh = static_cast<std::uint32_t>(inputs.mesh);
+        entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
+        entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
+        entry.materialIndex = static_cast<std::uint32_t>(inputs.material);
+        entry.featureLobes = static_cast<std::uint32_t>(key.mask & kLobeMask);
+        entry.featureInputs = static_cast<std::uint32_t>(key.mask >> 32U);
+        entry.geometryFlags = geometryFlags(material, key.mask, alpha);
+        entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
+        entries.push_back(entry);
+    }
+    std::ranges::sort(entries, {}, [](const PrimitiveEntry& entry) {
+        return std::pair(entry.mesh, entry.primitive);
+    });
+    return entries;
+}
+
+std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
+    std::vector<SamplerEntry> entries;
+    for (const Sampler& sampler : scene.samplers) {
+        entries.push_back(
+            {static_cast<std::uint32_t>(sampler.wrapU), static_cast<std::uint32_t>(sampler.wrapV),
+             static_cast<std::uint32_t>(sampler.magnification),
+             static_cast<std::uint32_t>(sampler.minification), static_cast<std::uint32_t>(sampler.mip),
+             sampler.mipmapped ? 1U : 0U});
+    }
+    return entries;
+}
+
+Diagnostic indexError(const Scene& scene, std::string what) {
+    return makeError("scene-index", scene.path, std::move(what), "import the scene again");
+}
+
+bool within(int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
+}  // namespace
+
+Status checkScene(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        const Texture& texture = scene.textures[i];
+        if (!within(texture.image, scene.images.size()) || !within(texture.sampler, scene.samplers.size())) {
+            return indexError(scene, fmt::format("texture {} has no image or no sampler", i));
+        }
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        for (const TextureInfo& info : scene.materials[i].textures) {
+            if (info.texture >= 0 && !within(info.texture, scene.textures.size())) {
+                return indexError(scene, fmt::format("material {} has no texture {}", i, info.texture));
+            }
+        }
+    }
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) {
+            if (!within(primitive.material, scene.materials.size())) {
+                return indexError(scene, fmt::format("{} has no material {}", primitive.pointer,
+                                                     primitive.material));
+            }
+        }
+    }
+    return okStatus();
+}
+
+MaterialTables makeMaterialTables(const Scene& scene) {
+    MaterialTables tables;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
+    for (const Material& material : scene.materials) {
+        gpu::MaterialRecord record = makeRecord(material);
+        for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+            const TextureInfo& info = material.textures[slot];
+            if (info.texture < 0) {
+                continue;
+            }
+            const Texture& texture = scene.textures[info.texture];
+            const TextureEntry entry{static_cast<std::uint32_t>(texture.image),
+                                     isColor(static_cast<TextureSlot>(slot)) ? 1U : 0U};
+            const auto [place, isNew] = indexOf.try_emplace(
+                {entry.image, entry.srgb}, static_cast<std::uint32_t>(tables.textures.size()));
+            if (isNew) {
+                tables.textures.push_back(entry);
+            }
+            record.textures[slot].textureIndex = place->second;
+            record.textures[slot].samplerIndex = static_cast<std::uint32_t>(texture.sampler);
+            record.textures[slot].texCoord = static_cast<std::uint32_t>(info.texCoord);
+            setTransform(info.transform, record.textures[slot]);
+        }
+        tables.materials.push_back(record);
+    }
+    return tables;
+}
+
+Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives, const Plan& plan,
+                 std::span<const CompiledModule> modules, const CompileSettings& settings) {
+    StringTable strings;
+    std::vector<ModuleEntry> moduleEntries;
+    for (const CompiledModule& module : modules) {
+        moduleEntries.push_back({module.role, static_cast<std::uint32_t>(module.shaderId),
+                                 strings.add(module.file), module.statistics.bytes, module.hash});
+    }
+    std::vector<CaseEntry> cases;
+    for (const Case& shaderCase : plan.cases) {
+        cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
+                         static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
+    }
+    const MaterialTables materials = makeMaterialTables(scene);
+
+    const AlphaPolicy alpha = settings.plan.keys.alpha;
+    TableWriter writer;
+    writer.add(SectionKind::Modules, moduleEntries);
+    writer.add(SectionKind::Materials, materials.materials);
+    writer.add(SectionKind::Primitives, makePrimitives(scene, primitives, plan, alpha));
+    writer.add(SectionKind::Textures, materials.textures);
+    writer.add(SectionKind::Samplers, makeSamplers(scene));
+    writer.add(SectionKind::Strings, strings.bytes());
+    writer.add(SectionKind::Cases, cases);
+
+    PackageHeader header{};
+    std::memcpy(header.magic, kMagic, sizeof header.magic);
+    header.version = kVersion;
+    header.strategies = settings.strategies;
+    header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
+    header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
+    header.interopHash = static_cast<std::uint32_t>(interopHash());
+    return writer.finish(header);
+}
+
+}  // namespace glint

@@ -1,0 +1,29 @@
+// tables.bin: the binary side of a package (runtime/include/glint/package_format.h).
+#pragma once
+
+#include "emit/compile.h"
+
+#include <interop/scene.h>
+
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// Materials as the device sees them, and the images they refer to.
+struct MaterialTables {
+    std::vector<gpu::MaterialRecord> materials;
+    std::vector<package::TextureEntry> textures;  // in order of first use
+};
+
+// Base colour and emissive textures are sRGB, the others linear. Requires a scene that checkScene() accepts.
+MaterialTables makeMaterialTables(const Scene& scene);
+
+// Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
+Status checkScene(const Scene& scene);
+
+// The file's bytes.
+Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives, const Plan& plan,
+                 std::span<const CompiledModule> modules, const CompileSettings& settings);
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+// Typed reads of accessors, every byte checked to be inside its buffer view.
+#pragma once
+
+#include "gltf/document.h"
+
+#include <glint/result.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace glint::gltf {
+
+struct FloatElements {
+    std::size_t components = 0;  // 1 to 4
+    std::size_t count = 0;
+    std::vector<float> values;  // components * count
+};
+
+// How integers that are not marked as normalised become floats.
+enum class Integers : std::uint8_t { AsValues, Normalized };
+
+// Reads a vector or scalar accessor of any component type but 32-bit integers. Normalised integers map to
+// [0, 1] or [-1, 1]; floats come as stored, NaN and infinities too.
+Result<FloatElements> readFloats(Document& document, int accessor, Integers integers = Integers::AsValues);
+
+struct IndexElements {
+    std::vector<std::uint32_t> values;
+    std::uint32_t restart = 0;  // the component type's largest value, which glTF forbids
+};
+
+// Reads a scalar accessor of unsigned integers.
+Result<IndexElements> readIndices(Document& document, int accessor);
+
+// Elements of the accessor, read or not.
+std::size_t elementCount(const Document& document, int accessor);
+
+}  // namespace glint::gltf

@@ -1,0 +1,30 @@
+// The outer layer of a glTF file: GLB chunks, and JSON text into values.
+#pragma once
+
+#include "base/files.h"
+#include "gltf/schema.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::gltf {
+
+struct Container {
+    std::span<const std::uint8_t> json;
+    std::optional<std::span<const std::uint8_t>> binary;  // the BIN chunk
+};
+
+// Splits a GLB; a file without GLB's magic number is JSON as a whole. The spans view `bytes`.
+// Errors: "glb-version", "glb-length", "glb-chunk".
+Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std::string& file,
+                                 std::vector<Diagnostic>& warnings);
+
+// Errors: "json-depth", "json-syntax", "json-type" (the root is no object).
+Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file);
+
+}  // namespace glint::gltf

@@ -1,0 +1,118 @@
+#include "gltf/import.h"
+
+#include "gltf/document.h"
+#include "gltf/materials.h"
+#include "gltf/meshes.h"
+#include "gltf/nodes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+using gltf::arrayMember;
+using gltf::Document;
+using gltf::Json;
+
+bool hasMorphTargets(const Json& mesh) {
+    const Json& primitives = arrayMember(mesh, "primitives");
+    return std::any_of(primitives.begin(), primitives.end(),
+                       [](const Json& primitive) { return !arrayMember(primitive, "targets").empty(); });
+}
+
+// One warning for each kind of movement that a still picture leaves out.
+void warnOfMotion(Document& document) {
+    const Json& root = document.json();
+    if (!arrayMember(root, "animations").empty()) {
+        document.warn("animation-ignored", "/animations",
+                      "animations are left out: nodes stay at their rest pose");
+    }
+    if (!arrayMember(root, "skins").empty()) {
+        document.warn("skin-ignored", "/skins", "skins are left out: meshes keep their bind pose");
+    }
+    const Json& meshes = arrayMember(root, "meshes");
+    const auto morphed = std::find_if(meshes.begin(), meshes.end(), hasMorphTargets);
+    if (morphed != meshes.end()) {
+        document.warn("morph-ignored", fmt::format("/meshes/{}", morphed - meshes.begin()),
+                      "morph targets are left out: meshes keep their base shape");
+    }
+}
+
+Status fillScene(Document& document, Scene& scene) {
+    warnOfMotion(document);
+    if (Status status = importMaterials(document, scene); !status) {
+        return status;
+    }
+    if (Status status = importNodes(document, scene); !status) {
+        return status;
+    }
+    std::vector<bool> placed(document.model().meshes.size());
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0) {
+            placed[static_cast<std::size_t>(node.mesh)] = true;
+        }
+    }
+    const Result<bool> needsDefault = importMeshes(document, placed, scene);
+    if (!needsDefault) {
+        return needsDefault.error();
+    }
+    if (*needsDefault) {
+        scene.defaultMaterial = static_cast<int>(scene.materials.size());
+        scene.materials.emplace_back().name = "default";
+    }
+    scene.files = document.files();
+    scene.warnings = std::move(document.warnings());
+    return okStatus();
+}
+
+}  // namespace
+
+Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
+    // The JSON library and the allocator throw; nothing may leave this function.
+    try {
+        const auto document = Document::open(path, options);
+        if (!document) {
+            return document.error();
+        }
+        Scene scene;
+        scene.path = path.string();
+        if (Status status = fillScene(**document, scene); !status) {
+            return status.error();
+        }
+        return scene;
+    } catch (const std::bad_alloc&) {
+        return makeError("out-of-memory", path.string(), "the scene does not fit into memory",
+                         "simplify the scene, or use a machine with more memory");
+    } catch (const std::exception& exception) {
+        return makeError("gltf", path.string(), exception.what(),
+                         "export the scene again; the Khronos glTF validator explains the rules");
+    }
+}
+
+std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
+    std::vector<PrimitiveInputs> inputs;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        for (std::size_t i = 0; i < scene.meshes[mesh].primitives.size(); ++i) {
+            const Primitive& primitive = scene.meshes[mesh].primitives[i];
+            PrimitiveInputs input;
+            input.mesh = static_cast<int>(mesh);
+            input.primitive = static_cast<int>(i);
+            input.material = primitive.material;
+            input.hasNormals = !primitive.normals.empty();
+            input.hasTangents = !primitive.tangents.empty();
+            input.hasTexCoords0 = !primitive.texCoords0.empty();
+            input.hasTexCoords1 = !primitive.texCoords1.empty();
+            input.colors = primitive.colorContent;
+            inputs.push_back(input);
+        }
+    }
+    return inputs;
+}
+
+}  // namespace glint

@@ -1,0 +1,162 @@
+#include "gltf/textures.h"
+
+#include "gltf/images.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+std::optional<Wrap> wrapOf(int value) {
+    switch (value) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return Wrap::Repeat;
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Wrap::ClampToEdge;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Wrap::MirroredRepeat;
+        default:
+            return std::nullopt;
+    }
+}
+
+bool setMinification(int value, Sampler& sampler) {
+    switch (value) {
+        case -1:
+            return true;
+        case TINYGLTF_TEXTURE_FILTER_NEAREST:
+        case TINYGLTF_TEXTURE_FILTER_LINEAR:
+            sampler.mipmapped = false;
+            sampler.mip = Filter::Nearest;
+            sampler.minification =
+                value == TINYGLTF_TEXTURE_FILTER_NEAREST ? Filter::Nearest : Filter::Linear;
+            return true;
+        case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
+            sampler.minification = Filter::Nearest;
+            sampler.mip = Filter::Nearest;
+            return true;
+        case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
+            sampler.mip = Filter::Nearest;
+            return true;
+        case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
+            sampler.minification = Filter::Nearest;
+            return true;
+        case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool setMagnification(int value, Sampler& sampler) {
+    if (value == TINYGLTF_TEXTURE_FILTER_NEAREST) {
+        sampler.magnification = Filter::Nearest;
+    }
+    return value == -1 || value == TINYGLTF_TEXTURE_FILTER_NEAREST || value == TINYGLTF_TEXTURE_FILTER_LINEAR;
+}
+
+}  // namespace
+
+void importSamplers(Document& document, Scene& scene) {
+    for (std::size_t i = 0; i < document.model().samplers.size(); ++i) {
+        const tinygltf::Sampler& source = document.model().samplers[i];
+        const auto warnUnknown = [&](const char* member, int value) {
+            document.warn("sampler-value", fmt::format("/samplers/{}/{}", i, member),
+                          fmt::format("{} is no known value; the default is used", value));
+        };
+        Sampler sampler;
+        const auto wrapU = wrapOf(source.wrapS);
+        const auto wrapV = wrapOf(source.wrapT);
+        sampler.wrapU = wrapU.value_or(Wrap::Repeat);
+        sampler.wrapV = wrapV.value_or(Wrap::Repeat);
+        if (!wrapU) {
+            warnUnknown("wrapS", source.wrapS);
+        }
+        if (!wrapV) {
+            warnUnknown("wrapT", source.wrapT);
+        }
+        if (!setMinification(source.minFilter, sampler)) {
+            warnUnknown("minFilter", source.minFilter);
+        }
+        if (!setMagnification(source.magFilter, sampler)) {
+            warnUnknown("magFilter", source.magFilter);
+        }
+        scene.samplers.push_back(sampler);
+    }
+}
+
+TextureTable::TextureTable(Document& document, Scene& scene)
+    : document_(document),
+      scene_(scene),
+      textures_(arraySize(document.json(), "/textures")),
+      images_(arraySize(document.json(), "/images")) {}
+
+Result<int> TextureTable::use(int texture) {
+    std::optional<int>& known = textures_[static_cast<std::size_t>(texture)];
+    if (!known) {
+        const Result<int> index = append(texture);
+        if (!index) {
+            return index;
+        }
+        known = *index;
+    }
+    return *known;
+}
+
+Result<int> TextureTable::append(int texture) {
+    const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(texture)];
+    const std::string pointer = fmt::format("/textures/{}", texture);
+    const char* effect = "materials render without it";
+    if (source.source < 0) {
+        const Json* extensions =
+            find(document_.json()["textures"][static_cast<std::size_t>(texture)], "extensions");
+        const bool extended = extensions != nullptr && !extensions->empty();
+        document_.warn("texture-source", pointer,
+                       extended
+                           ? fmt::format("has a source only through {}, which Glint does not support; {}",
+                                         extensions->begin().key(), effect)
+                           : fmt::format("has no source; {}", effect),
+                       "store the image as PNG or JPEG");
+        return -1;
+    }
+    if (!isDecodableImage(document_, source.source)) {
+        document_.warn(
+            "texture-source", pointer,
+            fmt::format("/images/{} has a format that Glint does not read; {}", source.source, effect),
+            "store the image as PNG or JPEG");
+        return -1;
+    }
+    const Result<int> image = useImage(source.source);
+    if (!image) {
+        return image;
+    }
+    int sampler = source.sampler;
+    if (sampler < 0) {
+        if (!defaultSampler_) {
+            defaultSampler_ = static_cast<int>(scene_.samplers.size());
+            scene_.samplers.emplace_back();
+        }
+        sampler = *defaultSampler_;
+    }
+    scene_.textures.push_back({*image, sampler});
+    return static_cast<int>(scene_.textures.size()) - 1;
+}
+
+Result<int> TextureTable::useImage(int image) {
+    std::optional<int>& known = images_[static_cast<std::size_t>(image)];
+    if (!known) {
+        Result<Image> imported = importImage(document_, image);
+        if (!imported) {
+            return imported.error();
+        }
+        known = static_cast<int>(scene_.images.size());
+        scene_.images.push_back(std::move(*imported));
+    }
+    return *known;
+}
+
+}  // namespace glint::gltf

@@ -1,0 +1,27 @@
+// 4 x 4 transforms in double precision, column-major as in glTF.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <array>
+#include <optional>
+
+namespace glint::gltf {
+
+using Double3 = std::array<double, 3>;
+
+Matrix4 identity();
+Matrix4 multiply(const Matrix4& a, const Matrix4& b);
+// T * R * S; `rotation` is a unit quaternion (x, y, z, w).
+Matrix4 compose(const Double3& translation, const std::array<double, 4>& rotation, const Double3& scale);
+// Whether every element fits into a float.
+bool fitsFloat(const Matrix4& matrix);
+
+// Nothing where the vector is shorter than the least normal float, or not finite.
+std::optional<Double3> normalized(const Double3& v);
+
+// The transform's position and directions, without scale, shear or mirroring: Z stays, Y is turned to a right
+// angle with it, X follows. Nothing where Y and Z don't span a plane.
+std::optional<Matrix4> rigidPart(const Matrix4& matrix);
+
+}  // namespace glint::gltf

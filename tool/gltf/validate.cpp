@@ -1,0 +1,284 @@
+#include "gltf/validate.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace glint::gltf {
+
+namespace {
+
+// Above this, tinygltf's int no longer holds the value.
+constexpr double kMaxInt = 2147483647.0;
+// Above this, a double skips integers.
+constexpr double kMaxSize = 9007199254740991.0;
+
+constexpr Rule text(std::string_view name, bool required = false) {
+    return {.name = name, .kind = Kind::Text, .required = required};
+}
+constexpr Rule boolean(std::string_view name) {
+    return {.name = name, .kind = Kind::Bool};
+}
+constexpr Rule number(std::string_view name, bool required = false) {
+    return {.name = name, .kind = Kind::Number, .required = required};
+}
+constexpr Rule numbers(std::string_view name, std::size_t length) {
+    return {.name = name, .kind = Kind::Numbers, .length = length};
+}
+constexpr Rule integer(std::string_view name, double min, double max, bool required = false) {
+    return {.name = name, .kind = Kind::Integer, .required = required, .min = min, .max = max};
+}
+constexpr Rule size(std::string_view name, double min = 0.0, bool required = false) {
+    return integer(name, min, kMaxSize, required);
+}
+constexpr Rule index(std::string_view name, std::string_view target, bool required = false) {
+    return {.name = name, .kind = Kind::Index, .required = required, .target = target};
+}
+constexpr Rule indices(std::string_view name, std::string_view target) {
+    return {.name = name, .kind = Kind::Indices, .target = target};
+}
+constexpr Rule object(std::string_view name, std::span<const Rule> rules, bool required = false) {
+    return {.name = name, .kind = Kind::Object, .required = required, .rules = rules};
+}
+constexpr Rule objects(std::string_view name, std::span<const Rule> rules) {
+    return {.name = name, .kind = Kind::Objects, .rules = rules};
+}
+
+// Buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an int.
+constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
+constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
+                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
+constexpr std::array kSparseIndices{index("bufferView", "/bufferViews", true),
+                                    integer("byteOffset", 0.0, kMaxInt),
+                                    integer("componentType", 0.0, kMaxInt, true)};
+constexpr std::array kSparseValues{index("bufferView", "/bufferViews", true),
+                                   integer("byteOffset", 0.0, kMaxInt)};
+constexpr std::array kSparse{integer("count", 0.0, kMaxInt, true), object("indices", kSparseIndices, true),
+                             object("values", kSparseValues, true)};
+constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
+                               size("byteOffset"),
+                               integer("componentType", 0.0, kMaxInt, true),
+                               size("count", 1.0, true),
+                               text("type", true),
+                               boolean("normalized"),
+                               object("sparse", kSparse)};
+
+// Meshes
+constexpr std::array kAttributeRules{index("POSITION", "/accessors"),   index("NORMAL", "/accessors"),
+                                     index("TANGENT", "/accessors"),    index("TEXCOORD_0", "/accessors"),
+                                     index("TEXCOORD_1", "/accessors"), index("COLOR_0", "/accessors")};
+constexpr std::array kPrimitive{object("attributes", kAttributeRules, true), index("indices", "/accessors"),
+                                index("material", "/materials"), integer("mode", 0.0, kMaxInt)};
+constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive)};
+
+// Materials and textures
+constexpr std::array kTransform{numbers("offset", 2), number("rotation"), numbers("scale", 2),
+                                integer("texCoord", 0.0, kMaxInt)};
+constexpr std::array kTextureInfoExtensions{object("KHR_texture_transform", kTransform)};
+constexpr std::array kTextureInfo{index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
+                                  number("scale"), number("strength"),
+                                  object("extensions", kTextureInfoExtensions)};
+constexpr std::array kMetallicRoughness{numbers("baseColorFactor", 4), number("metallicFactor"),
+                                        number("roughnessFactor"), object("baseColorTexture", kTextureInfo),
+                                        object("metallicRoughnessTexture", kTextureInfo)};
+constexpr std::array kEmissiveStrength{number("emissiveStrength")};
+constexpr std::array kMaterialExtensions{object("KHR_materials_emissive_strength", kEmissiveStrength),
+                                         object("KHR_materials_unlit", {})};
+constexpr std::array kMaterial{text("name"),
+                               object("pbrMetallicRoughness", kMetallicRoughness),
+                               object("normalTexture", kTextureInfo),
+                               object("occlusionTexture", kTextureInfo),
+                               object("emissiveTexture", kTextureInfo),
+                               numbers("emissiveFactor", 3),
+                               text("alphaMode"),
+                               number("alphaCutoff"),
+                               boolean("doubleSided"),
+                               object("extensions", kMaterialExtensions)};
+constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
+                              object("extensions", {})};
+constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
+                              integer("wrapS", 0.0, kMaxInt), integer("wrapT", 0.0, kMaxInt)};
+constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
+
+// Nodes, cameras, lights
+constexpr std::array kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights", true)};
+constexpr std::array kNodeExtensions{object("KHR_lights_punctual", kNodeLight)};
+constexpr std::array kNode{text("name"),
+                           index("mesh", "/meshes"),
+                           index("camera", "/cameras"),
+                           indices("children", "/nodes"),
+                           numbers("matrix", 16),
+                           numbers("translation", 3),
+                           numbers("rotation", 4),
+                           numbers("scale", 3),
+                           object("extensions", kNodeExtensions)};
+constexpr std::array kScene{text("name"), indices("nodes", "/nodes")};
+constexpr std::array kPerspective{number("yfov", true), number("znear", true), number("zfar")};
+constexpr std::array kOrthographic{number("xmag", true), number("ymag", true), number("znear", true),
+                                   number("zfar", true)};
+constexpr std::array kCamera{text("name"), text("type", true), object("perspective", kPerspective),
+                             object("orthographic", kOrthographic)};
+constexpr std::array kSpot{number("innerConeAngle"), number("outerConeAngle")};
+constexpr std::array kLight{text("name"),        text("type", true), numbers("color", 3),
+                            number("intensity"), number("range"),    object("spot", kSpot)};
+constexpr std::array kLights{objects("lights", kLight)};
+constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights)};
+
+constexpr std::array kRoot{
+    object("extensions", kRootExtensions),
+    objects("buffers", kBuffer),
+    objects("bufferViews", kBufferView),
+    objects("accessors", {}),
+    objects("meshes", kMesh),
+    objects("materials", kMaterial),
+    objects("textures", kTexture),
+    objects("samplers", kSampler),
+    objects("images", kImage),
+    objects("nodes", kNode),
+    objects("scenes", kScene),
+    objects("cameras", kCamera),
+    index("scene", "/scenes"),
+};
+
+// Calls `use(index, isIndices)` for every accessor that a primitive reads.
+template <typename Use>
+void forEachAccessor(const Json& root, const Use& use) {
+    for (const Json& mesh : arrayMember(root, "meshes")) {
+        for (const Json& primitive : arrayMember(mesh, "primitives")) {
+            for (const char* name : kAttributes) {
+                if (const Json* accessor = find(primitive["attributes"], name)) {
+                    use(accessor->get<std::size_t>(), false);
+                }
+            }
+            if (const Json* accessor = find(primitive, "indices")) {
+                use(accessor->get<std::size_t>(), true);
+            }
+        }
+    }
+}
+
+// Copies the members of `rules` from `from`, and those of the objects they hold.
+// NOLINTNEXTLINE(misc-no-recursion): as deep as the tables
+Json project(const Json& from, std::span<const Rule> rules) {
+    Json to = Json::object();
+    for (const Rule& rule : rules) {
+        const Json* member = find(from, rule.name);
+        // Extensions are read from the file's JSON: tinygltf narrows their integers.
+        if (member == nullptr || rule.name == "extensions") {
+            continue;
+        }
+        if (rule.kind == Kind::Object) {
+            to[std::string(rule.name)] = project(*member, rule.rules);
+        } else if (rule.kind == Kind::Objects) {
+            Json array = Json::array();
+            for (const Json& element : *member) {
+                array.push_back(project(element, rule.rules));
+            }
+            to[std::string(rule.name)] = std::move(array);
+        } else {
+            to[std::string(rule.name)] = *member;
+        }
+    }
+    return to;
+}
+
+bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
+    for (const std::string_view candidate : values) {
+        if (candidate == value) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const std::string& pointer) {
+    if (auto error = checkObject(root, accessor, kAccessor, pointer)) {
+        return error;
+    }
+    const std::string& type = accessor["type"].get_ref<const std::string&>();
+    if (!isOneOf(type, {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})) {
+        return SchemaError{"accessor-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
+    }
+    const auto componentType = accessor["componentType"].get<std::int64_t>();
+    if (componentType < 5120 || componentType > 5126 || componentType == 5124) {
+        return SchemaError{"accessor-component-type", pointer + "/componentType",
+                           fmt::format("{} is no component type", componentType)};
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkStrides(const Json& root) {
+    const Json& views = arrayMember(root, "bufferViews");
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const Json* stride = find(views[i], "byteStride");
+        if (stride != nullptr && stride->get<int>() % 4 != 0) {
+            return SchemaError{"buffer-view-stride", fmt::format("/bufferViews/{}/byteStride", i),
+                               fmt::format("is {}, which is no multiple of 4", stride->get<int>())};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkCameras(const Json& root) {
+    const Json& cameras = arrayMember(root, "cameras");
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const std::string pointer = fmt::format("/cameras/{}", i);
+        const std::string& type = cameras[i]["type"].get_ref<const std::string&>();
+        if (!isOneOf(type, {"perspective", "orthographic"})) {
+            return SchemaError{"camera-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
+        }
+        if (find(cameras[i], type) == nullptr) {
+            return SchemaError{"json-missing", pointer, fmt::format("has no \"{}\"", type)};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<SchemaError> checkDocument(Json& root) {
+    if (auto error = checkObject(root, root, kRoot, "")) {
+        return error;
+    }
+    if (auto error = checkStrides(root)) {
+        return error;
+    }
+    if (auto error = checkCameras(root)) {
+        return error;
+    }
+    std::optional<SchemaError> error;
+    std::vector<bool> seen(arraySize(root, "/accessors"));
+    forEachAccessor(root, [&](std::size_t accessor, bool) {
+        if (!error && !seen[accessor]) {
+            seen[accessor] = true;
+            error = checkAccessor(root, root["accessors"][accessor], fmt::format("/accessors/{}", accessor));
+        }
+    });
+    return error;
+}
+
+Json projectDocument(const Json& root) {
+    Json projection = project(root, kRoot);
+    projection["asset"] = {{"version", "2.0"}};
+    projection.erase("buffers");
+    projection.erase("images");
+    const Json standIn{{"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}};
+    projection["accessors"] = Json(std::vector<Json>(arraySize(root, "/accessors"), standIn));
+    projection["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
+    std::vector<bool> isIndices(arraySize(root, "/accessors"));
+    forEachAccessor(root, [&](std::size_t accessor, bool indexing) {
+        isIndices[accessor] = isIndices[accessor] || indexing;
+        Json& copy = projection["accessors"][accessor];
+        copy = project(root["accessors"][accessor], kAccessor);
+        if (isIndices[accessor] && !copy.contains("bufferView")) {
+            copy["bufferView"] = standInBufferView(root);
+        }
+    });
+    return projection;
+}
+
+int standInBufferView(const Json& root) {
+    return static_cast<int>(arraySize(root, "/bufferViews"));
+}
+
+}  // namespace glint::gltf

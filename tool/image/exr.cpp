@@ -1,0 +1,154 @@
+#include "image/exr.h"
+
+#include "image/image_file.h"
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+
+namespace glint {
+
+namespace {
+
+constexpr std::array<const char*, 4> kChannelNames{"R", "G", "B", "A"};
+constexpr std::size_t kPixelBytes = sizeof(std::array<float, 4>);
+
+class MemoryOutput : public Imf::OStream {
+public:
+    explicit MemoryOutput(const std::string& name) : OStream(name.c_str()) {}
+
+    void write(const char c[], int n) override {
+        const auto count = static_cast<std::size_t>(n);
+        bytes_.resize(std::max(bytes_.size(), position_ + count));
+        std::memcpy(bytes_.data() + position_, c, count);
+        position_ += count;
+    }
+    uint64_t tellp() override {
+        return position_;
+    }
+    void seekp(uint64_t pos) override {
+        position_ = pos;
+    }
+    Bytes take() {
+        return std::move(bytes_);
+    }
+
+private:
+    Bytes bytes_;
+    std::size_t position_ = 0;
+};
+
+class MemoryInput : public Imf::IStream {
+public:
+    MemoryInput(std::span<const std::uint8_t> bytes, const std::string& name)
+        : IStream(name.c_str()), bytes_(bytes) {}
+
+    // Throws past the end, as OpenEXR's contract for streams demands; decodeExr() catches it.
+    bool read(char c[], int n) override {
+        const auto count = static_cast<std::size_t>(std::max(n, 0));
+        if (position_ > bytes_.size() || count > bytes_.size() - position_) {
+            throw std::runtime_error("the file ends early");
+        }
+        std::memcpy(c, bytes_.data() + position_, count);
+        position_ += count;
+        return position_ < bytes_.size();
+    }
+    uint64_t tellg() override {
+        return position_;
+    }
+    void seekg(uint64_t pos) override {
+        position_ = pos;
+    }
+
+private:
+    std::span<const std::uint8_t> bytes_;
+    std::size_t position_ = 0;
+};
+
+// The four channels of `pixels`, whose first pixel is at (left, top).
+Imf::FrameBuffer frameBuffer(std::array<float, 4>* pixels, std::size_t width, int left, int top) {
+    Imf::FrameBuffer buffer;
+    const std::int64_t toOrigin = (left + static_cast<std::int64_t>(top) * static_cast<std::int64_t>(width)) *
+                                  static_cast<std::int64_t>(kPixelBytes);
+    for (std::size_t i = 0; i < kChannelNames.size(); ++i) {
+        char* base = reinterpret_cast<char*>(pixels) + i * sizeof(float) - toOrigin;
+        const double fill = i == 3 ? 1.0 : 0.0;
+        buffer.insert(kChannelNames[i],
+                      Imf::Slice(Imf::FLOAT, base, kPixelBytes, kPixelBytes * width, 1, 1, fill));
+    }
+    return buffer;
+}
+
+Diagnostic formatError(const std::string& where, const std::string& message) {
+    return makeError("image-format", where, message, "write it again from the program that made it");
+}
+
+Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
+    Imf::InputFile file(stream, 0);
+    const Imf::ChannelList& channels = file.header().channels();
+    for (std::size_t i = 0; i < kChannelNames.size(); ++i) {
+        const Imf::Channel* channel = channels.findChannel(kChannelNames[i]);
+        if (!channel && i < 3) {
+            return formatError(where, std::string("has no channel ") + kChannelNames[i]);
+        }
+        if (channel && (channel->xSampling != 1 || channel->ySampling != 1)) {
+            return formatError(where, std::string("has a subsampled channel ") + kChannelNames[i]);
+        }
+    }
+    const Imath::Box2i window = file.header().dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (Status checked = checkImageSize(width, height, where); !checked) {
+        return checked.error();
+    }
+    LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+    image.pixels.resize(static_cast<std::size_t>(width * height));
+    file.setFrameBuffer(frameBuffer(image.pixels.data(), image.width, window.min.x, window.min.y));
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+}
+
+}  // namespace
+
+Result<Bytes> encodeExr(const LinearImage& image, const std::string& where) {
+    try {
+        Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+        header.compression() = Imf::ZIP_COMPRESSION;
+        for (const char* name : kChannelNames) {
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        }
+        MemoryOutput stream(where);
+        {
+            // OpenEXR's frame buffer is not const for files that are written, but only read from.
+            std::vector<std::array<float, 4>> pixels = image.pixels;
+            Imf::OutputFile file(stream, header, 0);
+            file.setFrameBuffer(frameBuffer(pixels.data(), image.width, 0, 0));
+            file.writePixels(static_cast<int>(image.height));
+        }
+        return stream.take();
+    } catch (const std::exception& error) {
+        return makeError("exr-encode", where, std::string("can't be encoded as OpenEXR: ") + error.what(),
+                         "check the size of the image");
+    }
+}
+
+Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::string& where) {
+    try {
+        MemoryInput stream(bytes, where);
+        return decode(stream, where);
+    } catch (const std::exception& error) {
+        return formatError(where, std::string("is no OpenEXR file that can be read: ") + error.what());
+    }
+}
+
+}  // namespace glint

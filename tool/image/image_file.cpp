@@ -1,0 +1,100 @@
+#include "image/image_file.h"
+
+#include "base/files.h"
+#include "image/exr.h"
+#include "image/tone.h"
+
+#include <cctype>
+
+namespace glint {
+
+namespace {
+
+constexpr std::int64_t kMaxImageSize = 16384;
+// 1 GiB as LinearImage: a small file can't claim more than that.
+constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
+
+std::string lowerCase(std::string text) {
+    for (char& c : text) {
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return text;
+}
+
+DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
+    DisplayImage display{image.width, image.height, {}};
+    display.pixels.reserve(image.pixels.size());
+    for (const std::array<float, 4>& pixel : image.pixels) {
+        display.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
+    }
+    return display;
+}
+
+Status writeEncoded(const std::filesystem::path& path, const Result<Bytes>& bytes) {
+    if (!bytes) {
+        return bytes.error();
+    }
+    return writeFile(path, *bytes);
+}
+
+}  // namespace
+
+Result<ImageFormat> imageFormat(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    if (extension == ".png") {
+        return ImageFormat::Png;
+    }
+    if (extension == ".exr") {
+        return ImageFormat::Exr;
+    }
+    return makeError("image-extension", path.string(),
+                     extension.empty() ? "has no file name extension"
+                                       : "has the unknown file name extension \"" + extension + "\"",
+                     "use .png or .exr");
+}
+
+Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where) {
+    if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= kMaxImageSize &&
+        width * height <= kMaxImagePixels) {
+        return okStatus();
+    }
+    return makeError("image-size", where,
+                     "is " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels; Glint takes 1 to 16384 each way and 67108864 in all");
+}
+
+Result<LinearImage> readImage(const std::filesystem::path& path) {
+    const Result<ImageFormat> format = imageFormat(path);
+    if (!format) {
+        return format.error();
+    }
+    const Result<Bytes> bytes = readFile(path);
+    if (!bytes) {
+        return bytes.error();
+    }
+    return *format == ImageFormat::Png ? decodePng(*bytes, path.string()) : decodeExr(*bytes, path.string());
+}
+
+Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure) {
+    const Result<ImageFormat> format = imageFormat(path);
+    if (!format) {
+        return format.error();
+    }
+    if (*format == ImageFormat::Exr) {
+        return writeEncoded(path, encodeExr(image, path.string()));
+    }
+    return writeImage(path, toDisplayImage(image, exposure));
+}
+
+Status writeImage(const std::filesystem::path& path, const DisplayImage& image) {
+    const Result<ImageFormat> format = imageFormat(path);
+    if (!format) {
+        return format.error();
+    }
+    if (*format != ImageFormat::Png) {
+        return makeError("image-extension", path.string(), "can only be written as a PNG", "use .png");
+    }
+    return writeEncoded(path, encodePng(image, path.string()));
+}
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+#include "image/png.h"
+
+#include "image/image_file.h"
+#include "image/tone.h"
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
+// Internal linkage: another part of the program may carry its own copy of stb.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+namespace glint {
+
+namespace {
+
+constexpr int kChannels = 4;
+
+struct StbDeleter {
+    void operator()(void* memory) const {
+        stbi_image_free(memory);
+    }
+};
+template <typename T>
+using StbPixels = std::unique_ptr<T, StbDeleter>;
+
+void append(void* target, void* data, int size) {
+    auto* bytes = static_cast<Bytes*>(target);
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    bytes->insert(bytes->end(), begin, begin + size);
+}
+
+// Samples of T with four channels; 256 or 65536 levels, so that a table does for the transfer function.
+template <typename T>
+void linearize(const T* samples, LinearImage& image) {
+    constexpr std::size_t kLevels = std::size_t{std::numeric_limits<T>::max()} + 1;
+    constexpr auto kLargest = static_cast<float>(kLevels - 1);
+    std::vector<float> linear(kLevels);
+    for (std::size_t i = 0; i < kLevels; ++i) {
+        linear[i] = srgbToLinear(static_cast<float>(i) / kLargest);
+    }
+    for (std::array<float, 4>& pixel : image.pixels) {
+        pixel = {linear[samples[0]], linear[samples[1]], linear[samples[2]],
+                 static_cast<float>(samples[3]) / kLargest};
+        samples += kChannels;
+    }
+}
+
+Diagnostic unreadable(const std::string& where) {
+    const char* reason = stbi_failure_reason();
+    return makeError("image-format", where,
+                     std::string("is no PNG file that can be read: ") + (reason ? reason : "no reason given"),
+                     "write it again from the program that made it");
+}
+
+}  // namespace
+
+Result<Bytes> encodePng(const DisplayImage& image, const std::string& where) {
+    Bytes bytes;
+    const auto width = static_cast<int>(image.width);
+    const auto height = static_cast<int>(image.height);
+    if (image.pixels.empty() ||
+        stbi_write_png_to_func(append, &bytes, width, height, 3, image.pixels.data(), 3 * width) == 0) {
+        return makeError("png-encode", where, "can't be encoded as PNG", "check the size of the image");
+    }
+    return bytes;
+}
+
+Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where) {
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        return makeError("image-size", where, "is longer than 2 GiB");
+    }
+    const auto size = static_cast<int>(bytes.size());
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
+        return unreadable(where);
+    }
+    if (Status checked = checkImageSize(width, height, where); !checked) {
+        return checked.error();
+    }
+    LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+    image.pixels.resize(std::size_t{image.width} * image.height);
+    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
+        const StbPixels<stbi_us> pixels(
+            stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, kChannels));
+        if (!pixels) {
+            return unreadable(where);
+        }
+        linearize(pixels.get(), image);
+        return image;
+    }
+    const StbPixels<stbi_uc> pixels(
+        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, kChannels));
+    if (!pixels) {
+        return unreadable(where);
+    }
+    linearize(pixels.get(), image);
+    return image;
+}
+
+}  // namespace glint

@@ -1,0 +1,100 @@
+#include "image/tone.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+
+namespace {
+
+constexpr double kMiddleGrey = 0.18;
+constexpr double kMaxStops = 16.0;
+// Below this, a pixel is black for any sensible light; bounds the logarithm at about -14.
+constexpr double kLitLuminance = 1e-6;
+
+// F90, Ks and Kd of the specification.
+constexpr float kFresnel = 0.04F;
+constexpr float kCompressionStart = 0.8F - kFresnel;
+constexpr float kDesaturation = 0.15F;
+
+bool isFinite(const Rgb& color) {
+    return std::isfinite(color[0]) && std::isfinite(color[1]) && std::isfinite(color[2]);
+}
+
+}  // namespace
+
+double luminance(const Rgb& color) {
+    return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+}
+
+float linearToSrgb(float value) {
+    return value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
+}
+
+float srgbToLinear(float value) {
+    return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+}
+
+Rgb toneMapNeutral(const Rgb& color) {
+    // The specification asks for non-negative input.
+    Rgb mapped{std::max(color[0], 0.0F), std::max(color[1], 0.0F), std::max(color[2], 0.0F)};
+
+    // Take away what a dielectric reflects at normal incidence, less of it in the dark.
+    const float smallest = std::min({mapped[0], mapped[1], mapped[2]});
+    const float offset =
+        smallest <= 2.0F * kFresnel ? smallest - smallest * smallest / (4.0F * kFresnel) : kFresnel;
+    for (float& channel : mapped) {
+        channel -= offset;
+    }
+    const float peak = std::max({mapped[0], mapped[1], mapped[2]});
+    if (peak <= kCompressionStart) {
+        return mapped;
+    }
+
+    // Compress what is above the start, and move it towards white.
+    constexpr float kRange = 1.0F - kCompressionStart;
+    const float compressed = 1.0F - kRange * kRange / (peak + kRange - kCompressionStart);
+    const float saturation = 1.0F / (kDesaturation * (peak - compressed) + 1.0F);
+    for (float& channel : mapped) {
+        channel = channel / peak * compressed * saturation + compressed * (1.0F - saturation);
+    }
+    return mapped;
+}
+
+double automaticExposure(const LinearImage& image) {
+    double sum = 0.0;
+    std::size_t lit = 0;
+    for (const std::array<float, 4>& pixel : image.pixels) {
+        const double value = luminance({pixel[0], pixel[1], pixel[2]});
+        if (std::isfinite(value) && value > kLitLuminance) {
+            sum += std::log2(value);
+            ++lit;
+        }
+    }
+    if (lit == 0) {
+        return 0.0;
+    }
+    return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(lit), -kMaxStops, kMaxStops);
+}
+
+std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure) {
+    if (!isFinite(color)) {
+        return {255, 0, 255};
+    }
+    // Bounded so that a large exposure can't make an infinity of a finite colour.
+    constexpr double kBrightest = 1e30;
+    const double scale = std::exp2(exposure);
+    Rgb exposed{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        exposed[i] = static_cast<float>(std::clamp(color[i] * scale, 0.0, kBrightest));
+    }
+    std::array<std::uint8_t, 3> display{};
+    const Rgb mapped = toneMapNeutral(exposed);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float encoded = linearToSrgb(std::clamp(mapped[i], 0.0F, 1.0F));
+        display[i] = static_cast<std::uint8_t>(std::lround(encoded * 255.0F));
+    }
+    return display;
+}
+
+}  // namespace glint

@@ -1,0 +1,147 @@
+#include "spirv/compiler.h"
+
+#include "spirv/optimize.h"
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+#include <spirv-tools/libspirv.hpp>
+
+#include <charconv>
+#include <mutex>
+#include <string_view>
+
+namespace glint {
+
+namespace {
+
+// glslang keeps tables for the life of the process; they are shared by all threads once made.
+bool initializeGlslang() {
+    static std::once_flag once;
+    static bool initialized = false;
+    std::call_once(once, [] { initialized = glslang::InitializeProcess(); });
+    return initialized;
+}
+
+EShLanguage toGlslang(ShaderStage stage) {
+    switch (stage) {
+        case ShaderStage::Vertex:
+            return EShLangVertex;
+        case ShaderStage::Fragment:
+            return EShLangFragment;
+        case ShaderStage::Compute:
+            break;
+    }
+    return EShLangCompute;
+}
+
+std::string_view trim(std::string_view text) {
+    constexpr std::string_view kBlank = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+// The length of a "file:line" at the start of `text`, or 0: the first colon that a number and another colon
+// follow ends the file's name.
+std::size_t placeLength(std::string_view text) {
+    for (std::size_t colon = text.find(':'); colon != std::string_view::npos; colon = text.find(':', colon + 1)) {
+        const char* const digits = text.data() + colon + 1;
+        int line = 0;
+        const auto [end, error] = std::from_chars(digits, text.data() + text.size(), line);
+        if (error == std::errc() && end != text.data() + text.size() && *end == ':') {
+            return static_cast<std::size_t>(end - text.data());
+        }
+    }
+    return 0;
+}
+
+// The first error of glslang's log, which reads "ERROR: file:line: message".
+Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
+    constexpr std::string_view kPrefix = "ERROR: ";
+    constexpr const char* kHint = "this is a defect of Glint; please report it with the scene";
+    const std::size_t start = log.find(kPrefix);
+    if (start == std::string_view::npos) {
+        const std::string_view text = trim(log);
+        return makeError("glsl", source.name, text.empty() ? "does not compile" : std::string(text), kHint);
+    }
+    std::string_view line = log.substr(start + kPrefix.size());
+    line = trim(line.substr(0, line.find('\n')));
+    const std::size_t length = placeLength(line);
+    if (length == 0) {
+        return makeError("glsl", source.name, std::string(line), kHint);
+    }
+    return makeError("glsl", std::string(line.substr(0, length)),
+                     std::string(trim(line.substr(length + 1))) + " (in " + source.name + ")", kHint);
+}
+
+Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
+    constexpr int kDefaultVersion = 460;
+    constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+    const EShLanguage stage = toGlslang(source.stage);
+    const char* const text = source.glsl.c_str();
+    const int length = static_cast<int>(source.glsl.size());
+    const char* const name = source.name.c_str();
+
+    glslang::TShader shader(stage);
+    shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
+    shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
+    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
+    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
+    if (!shader.parse(GetDefaultResources(), kDefaultVersion, false, kMessages)) {
+        return makeGlslError(source, shader.getInfoLog());
+    }
+    glslang::TProgram program;
+    program.addShader(&shader);
+    if (!program.link(kMessages)) {
+        return makeGlslError(source, program.getInfoLog());
+    }
+    glslang::SpvOptions options;
+    options.disableOptimizer = true;  // SPIRV-Tools does that, with the passes of our choice
+    std::vector<std::uint32_t> words;
+    glslang::GlslangToSpv(*program.getIntermediate(stage), words, &options);
+    return words;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
+                                                 const ShaderCompileOptions& options) {
+    if (!initializeGlslang()) {
+        return makeError("glsl", source.name, "glslang can't be initialised");
+    }
+    Result<std::vector<std::uint32_t>> translated = translate(source);
+    if (!translated) {
+        return translated;
+    }
+    Result<std::vector<std::uint32_t>> optimized =
+        optimizeSpirv(*translated, source.name, options.debugInfo);
+    if (!optimized) {
+        return optimized;
+    }
+    if (Status valid = validateSpirv(*optimized, source.name); !valid) {
+        return valid.error();
+    }
+    return optimized;
+}
+
+Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {
+    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_2);
+    std::string message;
+    tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* text) {
+        message = text;
+    });
+    std::string text;
+    constexpr std::uint32_t kOptions = SPV_BINARY_TO_TEXT_OPTION_NO_HEADER |
+                                       SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES |
+                                       SPV_BINARY_TO_TEXT_OPTION_INDENT;
+    if (!tools.Disassemble(words, &text, kOptions)) {
+        return makeError("spirv-format", {}, "can't be disassembled: " + message,
+                         "expected a SPIR-V module, little endian");
+    }
+    return text;
+}
+
+}  // namespace glint

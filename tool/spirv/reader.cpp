@@ -1,0 +1,52 @@
+#include "spirv/reader.h"
+
+#include <cstddef>
+
+namespace glint {
+
+namespace {
+
+constexpr std::uint32_t kMagic = 0x07230203;
+constexpr std::size_t kHeaderWords = 5;
+
+Diagnostic formatError(std::string message) {
+    return makeError("spirv-format", {}, std::move(message), "expected a SPIR-V module, little endian");
+}
+
+}  // namespace
+
+Status visitSpirv(std::span<const std::uint32_t> words,
+                  const std::function<void(const SpirvInstruction&)>& visit) {
+    if (words.size() < kHeaderWords) {
+        return formatError("has " + std::to_string(words.size()) + " words; a module's header alone has 5");
+    }
+    if (words[0] != kMagic) {
+        return formatError("does not begin with the magic number of SPIR-V");
+    }
+    for (std::size_t at = kHeaderWords; at < words.size();) {
+        const std::size_t length = words[at] >> 16U;
+        if (length == 0 || length > words.size() - at) {
+            return formatError("the instruction at word " + std::to_string(at) + " claims " +
+                               std::to_string(length) + " words of " + std::to_string(words.size() - at));
+        }
+        visit({words[at] & 0xFFFFU, words.subspan(at + 1, length - 1)});
+        at += length;
+    }
+    return okStatus();
+}
+
+std::string spirvString(std::span<const std::uint32_t> operands) {
+    std::string text;
+    for (const std::uint32_t word : operands) {
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            const auto character = static_cast<char>((word >> shift) & 0xFFU);
+            if (character == '\0') {
+                return text;
+            }
+            text += character;
+        }
+    }
+    return text;
+}
+
+}  // namespace glint
