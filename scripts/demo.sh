@@ -26,7 +26,7 @@ for strategy in "${strategies[@]}"; do
     "$bin/glint" compile "$scene" -o "$out/package-$strategy" --strategy "$strategy" --json \
         >"$out/compile-$strategy.json"
     "$bin/glint" render "$scene" --strategy "$strategy" -o "$out/gallery-$strategy.png" \
-        --size 960x540 --spp 4 --stats "$out/stats-$strategy.json"
+        --size 960x540 --spp 4 --exposure 0 --stats "$out/stats-$strategy.json"
 done
 
 step "table"

@@ -68,9 +68,9 @@ void addPlinths(const Builder& builder) {
         float height;
     };
     const std::array<Spot, 5> spots{{{{-2.45F, 0.0F, 0.2F}, 0.85F},
-                                     {{-2.75F, 0.0F, -2.5F}, 1.05F},
-                                     {{2.35F, 0.0F, 0.35F}, 0.80F},
-                                     {{2.75F, 0.0F, -2.5F}, 1.05F},
+                                     {{-2.4F, 0.0F, -2.5F}, 1.05F},
+                                     {{2.05F, 0.0F, 0.35F}, 0.72F},
+                                     {{3.15F, 0.0F, -2.5F}, 1.05F},
                                      {{-4.1F, 0.0F, -0.9F}, 0.45F}}};
     for (const Spot& spot : spots) {
         writer.addMeshNode("Plinth", plinth,
@@ -98,12 +98,12 @@ void addPlinthExhibits(const Builder& builder) {
                                           {0.0F, 0.0F}}};
     builder.show("Vase", lathe(vase, true, 96, 5), kTextured | kTexCoord1, materials.vase,
                  {{-2.45F, 0.85F, 0.2F}});
-    builder.show("Mirror sphere", sphere(0.52F, 96, 48), kPlain, materials.mirror, {{-2.75F, 1.57F, -2.5F}});
+    builder.show("Mirror sphere", sphere(0.52F, 96, 48), kPlain, materials.mirror, {{-2.4F, 1.57F, -2.5F}});
     builder.show("Ruby", gem(0.36F, 8), 0, materials.ruby,
-                 {{2.35F, 1.15F, 0.35F}, turn(14.0F, kZ) * turn(20.0F, kX)});
-    builder.show("Ruby ring", torus(0.24F, 0.035F, 64, 16), kPlain, materials.gold, {{2.35F, 0.83F, 0.35F}});
+                 {{2.05F, 1.07F, 0.35F}, turn(14.0F, kZ) * turn(20.0F, kX)});
+    builder.show("Ruby ring", torus(0.24F, 0.035F, 64, 16), kPlain, materials.gold, {{2.05F, 0.75F, 0.35F}});
     builder.show("Hammered torus", torus(0.36F, 0.16F, 96, 48), kBumped, materials.hammeredCopper,
-                 {{2.75F, 1.55F, -2.5F}, turn(78.0F, kX)});
+                 {{3.15F, 1.55F, -2.5F}, turn(78.0F, kX)});
     MeshData agave = rosette(26, 0.95F);
     paintVertices(agave, [](const glm::vec3& position) {
         const float tip = glm::clamp(glm::length(position) / 0.95F, 0.0F, 1.0F);

@@ -184,7 +184,7 @@ int GltfWriter::addMesh(const std::string& name, const std::vector<Part>& parts)
     return static_cast<int>(meshes_.size()) - 1;
 }
 
-void GltfWriter::addNode(const std::string& name, const Placement& placement, Json node) {
+void GltfWriter::addNode(const std::string& name, const Placement& placement, const Json& node) {
     Json json = {{"name", name}};
     json.update(node);
     json.update(placementJson(placement));
@@ -205,7 +205,7 @@ void GltfWriter::addLightNode(const LightSpec& light, const Placement& placement
     Json node = Json::object();
     node["extensions"]["KHR_lights_punctual"]["light"] = lights_.size();
     lights_.push_back(std::move(json));
-    addNode(light.name, placement, std::move(node));
+    addNode(light.name, placement, node);
 }
 
 void GltfWriter::addCameraNode(const std::string& name, double yfov, const Placement& placement) {

@@ -101,7 +101,7 @@ private:
     int addAccessor(const void* data, std::size_t bytes, int target, Json accessor);
     int addFloats(const std::vector<float>& values, int components, bool bounds);
     int addIndices(const std::vector<std::uint32_t>& indices, std::size_t vertexCount);
-    void addNode(const std::string& name, const Placement& placement, Json node);
+    void addNode(const std::string& name, const Placement& placement, const Json& node);
     Json document(const std::string& name) const;
 
     struct NamedImage {

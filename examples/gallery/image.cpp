@@ -8,9 +8,13 @@
 #include <future>
 #include <thread>
 
+// Internal linkage: another part of the program may carry its own copy of stb. The analyser sees declarations
+// only, as its findings within stb are not ours to mend.
+#ifndef __clang_analyzer__
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
-#include <stb/stb_image_write.h>
+#endif
+#include <stb_image_write.h>
 
 namespace gallery {
 
@@ -22,13 +26,15 @@ std::uint8_t toByte(float value) {
 
 // Calls visit(index, uv) once for every pixel, rows shared out among the cores. Pixels do not depend on one
 // another, so the result does not depend on the number of threads.
-void forEachPixel(int width, int height, const std::function<void(int, const glm::vec2&)>& visit) {
+void forEachPixel(int width, int height, const std::function<void(std::size_t, const glm::vec2&)>& visit) {
     const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
     const auto rows = [&](int first) {
         for (int y = first; y < height; y += threads) {
             for (int x = 0; x < width; ++x) {
-                visit(y * width + x, {(static_cast<float>(x) + 0.5F) / static_cast<float>(width),
-                                      (static_cast<float>(y) + 0.5F) / static_cast<float>(height)});
+                visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(x),
+                      {(static_cast<float>(x) + 0.5F) / static_cast<float>(width),
+                       (static_cast<float>(y) + 0.5F) / static_cast<float>(height)});
             }
         }
     };
@@ -43,11 +49,13 @@ void forEachPixel(int width, int height, const std::function<void(int, const glm
 
 Image paint(int width, int height, int channels, const std::function<glm::vec4(const glm::vec2&)>& colorOf) {
     Image image{width, height, channels, {}};
-    image.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height * channels));
-    forEachPixel(width, height, [&](int index, const glm::vec2& uv) {
+    image.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                        static_cast<std::size_t>(channels));
+    forEachPixel(width, height, [&](std::size_t index, const glm::vec2& uv) {
         const glm::vec4 color = colorOf(uv);
         for (int channel = 0; channel < channels; ++channel) {
-            image.pixels[static_cast<std::size_t>(index * channels + channel)] = toByte(color[channel]);
+            image.pixels[index * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel)] =
+                toByte(color[channel]);
         }
     });
     return image;
@@ -56,9 +64,8 @@ Image paint(int width, int height, int channels, const std::function<glm::vec4(c
 HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heightOf) {
     HeightField field{size, {}};
     field.heights.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    forEachPixel(size, size, [&](int index, const glm::vec2& uv) {
-        field.heights[static_cast<std::size_t>(index)] = heightOf(uv);
-    });
+    forEachPixel(size, size,
+                 [&](std::size_t index, const glm::vec2& uv) { field.heights[index] = heightOf(uv); });
     return field;
 }
 
@@ -76,6 +83,10 @@ Image normalMap(const HeightField& field) {
 }
 
 glint::Result<std::vector<std::uint8_t>> encodePng(const Image& image) {
+    if (image.width <= 0 || image.height <= 0 || image.channels <= 0) {
+        return glint::makeError("png-encode", "", "cannot encode an image without pixels",
+                                "give it a width, a height and channels");
+    }
     std::vector<std::uint8_t> bytes;
     const auto sink = [](void* context, void* data, int size) {
         auto* out = static_cast<std::vector<std::uint8_t>*>(context);

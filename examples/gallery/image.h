@@ -30,7 +30,8 @@ struct HeightField {
     std::vector<float> heights;
 
     float at(int x, int y) const {
-        return heights[static_cast<std::size_t>((y & (size - 1)) * size + (x & (size - 1)))];
+        return heights[static_cast<std::size_t>(y & (size - 1)) * static_cast<std::size_t>(size) +
+                       static_cast<std::size_t>(x & (size - 1))];
     }
 };
 

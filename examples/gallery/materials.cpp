@@ -34,7 +34,7 @@ void addRoomMaterials(GltfWriter& writer, MaterialSet& set) {
     const int plasterBase = writer.addTexture("plaster_color", plasterColor());
     const int plasterBump = writer.addTexture("plaster_normal", plasterNormal());
     set.plasterLeft = writer.addMaterial({.name = "Plaster, chalk",
-                                          .baseColor = {0.82, 0.78, 0.70, 1.0},
+                                          .baseColor = {0.62, 0.57, 0.49, 1.0},
                                           .metallic = 0.0,
                                           .roughness = 0.95,
                                           .baseColorTexture = {plasterBase, 0, tiled(0.5, 0.5)},

@@ -66,9 +66,9 @@ void addWalls(GltfWriter& writer, const MaterialSet& materials) {
                        {{kHalfWidth, 0.5F * kWallHeight, middle}});
     const int skirting = writer.addMesh(
         "Skirting", {{writer.addGeometry(box({0.06F, 0.16F, length}), kPlain), materials.stone}});
-    for (const float side_x : {-1.0F, 1.0F}) {
+    for (const float sideX : {-1.0F, 1.0F}) {
         writer.addMeshNode("Skirting", skirting,
-                           {{side_x * (kHalfWidth - 0.5F * kWallThickness - 0.03F), 0.08F, middle}});
+                           {{sideX * (kHalfWidth - 0.5F * kWallThickness - 0.03F), 0.08F, middle}});
     }
 }
 
@@ -97,7 +97,7 @@ void addLightsAndCameras(GltfWriter& writer) {
                         lookAt({3.0F, 6.0F, 4.5F}, {0.0F, 0.0F, 0.0F}));
     writer.addLightNode({"Lantern light", "point", warm, 7.0}, {{-1.75F, 2.75F, -1.3F}});
     writer.addLightNode({"Lamp light", "point", warm, 9.0}, {{3.1F, 2.2F, -2.6F}});
-    writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, 10.0}, {{-1.5F, 3.6F, 3.0F}});
+    writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, 6.0}, {{-1.5F, 3.6F, 3.0F}});
     writer.addLightNode({"Knot spot", "spot", {1.0, 0.92, 0.80}, 40.0, std::array{0.16, 0.30}},
                         lookAt({1.2F, 4.1F, 1.2F}, {0.0F, 1.95F, -2.2F}));
     writer.addCameraNode("main", 0.70, lookAt({0.9F, 1.85F, 7.3F}, {0.05F, 1.40F, -2.0F}));

@@ -66,6 +66,7 @@ glm::vec2 rectangleExit(const glm::vec2& from, const glm::vec2& direction, const
 std::vector<float> gateAngles(const glm::vec2& centre, const glm::vec2& low, const glm::vec2& high) {
     constexpr int kSteps = 96;
     std::vector<float> angles;
+    angles.reserve(kSteps + 4);
     for (int step = 0; step < kSteps; ++step) {
         angles.push_back(glm::two_pi<float>() * static_cast<float>(step) / static_cast<float>(kSteps));
     }

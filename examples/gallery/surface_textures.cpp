@@ -90,9 +90,9 @@ Image floorColor() {
         }
         const float vein = floorVeins(tile);
         const float tint = hashUnit(tile.cell.x, tile.cell.y, 5) * 0.06F;
-        const glm::vec3 dark = glm::vec3(0.46F, 0.48F, 0.52F) + tint + 0.16F * vein;
+        const glm::vec3 dark = glm::vec3(0.40F, 0.42F, 0.46F) + tint + 0.16F * vein;
         const glm::vec3 light =
-            glm::vec3(0.58F, 0.555F, 0.52F) + tint - glm::vec3(0.10F, 0.11F, 0.12F) * vein;
+            glm::vec3(0.54F, 0.515F, 0.48F) + tint - glm::vec3(0.10F, 0.11F, 0.12F) * vein;
         return glm::vec4(tile.dark ? dark : light, 1.0F);
     });
 }

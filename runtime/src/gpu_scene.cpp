@@ -49,13 +49,15 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     using Geometries = std::span<const gpu::GeometryRecord>;
     using Instances = std::span<const gpu::InstanceRecord>;
     using Lights = std::span<const gpu::LightRecord>;
+    using Materials = std::span<const gpu::MaterialRecord>;
     if (Status s = uploadRecords(state, **uploader, Geometries(layout.geometries), state.geometries); !s) {
         return s;
     }
     if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
-    if (Status s = uploadRecords(state, **uploader, package.materials(), state.materials); !s) {
+    const std::vector<gpu::MaterialRecord> materials = materialsWithSizes(package, scene.images);
+    if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
         return s;
     }
     if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
@@ -108,13 +110,11 @@ VkAccelerationStructureInstanceKHR makeInstance(const GpuScene::State& state, co
     // An instance mask of 8 bits, a custom index of 24: layOutScene() has seen that it fits.
     instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
     instance.mask = 0xFF;
-    // Facing is determined in object space, where glTF's fronts are counter-clockwise whatever the
-    // transform, and Vulkan's default is clockwise.
-    VkGeometryInstanceFlagsKHR flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FLIP_FACING_BIT_KHR;
-    if (layout.parts[placed.part].doubleSided) {
-        flags |= VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
-    }
-    instance.flags = flags & 0xFFU;
+    // Facing is determined in object space, so that a mirroring transform changes nothing, and the default
+    // is glTF's: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
+    instance.flags = layout.parts[placed.part].doubleSided
+                         ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU
+                         : 0U;
     instance.accelerationStructureReference = state.blases[placed.part].address;
     return instance;
 }

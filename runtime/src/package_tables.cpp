@@ -1,4 +1,5 @@
 // tables.bin as bytes: header, hash, sections.
+#include "interop_hash.h"
 #include "package_state.h"
 
 #include <xxhash.h>
@@ -46,6 +47,11 @@ Status readHeader(Package::State& state, const std::string& where) {
     if (XXH3_64bits(bytes.data() + sizeof(header), bytes.size() - sizeof(header)) != header.contentHash) {
         return makeError("package-altered", where, "the contents differ from the hash in the header",
                          kRecompile);
+    }
+    if (header.interopHash != interopHash()) {
+        return makeError("package-version", where,
+                         "the package's shaders were built for other structures than this runtime's",
+                         "compile the package with the glint of this runtime's release");
     }
     return okStatus();
 }

@@ -95,6 +95,21 @@ Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& p
     return uploaded;
 }
 
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Package& package,
+                                                    std::span<const ImageView> images) {
+    std::vector<gpu::MaterialRecord> materials(package.materials().begin(), package.materials().end());
+    const std::span<const package::TextureEntry> textures = package.textures();
+    for (gpu::MaterialRecord& material : materials) {
+        for (gpu::TextureRecord& record : material.textures) {
+            if (record.textureIndex < textures.size()) {
+                const ImageView& image = images[textures[record.textureIndex].image];
+                record.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
+            }
+        }
+    }
+    return materials;
+}
+
 Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
                                                   std::span<const package::SamplerEntry> samplers) {
     const std::uint32_t limit =

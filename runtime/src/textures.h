@@ -1,6 +1,7 @@
 // Bindless textures and samplers.
 #pragma once
 
+#include "interop/scene.h"
 #include "resources.h"
 #include "upload.h"
 
@@ -17,6 +18,12 @@ namespace glint {
 Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                           std::span<const package::TextureEntry> textures,
                                           std::span<const ImageView> images);
+
+// The package's materials with the sizes of their textures, which level of detail needs: a size query in a
+// shader is a fetch of its own, and lavapipe answers it for one lane where the index differs. Requires an
+// image for each texture.
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Package& package,
+                                                    std::span<const ImageView> images);
 
 // One sampler a SamplerEntry; at least one. Error "scene-samplers".
 Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,

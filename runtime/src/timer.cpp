@@ -4,12 +4,22 @@
 
 namespace glint {
 
+namespace {
+
+// Queries of a stretch: its begin and its end, each followed by an echo that is never read. Mesa's lavapipe
+// puts a timestamp off until the next one is recorded; the echo makes it take the first at once.
+constexpr std::uint32_t kBegin = 0;
+constexpr std::uint32_t kEnd = 2;
+constexpr std::uint32_t kQueriesPerStretch = 4;
+
+}  // namespace
+
 Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
     Timer timer(context);
     if (context.limits.timestampValidBits == 0) {
         return timer;
     }
-    timer.queries_ = 2 * capacity;
+    timer.queries_ = kQueriesPerStretch * capacity;
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -32,16 +42,19 @@ void Timer::recordReset(VkCommandBuffer commands) const {
 }
 
 void Timer::recordBegin(VkCommandBuffer commands, std::uint32_t stretch) const {
-    if (available()) {
-        context_->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(),
-                                        2 * stretch);
-    }
+    recordMark(commands, kQueriesPerStretch * stretch + kBegin);
 }
 
 void Timer::recordEnd(VkCommandBuffer commands, std::uint32_t stretch) const {
+    recordMark(commands, kQueriesPerStretch * stretch + kEnd);
+}
+
+void Timer::recordMark(VkCommandBuffer commands, std::uint32_t query) const {
     if (available()) {
-        context_->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(),
-                                        2 * stretch + 1);
+        for (std::uint32_t echo = 0; echo < 2; ++echo) {
+            context_->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(),
+                                            query + echo);
+        }
     }
 }
 
@@ -50,11 +63,12 @@ Result<std::vector<double>> Timer::read(std::uint32_t count) const {
         return makeError("timings-unavailable", "", "the device's queue has no timestamps",
                          "use a queue family whose timestampValidBits is not 0");
     }
-    std::vector<std::uint64_t> ticks(std::size_t{2} * count);
+    std::vector<std::uint64_t> ticks(std::size_t{kQueriesPerStretch} * count);
     if (count > 0) {
-        const VkResult result = context_->vk.GetQueryPoolResults(
-            context_->handles.device, pool_.get(), 0, 2 * count, ticks.size() * sizeof(std::uint64_t),
-            ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+        const VkResult result =
+            context_->vk.GetQueryPoolResults(context_->handles.device, pool_.get(), 0,
+                                             kQueriesPerStretch * count, ticks.size() * sizeof(std::uint64_t),
+                                             ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
         if (result == VK_NOT_READY) {
             return makeError("timings-pending", "", "the device has not finished the recording",
                              "wait for the submission before reading its timings");
@@ -68,7 +82,8 @@ Result<std::vector<double>> Timer::read(std::uint32_t count) const {
     std::vector<double> milliseconds(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         // Modulo the valid bits, a counter that wraps once in between is no harm.
-        const std::uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & mask;
+        const std::uint64_t* stretch = &ticks[std::size_t{kQueriesPerStretch} * i];
+        const std::uint64_t elapsed = (stretch[kEnd] - stretch[kBegin]) & mask;
         milliseconds[i] = static_cast<double>(elapsed) * context_->limits.core.timestampPeriod * 1e-6;
     }
     return milliseconds;

@@ -27,6 +27,8 @@ public:
 
 private:
     explicit Timer(Context::State& context) : context_(&context) {}
+    void recordMark(VkCommandBuffer commands, std::uint32_t query) const;
+
     Context::State* context_;
     UniqueQueryPool pool_;
     std::uint32_t queries_ = 0;

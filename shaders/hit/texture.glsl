@@ -24,12 +24,9 @@ vec4 sampleSlot(Hit hit, uint slot, Features features) {
         uvEdges = vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy),
                        dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
     }
-    vec2 texels = vec2(textureSize(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
-                                             sceneSamplers[nonuniformEXT(record.samplerIndex)]),
-                                   0));
     return textureLod(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
                                 sceneSamplers[nonuniformEXT(record.samplerIndex)]),
-                      uv, coneLod(hit, uvEdges, texels));
+                      uv, coneLod(hit, uvEdges, record.texels));
 }
 
 // Tangent and bitangent for the normal texture: from the TANGENT attribute, or from the derivatives of position by

@@ -66,6 +66,7 @@ struct TextureRecord {
     uint texCoord;      // 0 or 1
     vec3 rowU;
     vec3 rowV;
+    vec2 texels;  // size of mip 0; 0 in a package, as only the runtime sees the image
 };
 
 // One layout for every permutation; what a key lacks is never read.

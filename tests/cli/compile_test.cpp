@@ -111,6 +111,7 @@ TEST_F(CompileCommand, RefusesAFolderOfSomethingElse) {
     writeText(path("precious/thesis.tex"), "years of work");
     const Outcome outcome = run({"compile", scene(), "-o", "precious"});
     EXPECT_EQ(outcome.exit, 1);
+    EXPECT_NE(outcome.err.find("precious"), std::string::npos) << outcome.err;
     EXPECT_EQ(filesBelow(path("precious")), std::vector<std::string>{"thesis.tex"});
 }
 

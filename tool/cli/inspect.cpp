@@ -4,6 +4,7 @@
 #include "cli/manifest.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/modules.h"
 #include "spirv/statistics.h"
 
 #include <glint/package.h>
@@ -37,38 +38,6 @@ struct Contents {
     std::vector<Module> modules;
     std::map<std::uint32_t, std::set<std::uint32_t>> materials;  // by shader ID
 };
-
-const char* roleName(ModuleRole role) {
-    switch (role) {
-        case ModuleRole::GBufferVertex:
-            return "g-buffer vertex";
-        case ModuleRole::GBufferFragment:
-            return "g-buffer fragment";
-        case ModuleRole::Lighting:
-            return "lighting";
-        case ModuleRole::ReflectionRays:
-            return "reflection rays";
-        case ModuleRole::RayDispatch:
-            return "ray dispatch";
-        case ModuleRole::UberShade:
-            return "uber shade";
-        case ModuleRole::Trace:
-            return "trace";
-        case ModuleRole::BucketCount:
-            return "bucket count";
-        case ModuleRole::BucketOffset:
-            return "bucket offset";
-        case ModuleRole::BucketCopy:
-            return "bucket copy";
-        case ModuleRole::ShadeMiss:
-            return "shade miss";
-        case ModuleRole::ShadeCase:
-            return "shade case";
-        case ModuleRole::Compose:
-            return "compose";
-    }
-    return "unknown";
-}
 
 Result<Contents> gather(const Package& package, const Manifest& manifest) {
     Contents contents{package, manifest, {}, {}};
@@ -120,7 +89,7 @@ Json modulesToJson(const Contents& contents) {
     Json list = Json::array();
     for (const Module& module : contents.modules) {
         const bool isCase = module.entry->role == ModuleRole::ShadeCase;
-        list.push_back(Json{{"role", roleName(module.entry->role)},
+        list.push_back(Json{{"role", std::string(toString(module.entry->role))},
                             {"shaderId", isCase ? Json(module.entry->shaderId) : Json(nullptr)},
                             {"file", std::string(contents.package.string(module.entry->file))},
                             {"bytes", module.entry->bytes},
@@ -199,8 +168,9 @@ std::string moduleTable(const Contents& contents) {
         const bool isCase = module.entry->role == ModuleRole::ShadeCase;
         const std::string id = isCase ? fmt::format(" {}", module.entry->shaderId) : std::string();
         rows.push_back(
-            {roleName(module.entry->role) + id, std::string(contents.package.string(module.entry->file)),
-             fmt::format("{}", module.entry->bytes), fmt::format("{}", module.statistics.instructions),
+            {std::string(toString(module.entry->role)) + id,
+             std::string(contents.package.string(module.entry->file)), fmt::format("{}", module.entry->bytes),
+             fmt::format("{}", module.statistics.instructions),
              fmt::format("{}", module.statistics.textureFetches),
              fmt::format("{}", module.statistics.rayQueries), fmt::format("{}", module.statistics.branches)});
     }

@@ -23,8 +23,10 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         manifest.merge = json.at("merge").get<std::string>();
         for (const auto& shader : json.at("shaders")) {
             for (const auto& material : shader.at("materials")) {
-                manifest.materialNames[material.at("index").get<std::uint32_t>()] =
-                    material.at("name").get<std::string>();
+                const auto name = material.at("name").get<std::string>();
+                if (!name.empty()) {
+                    manifest.materialNames[material.at("index").get<std::uint32_t>()] = name;
+                }
             }
         }
         return manifest;

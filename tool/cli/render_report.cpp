@@ -69,7 +69,8 @@ std::string toText(const RenderReport& report) {
         {"image",
          fmt::format("{}, {} x {}, {} spp", report.image, report.width, report.height, report.samples)},
         {"device", fmt::format("{} ({})", report.device, report.driver)},
-        {"strategy", fmt::format("{}, {} cases", report.strategy, report.cases)},
+        {"strategy",
+         fmt::format("{}, {} case{}", report.strategy, report.cases, report.cases == 1 ? "" : "s")},
         {"camera", report.camera},
         {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
@@ -79,15 +80,16 @@ std::string toText(const RenderReport& report) {
     }
     rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
     rows.push_back({"render", milliseconds(report.renderMs)});
-    for (const PassTiming& pass : report.passes) {
-        rows.push_back({"  " + pass.name, milliseconds(pass.milliseconds)});
-    }
     rows.push_back({"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit)", counters.rays,
                                         counters.skippedSky, counters.skippedRough, counters.skippedUnlit)});
     if (counters.unknownShader > 0) {
         rows.push_back({"unknown shader", fmt::format("{} hits", counters.unknownShader)});
     }
-    return formatFields(rows);
+    std::vector<std::vector<std::string>> passes{{"pass of the last sample", "ms"}};
+    for (const PassTiming& pass : report.passes) {
+        passes.push_back({pass.name, fmt::format("{:.3f}", pass.milliseconds)});
+    }
+    return formatFields(rows) + "\n" + formatTable(passes);
 }
 
 }  // namespace glint

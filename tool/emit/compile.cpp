@@ -5,7 +5,6 @@
 #include "emit/modules.h"
 #include "emit/sources.h"
 #include "emit/tables.h"
-
 #include "gltf/import.h"
 
 #include <fmt/format.h>
@@ -74,8 +73,8 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
 
     // Files; the manifest last, as it lists the others.
     addModuleFiles(package, settings.emitGlsl);
-    package.files.push_back({package::kTablesFile,
-                             makeTables(scene, primitives, package.plan, package.modules, settings)});
+    package.files.push_back(
+        {package::kTablesFile, makeTables(scene, primitives, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
         Result<std::string> header = makeHeader(scene, package.plan, sources, settings.plan);
         if (!header) {

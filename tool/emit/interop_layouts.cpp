@@ -1,33 +1,26 @@
 #include "emit/interop_layouts.h"
 
+#include <cstddef>
 #include <interop/frame.h>
 #include <interop/scene.h>
 
-#include <cstddef>
-
 // A row of a table of members; a member that is missing here is found by the test against SPIR-V.
 #define GLINT_MEMBER(type, name) \
-    { #name, static_cast<std::uint32_t>(offsetof(gpu::type, name)) }
+    { #name, static_cast < std::uint32_t>(offsetof(gpu::type, name)) }
 #define GLINT_STRUCT(type) \
-    { #type, static_cast<std::uint32_t>(sizeof(gpu::type)), k##type }
+    { #type, static_cast < std::uint32_t>(sizeof(gpu::type)), k##type }
 
 namespace glint {
 
 namespace {
 
 constexpr MemberLayout kGeometryRecord[] = {
-    GLINT_MEMBER(GeometryRecord, shaderId),
-    GLINT_MEMBER(GeometryRecord, materialIndex),
-    GLINT_MEMBER(GeometryRecord, featureLobes),
-    GLINT_MEMBER(GeometryRecord, featureInputs),
-    GLINT_MEMBER(GeometryRecord, instanceIndex),
-    GLINT_MEMBER(GeometryRecord, flags),
-    GLINT_MEMBER(GeometryRecord, indices),
-    GLINT_MEMBER(GeometryRecord, positions),
-    GLINT_MEMBER(GeometryRecord, normals),
-    GLINT_MEMBER(GeometryRecord, tangents),
-    GLINT_MEMBER(GeometryRecord, texCoords0),
-    GLINT_MEMBER(GeometryRecord, texCoords1),
+    GLINT_MEMBER(GeometryRecord, shaderId),      GLINT_MEMBER(GeometryRecord, materialIndex),
+    GLINT_MEMBER(GeometryRecord, featureLobes),  GLINT_MEMBER(GeometryRecord, featureInputs),
+    GLINT_MEMBER(GeometryRecord, instanceIndex), GLINT_MEMBER(GeometryRecord, flags),
+    GLINT_MEMBER(GeometryRecord, indices),       GLINT_MEMBER(GeometryRecord, positions),
+    GLINT_MEMBER(GeometryRecord, normals),       GLINT_MEMBER(GeometryRecord, tangents),
+    GLINT_MEMBER(GeometryRecord, texCoords0),    GLINT_MEMBER(GeometryRecord, texCoords1),
     GLINT_MEMBER(GeometryRecord, colors),
 };
 
@@ -38,40 +31,29 @@ constexpr MemberLayout kInstanceRecord[] = {
 };
 
 constexpr MemberLayout kTextureRecord[] = {
-    GLINT_MEMBER(TextureRecord, textureIndex),
-    GLINT_MEMBER(TextureRecord, samplerIndex),
-    GLINT_MEMBER(TextureRecord, texCoord),
-    GLINT_MEMBER(TextureRecord, rowU),
-    GLINT_MEMBER(TextureRecord, rowV),
+    GLINT_MEMBER(TextureRecord, textureIndex), GLINT_MEMBER(TextureRecord, samplerIndex),
+    GLINT_MEMBER(TextureRecord, texCoord),     GLINT_MEMBER(TextureRecord, rowU),
+    GLINT_MEMBER(TextureRecord, rowV),         GLINT_MEMBER(TextureRecord, texels),
 };
 
 constexpr MemberLayout kMaterialRecord[] = {
-    GLINT_MEMBER(MaterialRecord, baseColorFactor),
-    GLINT_MEMBER(MaterialRecord, emissiveFactor),
-    GLINT_MEMBER(MaterialRecord, emissiveStrength),
-    GLINT_MEMBER(MaterialRecord, metallicFactor),
-    GLINT_MEMBER(MaterialRecord, roughnessFactor),
-    GLINT_MEMBER(MaterialRecord, normalScale),
-    GLINT_MEMBER(MaterialRecord, occlusionStrength),
-    GLINT_MEMBER(MaterialRecord, alphaCutoff),
+    GLINT_MEMBER(MaterialRecord, baseColorFactor),   GLINT_MEMBER(MaterialRecord, emissiveFactor),
+    GLINT_MEMBER(MaterialRecord, emissiveStrength),  GLINT_MEMBER(MaterialRecord, metallicFactor),
+    GLINT_MEMBER(MaterialRecord, roughnessFactor),   GLINT_MEMBER(MaterialRecord, normalScale),
+    GLINT_MEMBER(MaterialRecord, occlusionStrength), GLINT_MEMBER(MaterialRecord, alphaCutoff),
     GLINT_MEMBER(MaterialRecord, textures),
 };
 
 constexpr MemberLayout kLightRecord[] = {
-    GLINT_MEMBER(LightRecord, position),
-    GLINT_MEMBER(LightRecord, type),
-    GLINT_MEMBER(LightRecord, direction),
-    GLINT_MEMBER(LightRecord, range),
-    GLINT_MEMBER(LightRecord, intensity),
-    GLINT_MEMBER(LightRecord, spotScale),
+    GLINT_MEMBER(LightRecord, position),   GLINT_MEMBER(LightRecord, type),
+    GLINT_MEMBER(LightRecord, direction),  GLINT_MEMBER(LightRecord, range),
+    GLINT_MEMBER(LightRecord, intensity),  GLINT_MEMBER(LightRecord, spotScale),
     GLINT_MEMBER(LightRecord, spotOffset),
 };
 
 constexpr MemberLayout kRayRecord[] = {
-    GLINT_MEMBER(RayRecord, origin),
-    GLINT_MEMBER(RayRecord, pixel),
-    GLINT_MEMBER(RayRecord, direction),
-    GLINT_MEMBER(RayRecord, coneWidth),
+    GLINT_MEMBER(RayRecord, origin),     GLINT_MEMBER(RayRecord, pixel),
+    GLINT_MEMBER(RayRecord, direction),  GLINT_MEMBER(RayRecord, coneWidth),
     GLINT_MEMBER(RayRecord, coneSpread),
 };
 
@@ -101,58 +83,34 @@ constexpr MemberLayout kBucketRecord[] = {
 };
 
 constexpr MemberLayout kFrameConstants[] = {
-    GLINT_MEMBER(FrameConstants, worldToClip),
-    GLINT_MEMBER(FrameConstants, cameraPosition),
-    GLINT_MEMBER(FrameConstants, width),
-    GLINT_MEMBER(FrameConstants, cameraForward),
-    GLINT_MEMBER(FrameConstants, height),
-    GLINT_MEMBER(FrameConstants, cameraRight),
-    GLINT_MEMBER(FrameConstants, orthographic),
-    GLINT_MEMBER(FrameConstants, cameraUp),
-    GLINT_MEMBER(FrameConstants, pixelSpread),
-    GLINT_MEMBER(FrameConstants, jitter),
-    GLINT_MEMBER(FrameConstants, pixelWidth),
-    GLINT_MEMBER(FrameConstants, sampleIndex),
-    GLINT_MEMBER(FrameConstants, seed),
-    GLINT_MEMBER(FrameConstants, lightCount),
-    GLINT_MEMBER(FrameConstants, bucketCount),
-    GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
-    GLINT_MEMBER(FrameConstants, skyZenith),
-    GLINT_MEMBER(FrameConstants, skyHorizon),
-    GLINT_MEMBER(FrameConstants, skyGround),
-    GLINT_MEMBER(FrameConstants, geometries),
-    GLINT_MEMBER(FrameConstants, instances),
-    GLINT_MEMBER(FrameConstants, materials),
-    GLINT_MEMBER(FrameConstants, lights),
-    GLINT_MEMBER(FrameConstants, rays),
-    GLINT_MEMBER(FrameConstants, hits),
-    GLINT_MEMBER(FrameConstants, orderedHits),
-    GLINT_MEMBER(FrameConstants, buckets),
-    GLINT_MEMBER(FrameConstants, rayDispatch),
-    GLINT_MEMBER(FrameConstants, bucketDispatch),
-    GLINT_MEMBER(FrameConstants, counters),
+    GLINT_MEMBER(FrameConstants, worldToClip),    GLINT_MEMBER(FrameConstants, cameraPosition),
+    GLINT_MEMBER(FrameConstants, width),          GLINT_MEMBER(FrameConstants, cameraForward),
+    GLINT_MEMBER(FrameConstants, height),         GLINT_MEMBER(FrameConstants, cameraRight),
+    GLINT_MEMBER(FrameConstants, orthographic),   GLINT_MEMBER(FrameConstants, cameraUp),
+    GLINT_MEMBER(FrameConstants, pixelSpread),    GLINT_MEMBER(FrameConstants, jitter),
+    GLINT_MEMBER(FrameConstants, pixelWidth),     GLINT_MEMBER(FrameConstants, sampleIndex),
+    GLINT_MEMBER(FrameConstants, seed),           GLINT_MEMBER(FrameConstants, lightCount),
+    GLINT_MEMBER(FrameConstants, bucketCount),    GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
+    GLINT_MEMBER(FrameConstants, skyZenith),      GLINT_MEMBER(FrameConstants, skyHorizon),
+    GLINT_MEMBER(FrameConstants, skyGround),      GLINT_MEMBER(FrameConstants, geometries),
+    GLINT_MEMBER(FrameConstants, instances),      GLINT_MEMBER(FrameConstants, materials),
+    GLINT_MEMBER(FrameConstants, lights),         GLINT_MEMBER(FrameConstants, rays),
+    GLINT_MEMBER(FrameConstants, hits),           GLINT_MEMBER(FrameConstants, orderedHits),
+    GLINT_MEMBER(FrameConstants, buckets),        GLINT_MEMBER(FrameConstants, rayDispatch),
+    GLINT_MEMBER(FrameConstants, bucketDispatch), GLINT_MEMBER(FrameConstants, counters),
 };
 
 constexpr MemberLayout kPushConstants[] = {
-    GLINT_MEMBER(PushConstants, frame),
-    GLINT_MEMBER(PushConstants, tlasIndex),
-    GLINT_MEMBER(PushConstants, bucket),
-    GLINT_MEMBER(PushConstants, geometry),
+    GLINT_MEMBER(PushConstants, frame),  GLINT_MEMBER(PushConstants, tlasIndex),
+    GLINT_MEMBER(PushConstants, bucket), GLINT_MEMBER(PushConstants, geometry),
     GLINT_MEMBER(PushConstants, pad),
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord),
-    GLINT_STRUCT(InstanceRecord),
-    GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(MaterialRecord),
-    GLINT_STRUCT(LightRecord),
-    GLINT_STRUCT(RayRecord),
-    GLINT_STRUCT(HitRecord),
-    GLINT_STRUCT(DispatchArguments),
-    GLINT_STRUCT(BucketRecord),
-    GLINT_STRUCT(FrameConstants),
-    GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(MaterialRecord), GLINT_STRUCT(LightRecord),       GLINT_STRUCT(RayRecord),
+    GLINT_STRUCT(HitRecord),      GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),
+    GLINT_STRUCT(FrameConstants), GLINT_STRUCT(PushConstants),
 };
 
 }  // namespace

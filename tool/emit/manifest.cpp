@@ -132,9 +132,8 @@ Json keys(const CompiledPackage& package) {
 Json dropped(const CompiledPackage& package) {
     Json list = Json::array();
     for (const DroppedFeature& feature : package.plan.dropped) {
-        list.push_back({{"feature", feature.feature},
-                        {"materials", feature.materials},
-                        {"reason", feature.reason}});
+        list.push_back(
+            {{"feature", feature.feature}, {"materials", feature.materials}, {"reason", feature.reason}});
     }
     return list;
 }
@@ -146,12 +145,9 @@ Json effects() {
 }
 
 Json counts(const Scene& scene, const CompiledPackage& package) {
-    return {{"materials", scene.materials.size()},
-            {"keysPossible", package.plan.keysPossible},
-            {"keysPresent", package.plan.keys.size()},
-            {"cases", package.plan.cases.size()},
-            {"modules", package.modules.size()},
-            {"uniqueSpirv", package.uniqueSpirv},
+    return {{"materials", scene.materials.size()},     {"keysPossible", package.plan.keysPossible},
+            {"keysPresent", package.plan.keys.size()}, {"cases", package.plan.cases.size()},
+            {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
             {"spirvBytes", package.spirvBytes}};
 }
 

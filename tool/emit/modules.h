@@ -3,7 +3,6 @@
 
 #include "emit/compile.h"
 #include "emit/sources.h"
-
 #include "spirv/compiler.h"
 
 #include <string>

@@ -132,20 +132,19 @@ std::vector<PrimitiveEntry> makePrimitives(const Scene& scene, std::span<const P
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
         entries.push_back(entry);
     }
-    std::ranges::sort(entries, {}, [](const PrimitiveEntry& entry) {
-        return std::pair(entry.mesh, entry.primitive);
-    });
+    std::ranges::sort(entries, {},
+                      [](const PrimitiveEntry& entry) { return std::pair(entry.mesh, entry.primitive); });
     return entries;
 }
 
 std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
     std::vector<SamplerEntry> entries;
     for (const Sampler& sampler : scene.samplers) {
-        entries.push_back(
-            {static_cast<std::uint32_t>(sampler.wrapU), static_cast<std::uint32_t>(sampler.wrapV),
-             static_cast<std::uint32_t>(sampler.magnification),
-             static_cast<std::uint32_t>(sampler.minification), static_cast<std::uint32_t>(sampler.mip),
-             sampler.mipmapped ? 1U : 0U});
+        entries.push_back({static_cast<std::uint32_t>(sampler.wrapU),
+                           static_cast<std::uint32_t>(sampler.wrapV),
+                           static_cast<std::uint32_t>(sampler.magnification),
+                           static_cast<std::uint32_t>(sampler.minification),
+                           static_cast<std::uint32_t>(sampler.mip), sampler.mipmapped ? 1U : 0U});
     }
     return entries;
 }
@@ -177,8 +176,8 @@ Status checkScene(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         for (const Primitive& primitive : mesh.primitives) {
             if (!within(primitive.material, scene.materials.size())) {
-                return indexError(scene, fmt::format("{} has no material {}", primitive.pointer,
-                                                     primitive.material));
+                return indexError(
+                    scene, fmt::format("{} has no material {}", primitive.pointer, primitive.material));
             }
         }
     }

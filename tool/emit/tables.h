@@ -4,7 +4,6 @@
 #include "emit/compile.h"
 
 #include <interop/scene.h>
-
 #include <span>
 #include <vector>
 

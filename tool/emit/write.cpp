@@ -1,5 +1,190 @@
 #include "emit/compile.h"
+#include "emit/manifest.h"
+#include "emit/swap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <string>
+#include <system_error>
 
 namespace glint {
-Status writePackage(const CompiledPackage&, const std::filesystem::path&) { return okStatus(); }
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A manifest is small; a larger file of that name is not one of ours.
+constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
+
+Diagnostic writeError(const fs::path& path, const std::string& why) {
+    return makeError("output-write", path.string(), "can't be written: " + why,
+                     "check the folder, its permissions and the free space; nothing was changed");
 }
+
+using Names = std::set<std::string, std::less<>>;
+
+// Names of the files of the package in `folder`; empty if it holds none.
+Names packageFiles(const fs::path& folder) {
+    if (const Result<Bytes> bytes = readFile(folder / package::kManifestFile, kMaxManifestBytes)) {
+        return manifestFiles({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+    return {};
+}
+
+// Whether tables.bin begins as one: how a package shows whose manifest is lost.
+bool hasTables(const fs::path& folder) {
+    const Result<Bytes> bytes = readFile(folder / package::kTablesFile);
+    return bytes && bytes->size() >= sizeof package::kMagic &&
+           std::memcmp(bytes->data(), package::kMagic, sizeof package::kMagic) == 0;
+}
+
+// What the new package replaces: a missing or empty folder, or a package.
+Result<Names> inspectFolder(const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (!fs::exists(status)) {
+        return Names{};
+    }
+    if (!fs::is_directory(status)) {
+        return makeError("output-not-a-folder", folder.string(), "is not a folder",
+                         "choose another output folder");
+    }
+    const bool empty = fs::is_empty(folder, error);
+    if (error) {
+        return writeError(folder, error.message());
+    }
+    Names names = packageFiles(folder);
+    if (names.empty() && hasTables(folder)) {
+        names = {package::kManifestFile, package::kTablesFile};
+    }
+    if (names.empty() && !empty) {
+        return makeError("output-not-a-package", folder.string(), "holds files that are no package of Glint",
+                         "choose an empty folder, or one that an earlier run wrote");
+    }
+    return names;
+}
+
+bool holds(const fs::path& path, const Bytes& bytes) {
+    std::error_code error;
+    if (!fs::is_regular_file(fs::symlink_status(path, error)) || fs::file_size(path, error) != bytes.size() ||
+        error) {
+        return false;
+    }
+    const Result<Bytes> present = readFile(path);
+    return present && *present == bytes;
+}
+
+bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
+    const auto unchanged = [&](const PackageFile& file) { return holds(folder / file.name, file.bytes); };
+    const auto isPart = [&](const std::string& name) {
+        return std::ranges::find(package.files, name, &PackageFile::name) != package.files.end();
+    };
+    std::error_code error;
+    const auto isGone = [&](const std::string& name) { return !fs::exists(folder / name, error); };
+    return std::ranges::all_of(package.files, unchanged) &&
+           std::ranges::all_of(earlier,
+                               [&](const std::string& name) { return isPart(name) || isGone(name); });
+}
+
+// The same file under a second name, time stamps and all; a copy where the file system has no hard links.
+std::error_code keepFile(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::create_hard_link(from, to, error);
+    if (!error) {
+        return error;
+    }
+    fs::copy_file(from, to, error);
+    if (!error) {
+        fs::last_write_time(to, fs::last_write_time(from, error), error);
+    }
+    return error;
+}
+
+Status stagePackage(const CompiledPackage& package, const fs::path& folder, const fs::path& staging) {
+    for (const PackageFile& file : package.files) {
+        const fs::path target = staging / file.name;
+        std::error_code error;
+        fs::create_directories(target.parent_path(), error);
+        if (error) {
+            return writeError(target, error.message());
+        }
+        if (holds(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
+            continue;
+        }
+        if (Status status = writeFile(target, file.bytes); !status) {
+            return writeError(folder / file.name, status.error().message);
+        }
+    }
+    return okStatus();
+}
+
+// What users keep beside the package, a dependency file for instance, stays.
+Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path& staging) {
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const fs::path name = entry->path().lexically_relative(folder);
+        const fs::path target = staging / name;
+        const fs::file_status status = entry->symlink_status(error);
+        std::error_code failure;
+        if (fs::is_directory(status)) {
+            const bool isParent = std::ranges::any_of(earlier, [&](const std::string& file) {
+                return file.starts_with(name.generic_string() + "/");
+            });
+            if (!isParent) {
+                fs::create_directories(target, failure);
+            }
+        } else if (!earlier.contains(name.generic_string())) {
+            fs::create_directories(target.parent_path(), failure);
+            if (!failure && fs::is_symlink(status)) {
+                fs::copy_symlink(entry->path(), target, failure);
+            } else if (!failure && fs::is_regular_file(status)) {
+                failure = keepFile(entry->path(), target);
+            } else if (!failure) {
+                failure = std::make_error_code(std::errc::not_supported);
+            }
+        }
+        if (failure) {
+            return makeError("output-write", entry->path().string(),
+                             "stands in the way of the new package: " + failure.message(),
+                             "move it elsewhere; nothing was changed");
+        }
+    }
+    return error ? Status(writeError(folder, error.message())) : okStatus();
+}
+
+}  // namespace
+
+Status writePackage(const CompiledPackage& package, const fs::path& folder) {
+    const Result<fs::path> resolved = resolveOutput(folder);
+    if (!resolved) {
+        return resolved.error();
+    }
+    recoverInterrupted(*resolved);
+    const Result<Names> earlier = inspectFolder(*resolved);
+    if (!earlier) {
+        return earlier.error();
+    }
+    if (isCurrent(package, *earlier, *resolved)) {
+        return okStatus();
+    }
+    Result<StagingFolder> staging = StagingFolder::create(*resolved);
+    if (!staging) {
+        return staging.error();
+    }
+    if (Status status = stagePackage(package, *resolved, staging->path()); !status) {
+        return status;
+    }
+    std::error_code error;
+    if (fs::exists(*resolved, error)) {
+        if (Status status = stageForeign(*earlier, *resolved, staging->path()); !status) {
+            return status;
+        }
+    }
+    return staging->swapInto(*resolved);
+}
+
+}  // namespace glint

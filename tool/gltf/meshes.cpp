@@ -189,7 +189,7 @@ Result<bool> isDrawable(const Reader& reader) {
 
 // Whether there is something to draw in `reader.primitive` after it was read.
 Result<bool> readPrimitive(const Reader& reader, const Json& json) {
-    const Result<bool> drawable = isDrawable(reader);
+    Result<bool> drawable = isDrawable(reader);
     if (!drawable || !*drawable) {
         return drawable;
     }

@@ -140,7 +140,6 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
 }  // namespace
 
 // Recursion goes as deep as the tables do, whatever the file holds.
-// NOLINTNEXTLINE(misc-no-recursion)
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer) {
     if (!object.is_object()) {
@@ -190,20 +189,6 @@ std::size_t arraySize(const Json& root, std::string_view pointer) {
         pointer.remove_prefix(token.size());
     }
     return value != nullptr && value->is_array() ? value->size() : 0;
-}
-
-std::string pointerToken(std::string_view name) {
-    std::string token;
-    for (const char c : name) {
-        if (c == '~') {
-            token += "~0";
-        } else if (c == '/') {
-            token += "~1";
-        } else {
-            token += c;
-        }
-    }
-    return token;
 }
 
 }  // namespace glint::gltf

@@ -60,7 +60,5 @@ const Json* findExtension(const Json& object, std::string_view name);
 const Json& arrayMember(const Json& object, std::string_view name);
 // Elements of the array at that JSON pointer; 0 where there is none.
 std::size_t arraySize(const Json& root, std::string_view pointer);
-// A JSON pointer's token: '~' and '/' escaped (RFC 6901).
-std::string pointerToken(std::string_view name);
 
 }  // namespace glint::gltf

@@ -98,7 +98,7 @@ TextureTable::TextureTable(Document& document, Scene& scene)
 Result<int> TextureTable::use(int texture) {
     std::optional<int>& known = textures_[static_cast<std::size_t>(texture)];
     if (!known) {
-        const Result<int> index = append(texture);
+        Result<int> index = append(texture);
         if (!index) {
             return index;
         }
@@ -130,7 +130,7 @@ Result<int> TextureTable::append(int texture) {
             "store the image as PNG or JPEG");
         return -1;
     }
-    const Result<int> image = useImage(source.source);
+    Result<int> image = useImage(source.source);
     if (!image) {
         return image;
     }

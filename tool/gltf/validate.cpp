@@ -157,8 +157,7 @@ void forEachAccessor(const Json& root, const Use& use) {
     }
 }
 
-// Copies the members of `rules` from `from`, and those of the objects they hold.
-// NOLINTNEXTLINE(misc-no-recursion): as deep as the tables
+// Copies the members of `rules` from `from`, and those of the objects they hold: as deep as the tables.
 Json project(const Json& from, std::span<const Rule> rules) {
     Json to = Json::object();
     for (const Rule& rule : rules) {

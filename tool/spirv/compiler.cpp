@@ -47,7 +47,8 @@ std::string_view trim(std::string_view text) {
 // The length of a "file:line" at the start of `text`, or 0: the first colon that a number and another colon
 // follow ends the file's name.
 std::size_t placeLength(std::string_view text) {
-    for (std::size_t colon = text.find(':'); colon != std::string_view::npos; colon = text.find(':', colon + 1)) {
+    for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+         colon = text.find(':', colon + 1)) {
         const char* const digits = text.data() + colon + 1;
         int line = 0;
         const auto [end, error] = std::from_chars(digits, text.data() + text.size(), line);
@@ -116,8 +117,7 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
     if (!translated) {
         return translated;
     }
-    Result<std::vector<std::uint32_t>> optimized =
-        optimizeSpirv(*translated, source.name, options.debugInfo);
+    Result<std::vector<std::uint32_t>> optimized = optimizeSpirv(*translated, source.name, options.debugInfo);
     if (!optimized) {
         return optimized;
     }
@@ -130,9 +130,8 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {
     spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_2);
     std::string message;
-    tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* text) {
-        message = text;
-    });
+    tools.SetMessageConsumer(
+        [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { message = text; });
     std::string text;
     constexpr std::uint32_t kOptions = SPV_BINARY_TO_TEXT_OPTION_NO_HEADER |
                                        SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES |

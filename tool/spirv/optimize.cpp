@@ -52,9 +52,10 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
     options.set_validator_options(layout);
     std::vector<std::uint32_t> optimized;
     if (!optimizer.Run(words.data(), words.size(), &optimized, options)) {
-        return makeError("spirv-optimize", name,
-                         "SPIRV-Tools can't optimise the shader: " + (message.empty() ? "no reason given" : message),
-                         "this is a defect of Glint; please report it with the scene");
+        return makeError(
+            "spirv-optimize", name,
+            "SPIRV-Tools can't optimise the shader: " + (message.empty() ? "no reason given" : message),
+            "this is a defect of Glint; please report it with the scene");
     }
     return optimized;
 }

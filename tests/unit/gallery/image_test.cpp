@@ -14,7 +14,7 @@ namespace {
 
 // The pixel at (x, y), red first.
 std::array<int, 3> pixel(const Image& image, int x, int y) {
-    const auto at = static_cast<std::size_t>((y * image.width + x) * image.channels);
+    const auto at = static_cast<std::size_t>(y * image.width + x) * static_cast<std::size_t>(image.channels);
     return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
 }
 
@@ -98,6 +98,12 @@ TEST(Png, EncodesTheHeader) {
     EXPECT_EQ((*png)[19], 5);
     EXPECT_EQ((*png)[23], 3);
     EXPECT_EQ((*png)[25], 6);  // colour type: RGBA
+}
+
+TEST(Png, RefusesAnImageWithoutPixels) {
+    const auto png = encodePng(Image{});
+    ASSERT_FALSE(png.ok());
+    EXPECT_EQ(png.error().id, "png-encode");
 }
 
 }  // namespace gallery::test

@@ -111,7 +111,7 @@ TEST(GalleryScene, ReportsAFolderThatCannotBeMade) {
 }
 
 TEST(GalleryMaterial, WritesWhatDiffersFromTheDefaults) {
-    EXPECT_EQ(toJson(MaterialSpec{.name = "Plain"}),
+    EXPECT_EQ(Json(toJson(MaterialSpec{.name = "Plain"})),
               Json::parse(R"({"name":"Plain","pbrMetallicRoughness":{}})"));
     const Json json =
         toJson(MaterialSpec{.name = "Full",

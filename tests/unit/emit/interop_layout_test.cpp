@@ -1,0 +1,107 @@
+// Every structure that host and device share has the same layout in SPIR-V as in C++.
+
+#include "emit/interop_layouts.h"
+#include "spirv/reader.h"
+#include "unit/emit/sample_scene.h"
+
+#include <glslang/SPIRV/spirv.hpp>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+namespace glint {
+namespace {
+
+using namespace glint::testing;
+
+struct ReflectedStruct {
+    std::string name;
+    std::map<std::uint32_t, std::string> memberNames;
+    std::map<std::uint32_t, std::uint32_t> offsets;
+    std::uint32_t memberCount = 0;
+    std::set<std::uint32_t> strides;  // of arrays of it
+};
+
+// Structures by type ID: names, offsets, and the strides of arrays of them.
+std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t>& words) {
+    std::map<std::uint32_t, ReflectedStruct> structs;
+    std::map<std::uint32_t, std::uint32_t> strideOf;
+    std::map<std::uint32_t, std::uint32_t> elementOf;
+    const Status status = visitSpirv(words, [&](const SpirvInstruction& instruction) {
+        const auto& operands = instruction.operands;
+        switch (instruction.opcode) {
+            case spv::OpName:
+                structs[operands[0]].name = spirvString(operands.subspan(1));
+                break;
+            case spv::OpMemberName:
+                structs[operands[0]].memberNames[operands[1]] = spirvString(operands.subspan(2));
+                break;
+            case spv::OpMemberDecorate:
+                if (operands[2] == spv::DecorationOffset) {
+                    structs[operands[0]].offsets[operands[1]] = operands[3];
+                }
+                break;
+            case spv::OpDecorate:
+                if (operands[1] == spv::DecorationArrayStride) {
+                    strideOf[operands[0]] = operands[2];
+                }
+                break;
+            case spv::OpTypeStruct:
+                structs[operands[0]].memberCount = static_cast<std::uint32_t>(operands.size() - 1);
+                break;
+            case spv::OpTypeArray:
+            case spv::OpTypeRuntimeArray:
+                elementOf[operands[0]] = operands[1];
+                break;
+            default:
+                break;
+        }
+    });
+    EXPECT_TRUE(status);
+    for (const auto& [array, stride] : strideOf) {
+        structs[elementOf[array]].strides.insert(stride);
+    }
+    return structs;
+}
+
+void expectEqual(const StructLayout& layout, const ReflectedStruct& reflected, const std::string& module) {
+    SCOPED_TRACE(module + ", " + std::string(layout.name));
+    ASSERT_EQ(reflected.memberCount, layout.members.size());
+    for (std::uint32_t i = 0; i < reflected.memberCount; ++i) {
+        ASSERT_TRUE(reflected.memberNames.contains(i));
+        ASSERT_TRUE(reflected.offsets.contains(i));
+        EXPECT_EQ(reflected.memberNames.at(i), layout.members[i].name);
+        EXPECT_EQ(reflected.offsets.at(i), layout.members[i].offset) << layout.members[i].name;
+    }
+    for (const std::uint32_t stride : reflected.strides) {
+        EXPECT_EQ(stride, layout.bytes);
+    }
+}
+
+TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
+    CompileSettings settings;
+    settings.debugInfo = true;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    const CompiledPackage package = compileSample(settings);
+    std::set<std::string_view> seen;
+    for (const CompiledModule& module : package.modules) {
+        const auto structs = reflect(module.spirv);
+        for (const StructLayout& layout : interopLayouts()) {
+            for (const auto& [id, reflected] : structs) {
+                // The same structure in registers has no offsets.
+                if (reflected.name == layout.name && !reflected.offsets.empty()) {
+                    seen.insert(layout.name);
+                    expectEqual(layout, reflected, module.name);
+                }
+            }
+        }
+    }
+    for (const StructLayout& layout : interopLayouts()) {
+        EXPECT_TRUE(seen.contains(layout.name)) << layout.name << " is in no module";
+    }
+}
+
+}  // namespace
+}  // namespace glint

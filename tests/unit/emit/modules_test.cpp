@@ -1,0 +1,82 @@
+#include "emit/modules.h"
+
+#include "emit/context.h"
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace glint {
+namespace {
+
+using package::ModuleRole;
+
+ModuleSource makeSource(int shaderId, const std::string& body) {
+    return {ModuleRole::ShadeCase, shaderId, ShaderStage::Compute,
+            "shade_" + std::to_string(shaderId) + ".comp",
+            "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n#line 10 \"case.glsl\"\n"
+            "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
+            "void main() {\n" +
+                body + "\n}\n"};
+}
+
+TEST(CompileModules, SharesTheFileOfEqualSpirv) {
+    const auto modules = compileModules({makeSource(0, "data.x = 1u + 1u;"), makeSource(1, "data.x = 3u;"),
+                                         makeSource(2, "data.x = 2u;  // the same in the end")},
+                                        2, false);
+    ASSERT_TRUE(modules) << toString(modules.error());
+    EXPECT_EQ(modules->at(0).file, "shade_0.spv");
+    EXPECT_EQ(modules->at(1).file, "shade_1.spv");
+    EXPECT_EQ(modules->at(2).file, "shade_0.spv");
+    EXPECT_EQ(modules->at(2).hash, modules->at(0).hash);
+    EXPECT_NE(modules->at(1).hash, modules->at(0).hash);
+}
+
+TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
+    for (const int jobs : {1, 2, 8}) {
+        std::vector<ModuleSource> sources;
+        for (int i = 0; i < 12; ++i) {
+            sources.push_back(makeSource(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
+        }
+        const auto modules = compileModules(std::move(sources), jobs, false);
+        ASSERT_FALSE(modules);
+        EXPECT_EQ(modules.error().id, "glsl");
+        EXPECT_EQ(modules.error().where, "case.glsl:13");
+        EXPECT_NE(modules.error().message.find("wrong5"), std::string::npos) << modules.error().message;
+    }
+}
+
+TEST(CompileModules, TakesNoModules) {
+    const auto modules = compileModules({}, 4, false);
+    ASSERT_TRUE(modules);
+    EXPECT_TRUE(modules->empty());
+}
+
+TEST(RenderTemplate, ReportsMissingAndMalformedTemplates) {
+    SourceSet sources;
+    sources.add("open.mustache", "{{#cases}} never closed");
+    for (const char* const name : {"none.mustache", "open.mustache"}) {
+        const auto text = renderTemplate(sources, name, {});
+        ASSERT_FALSE(text);
+        EXPECT_EQ(text.error().id, "template");
+        EXPECT_EQ(text.error().where, name);
+    }
+}
+
+TEST(RenderTemplate, EscapesNothing) {
+    SourceSet sources;
+    sources.add("a.mustache", "{{name}}");
+    const auto text = renderTemplate(sources, "a.mustache", {"name", std::string("a<b> & \"c\"")});
+    ASSERT_TRUE(text);
+    EXPECT_EQ(*text, "a<b> & \"c\"");
+}
+
+TEST(CommentText, CannotLeaveItsComment) {
+    EXPECT_EQ(commentText("plain"), "plain");
+    EXPECT_EQ(commentText("a\nb*/c\\"), "a?b__c_");
+    EXPECT_EQ(commentText(std::string(100, 'x')), std::string(64, 'x') + "...");
+}
+
+}  // namespace
+}  // namespace glint

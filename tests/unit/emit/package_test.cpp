@@ -1,0 +1,190 @@
+#include "emit/compile.h"
+#include "emit/modules.h"
+#include "gltf/import.h"
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace glint {
+namespace {
+
+using namespace glint::testing;
+using package::ModuleRole;
+
+nlohmann::json manifestOf(const CompiledPackage& package) {
+    return nlohmann::json::parse(textOf(findFile(package, package::kManifestFile)));
+}
+
+std::map<ModuleRole, int> countRoles(const CompiledPackage& package) {
+    std::map<ModuleRole, int> counts;
+    for (const CompiledModule& module : package.modules) {
+        ++counts[module.role];
+    }
+    return counts;
+}
+
+TEST(CompilePackage, HasTheModulesOfItsStrategies) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.strategies = package::kStrategyUber;
+    auto uber = countRoles(compileSample(settings));
+    EXPECT_EQ(uber.size(), 7U);
+    EXPECT_EQ(uber[ModuleRole::UberShade], 1);
+    EXPECT_EQ(uber[ModuleRole::Trace], 0);
+    settings.strategies = package::kStrategyVisibility;
+    auto visibility = countRoles(compileSample(settings));
+    EXPECT_EQ(visibility.size(), 12U);
+    EXPECT_EQ(visibility[ModuleRole::ShadeCase], 4);
+    EXPECT_EQ(visibility[ModuleRole::UberShade], 0);
+}
+
+TEST(CompilePackage, RefusesNoStrategy) {
+    CompileSettings settings;
+    settings.strategies = 0;
+    const auto package = compilePackage(makeSampleScene(), settings);
+    ASSERT_FALSE(package);
+    EXPECT_EQ(package.error().id, "strategy");
+}
+
+TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    const CompiledPackage package = compileSample(settings);
+    int casesSeen = 0;
+    for (const CompiledModule& module : package.modules) {
+        if (module.role != ModuleRole::ShadeCase) {
+            continue;
+        }
+        const Case& shaderCase = package.plan.cases[module.shaderId];
+        std::uint32_t expected = 0;
+        for (const Feature feature :
+             {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture, Feature::NormalTexture,
+              Feature::OcclusionTexture, Feature::EmissiveTexture}) {
+            expected += (shaderCase.always & bit(feature)) != 0 ? 1 : 0;
+        }
+        EXPECT_EQ(module.statistics.textureFetches, expected) << module.name;
+        ++casesSeen;
+    }
+    EXPECT_EQ(casesSeen, 4);
+}
+
+TEST(CompilePackage, IsTheSameToTheByteWhateverTheJobs) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.emitGlsl = true;
+    settings.jobs = 1;
+    const CompiledPackage one = compileSample(settings);
+    settings.jobs = 2;
+    const CompiledPackage two = compileSample(settings);
+    ASSERT_EQ(one.files.size(), two.files.size());
+    ASSERT_FALSE(one.files.empty());
+    for (std::size_t i = 0; i < one.files.size(); ++i) {
+        EXPECT_EQ(one.files[i].name, two.files[i].name);
+        EXPECT_EQ(one.files[i].bytes, two.files[i].bytes) << one.files[i].name;
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(one.files, {}, &PackageFile::name));
+}
+
+TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
+    CompileSettings settings;
+    settings.emitGlsl = true;
+    settings.emitHeader = false;
+    const CompiledPackage package = compileSample(settings);
+    EXPECT_EQ(findFile(package, "glint_tables.h"), nullptr);
+    for (const CompiledModule& module : package.modules) {
+        EXPECT_EQ(textOf(findFile(package, "glsl/" + module.name)), module.glsl);
+        EXPECT_EQ(module.glsl.find("#include"), std::string::npos);
+        const ShaderStage stage = module.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
+                                  : module.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
+                                                                               : ShaderStage::Compute;
+        const auto again = compileShader({module.name, stage, module.glsl}, {});
+        ASSERT_TRUE(again) << toString(again.error());
+        EXPECT_EQ(*again, module.spirv) << module.name;
+    }
+}
+
+TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.maxShaders = 3;
+    const auto package = compilePackage(makeSampleScene(), settings);
+    ASSERT_FALSE(package);
+    EXPECT_EQ(package.error().id, "max-shaders");
+    EXPECT_FALSE(package.error().message.empty());
+    settings.maxShaders = 4;
+    EXPECT_TRUE(compilePackage(makeSampleScene(), settings));
+}
+
+TEST(Manifest, DescribesThePackage) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    const CompiledPackage package = compileSample(settings);
+    const nlohmann::json manifest = manifestOf(package);
+    EXPECT_EQ(manifest["format"], "glint-package");
+    EXPECT_EQ(manifest["version"], package::kVersion);
+    EXPECT_EQ(manifest["merge"], "none");
+    EXPECT_EQ(manifest["strategies"], (nlohmann::json{"uber", "visibility"}));
+    EXPECT_EQ(manifest["sources"][1]["file"], "data/sample.bin");
+    EXPECT_EQ(manifest["counts"]["cases"], 4);
+    EXPECT_EQ(manifest["counts"]["uniqueSpirv"], package.uniqueSpirv);
+    EXPECT_EQ(manifest["buckets"], 5);
+    EXPECT_EQ(manifest["effects"][0]["name"], "reflection");
+    EXPECT_EQ(manifest["features"].size(), featureTable().size());
+    ASSERT_EQ(manifest["shaders"].size(), 4U);
+    std::set<int> materials;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const nlohmann::json& shader = manifest["shaders"][i];
+        EXPECT_EQ(shader["id"], i);
+        EXPECT_EQ(shader["keys"], 1);
+        EXPECT_GT(shader["stages"]["visibility"]["instructions"], 0);
+        for (const nlohmann::json& material : shader["materials"]) {
+            materials.insert(material["index"].get<int>());
+        }
+    }
+    EXPECT_EQ(materials, (std::set<int>{0, 1, 2, 3}));
+    // Of the alpha mask, as hits are opaque.
+    EXPECT_EQ(manifest["dropped"].size(), package.plan.dropped.size());
+    // All files but the manifest itself.
+    ASSERT_EQ(manifest["files"].size() + 1, package.files.size());
+    for (const nlohmann::json& file : manifest["files"]) {
+        const PackageFile* const found = findFile(package, file["file"].get<std::string>());
+        ASSERT_NE(found, nullptr);
+        EXPECT_EQ(file["hash"], hexHash(hashBytes(found->bytes)));
+    }
+}
+
+TEST(Manifest, TakesNamesThatAreNotUtf8) {
+    Scene scene = makeSampleScene();
+    scene.materials[0].name = "\xFF\xC0";
+    const auto package = compilePackage(scene, {});
+    ASSERT_TRUE(package) << toString(package.error());
+    EXPECT_FALSE(manifestOf(*package).empty());
+}
+
+// Scenes by others, through the importer.
+TEST(CompilePackage, CompilesScenesByOthers) {
+    const std::filesystem::path models =
+        std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/models/features";
+    const std::filesystem::path path = models / "TextureTransformMultiTest/TextureTransformMultiTest.glb";
+    if (!std::filesystem::exists(path)) {
+        GTEST_SKIP() << path << " is not there";
+    }
+    const auto scene = importScene(path);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+        CompileSettings settings;
+        settings.plan.merge = merge;
+        const auto package = compilePackage(*scene, settings);
+        ASSERT_TRUE(package) << toString(package.error());
+        EXPECT_GT(package->uniqueSpirv, 10);
+    }
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,90 @@
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <unistd.h>
+#include <utility>
+
+namespace glint::testing {
+
+namespace {
+
+Primitive makeTriangle(int index) {
+    Primitive primitive;
+    primitive.pointer = "/meshes/0/primitives/" + std::to_string(index);
+    primitive.material = index;
+    primitive.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    primitive.normals.assign(3, {0, 0, 1});
+    primitive.texCoords0 = {{0, 0}, {1, 0}, {0, 1}};
+    primitive.indices = {0, 1, 2};
+    return primitive;
+}
+
+}  // namespace
+
+Scene makeSampleScene() {
+    Scene scene;
+    scene.path = "models/sample scene.gltf";
+    scene.images.resize(2);
+    scene.samplers.resize(2);
+    scene.samplers[1].wrapU = Wrap::MirroredRepeat;
+    scene.samplers[1].mipmapped = false;
+    scene.textures = {{0, 0}, {1, 1}};
+    scene.files = {{"models/sample scene.gltf", 100, 1}, {"models/data/sample.bin", 200, 2}};
+
+    scene.materials.resize(4);
+    scene.materials[0].name = "plain */ \\";
+    scene.materials[1].name = "textured\n\"red\"";
+    scene.materials[1].texture(TextureSlot::BaseColor).texture = 0;
+    scene.materials[1].doubleSided = true;
+    scene.materials[2].name = "transformed";
+    scene.materials[2].texture(TextureSlot::BaseColor).texture = 1;
+    scene.materials[2].texture(TextureSlot::Occlusion).texture = 1;
+    scene.materials[2].texture(TextureSlot::Occlusion).transform = {{0.25F, 0.5F}, 1.5707964F, {2, 3}};
+    scene.materials[3].name = "";
+    scene.materials[3].unlit = true;
+    scene.materials[3].alphaMode = AlphaMode::Mask;
+    scene.materials[3].texture(TextureSlot::BaseColor).texture = 0;
+
+    Mesh mesh;
+    for (int i = 0; i < 4; ++i) {
+        mesh.primitives.push_back(makeTriangle(i));
+    }
+    scene.meshes.push_back(std::move(mesh));
+    return scene;
+}
+
+CompiledPackage compileSample(const CompileSettings& settings) {
+    Result<CompiledPackage> package = compilePackage(makeSampleScene(), settings);
+    EXPECT_TRUE(package) << toString(package.error());
+    return package ? std::move(*package) : CompiledPackage{};
+}
+
+const PackageFile* findFile(const CompiledPackage& package, std::string_view name) {
+    const auto place = std::ranges::find(package.files, name, &PackageFile::name);
+    return place == package.files.end() ? nullptr : &*place;
+}
+
+std::string_view textOf(const PackageFile* file) {
+    if (file == nullptr) {
+        return {};
+    }
+    return {reinterpret_cast<const char*>(file->bytes.data()), file->bytes.size()};
+}
+
+TemporaryFolder::TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "glint-test-XXXXXX").string();
+    const char* const made = mkdtemp(pattern.data());
+    EXPECT_NE(made, nullptr);
+    path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace glint::testing

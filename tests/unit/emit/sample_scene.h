@@ -1,0 +1,36 @@
+// A small scene in memory, and a folder for a test's files.
+#pragma once
+
+#include "emit/compile.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace glint::testing {
+
+// Four materials on one mesh of four triangles: plain, base colour texture, the same image as base colour and
+// occlusion with a transform, unlit and masked.
+Scene makeSampleScene();
+
+// Compiles with small settings; fails the test where that fails.
+CompiledPackage compileSample(const CompileSettings& settings = {});
+
+const PackageFile* findFile(const CompiledPackage& package, std::string_view name);
+std::string_view textOf(const PackageFile* file);
+
+// Made when constructed, removed when destroyed.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const {
+        return path_;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace glint::testing

@@ -1,0 +1,244 @@
+#include "emit/compile.h"
+#include "emit/manifest.h"
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace glint {
+namespace {
+
+using namespace glint::testing;
+namespace fs = std::filesystem;
+
+// A package of a few text files: writing looks at nothing else.
+CompiledPackage makePackage(const std::map<std::string, std::string>& contents) {
+    CompiledPackage package;
+    std::string list;
+    for (const auto& [name, text] : contents) {
+        package.files.push_back({name, Bytes(text.begin(), text.end())});
+        list += list.empty() ? "" : ",";
+        list += "{\"file\":\"";
+        list += name;
+        list += "\"}";
+    }
+    std::string manifest = "{\"format\":\"glint-package\",\"files\":[";
+    manifest += list;
+    manifest += "]}";
+    package.files.push_back({package::kManifestFile, Bytes(manifest.begin(), manifest.end())});
+    return package;
+}
+
+std::map<std::string, std::string> readFolder(const fs::path& folder) {
+    std::map<std::string, std::string> contents;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) {
+            const auto bytes = readFile(entry.path());
+            EXPECT_TRUE(bytes);
+            contents[entry.path().lexically_relative(folder).generic_string()] =
+                std::string(bytes->begin(), bytes->end());
+        }
+    }
+    return contents;
+}
+
+std::size_t countEntries(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+class WritePackage : public ::testing::Test {
+protected:
+    const CompiledPackage first_ =
+        makePackage({{"tables.bin", "one"}, {"same.spv", "same"}, {"old.spv", "x"}, {"glsl/a.comp", "a"}});
+    const CompiledPackage second_ =
+        makePackage({{"tables.bin", "two"}, {"same.spv", "same"}, {"new.spv", "y"}});
+    TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path() / "deep" / "out";
+};
+
+TEST_F(WritePackage, MakesTheFolderAndReplacesIt) {
+    Status status = writePackage(first_, folder_);
+    ASSERT_TRUE(status) << toString(status.error());
+    auto contents = readFolder(folder_);
+    EXPECT_EQ(contents.size(), 5U);
+    EXPECT_EQ(contents["glsl/a.comp"], "a");
+
+    status = writePackage(second_, folder_);
+    ASSERT_TRUE(status) << toString(status.error());
+    contents = readFolder(folder_);
+    EXPECT_EQ(contents.size(), 4U);
+    EXPECT_EQ(contents["tables.bin"], "two");
+    EXPECT_EQ(contents["new.spv"], "y");
+    EXPECT_FALSE(fs::exists(folder_ / "glsl"));
+    // No staging folder stays behind.
+    EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
+}
+
+TEST_F(WritePackage, KeepsTheTimesOfUnchangedFiles) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    const auto past = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    for (const char* const name : {"same.spv", "tables.bin"}) {
+        fs::last_write_time(folder_ / name, past);
+    }
+    ASSERT_TRUE(writePackage(first_, folder_));
+    EXPECT_EQ(fs::last_write_time(folder_ / "tables.bin"), past);
+    ASSERT_TRUE(writePackage(second_, folder_));
+    EXPECT_EQ(fs::last_write_time(folder_ / "same.spv"), past);
+    EXPECT_GT(fs::last_write_time(folder_ / "tables.bin"), past);
+}
+
+TEST_F(WritePackage, RemovesAFileThatIsNoLongerPartOfIt) {
+    ASSERT_TRUE(writePackage(makePackage({{"tables.bin", "t"}, {"b.spv", "b"}}), folder_));
+    ASSERT_TRUE(writePackage(makePackage({{"tables.bin", "t"}}), folder_));
+    EXPECT_FALSE(fs::exists(folder_ / "b.spv"));
+}
+
+TEST_F(WritePackage, KeepsWhatUsersPutBesideIt) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    fs::create_directories(folder_ / "notes/empty");
+    std::ofstream(folder_ / "notes/mine.txt") << "mine";
+    std::ofstream(folder_ / "build.d") << "depends";
+    fs::create_symlink("build.d", folder_ / "link.d");
+    const Status status = writePackage(second_, folder_);
+    ASSERT_TRUE(status) << toString(status.error());
+    const auto contents = readFolder(folder_);
+    EXPECT_EQ(contents.at("notes/mine.txt"), "mine");
+    EXPECT_EQ(contents.at("build.d"), "depends");
+    EXPECT_TRUE(fs::is_directory(folder_ / "notes/empty"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.d"));
+    EXPECT_FALSE(contents.contains("old.spv"));
+}
+
+TEST_F(WritePackage, RefusesAFolderThatHoldsSomethingElse) {
+    fs::create_directories(folder_);
+    ASSERT_TRUE(writePackage(first_, folder_)) << "an empty folder is fine";
+    const fs::path other = temporary_.path() / "other";
+    fs::create_directories(other);
+    std::ofstream(other / "manifest.json") << "{\"name\": \"a web page\"}";
+    std::ofstream(other / "tables.bin") << "not ours";
+    const Status status = writePackage(second_, other);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().id, "output-not-a-package");
+    EXPECT_EQ(readFolder(other).size(), 2U);
+}
+
+TEST_F(WritePackage, ReplacesAPackageWhoseManifestIsLost) {
+    const fs::path damaged = temporary_.path() / "damaged";
+    fs::create_directories(damaged);
+    std::ofstream(damaged / "tables.bin") << "GLINTPKG and more";
+    std::ofstream(damaged / "manifest.json") << "{ cut";
+    const Status status = writePackage(second_, damaged);
+    ASSERT_TRUE(status) << toString(status.error());
+    EXPECT_EQ(readFolder(damaged).at("tables.bin"), "two");
+}
+
+TEST_F(WritePackage, RefusesPlacesThatCannotBeWritten) {
+    std::ofstream(temporary_.path() / "file") << "a file";
+    const Status onFile = writePackage(first_, temporary_.path() / "file");
+    ASSERT_FALSE(onFile);
+    EXPECT_EQ(onFile.error().id, "output-not-a-folder");
+    const Status belowFile = writePackage(first_, temporary_.path() / "file" / "out");
+    ASSERT_FALSE(belowFile);
+    EXPECT_EQ(belowFile.error().id, "output-write");
+    const Status inProc = writePackage(first_, "/proc/glint-out");
+    ASSERT_FALSE(inProc);
+    EXPECT_EQ(inProc.error().id, "output-write");
+    EXPECT_FALSE(writePackage(first_, ""));
+    EXPECT_FALSE(writePackage(first_, "/"));
+}
+
+// Foreign files where a file of the new package must go: staging fails half-way, the old package stays.
+TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenItFails) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    fs::create_directories(folder_ / "new.spv");
+    std::ofstream(folder_ / "new.spv" / "foreign") << "f";
+    const auto before = readFolder(folder_);
+    const Status status = writePackage(second_, folder_);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().id, "output-write");
+    EXPECT_FALSE(status.error().hint.empty());
+    EXPECT_EQ(readFolder(folder_), before);
+    EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
+}
+
+TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenANameCannotBeWritten) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    const auto before = readFolder(folder_);
+    const CompiledPackage tooLong =
+        makePackage({{"tables.bin", "three"}, {std::string(300, 'n') + ".spv", "n"}});
+    const Status status = writePackage(tooLong, folder_);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().id, "output-write");
+    EXPECT_EQ(readFolder(folder_), before);
+    EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
+}
+
+// The number of a process that has ended.
+int endedProcess() {
+    const pid_t child = fork();
+    if (child == 0) {
+        _exit(0);
+    }
+    waitpid(child, nullptr, 0);
+    return static_cast<int>(child);
+}
+
+TEST_F(WritePackage, CleansUpAfterRunsThatWereKilled) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    const fs::path parent = folder_.parent_path();
+    const std::string dead = std::to_string(endedProcess());
+    fs::create_directories(parent / (".out.glint-new-" + dead + "-0") / "half");
+    fs::create_directories(parent / (".out.glint-new-" + std::to_string(getpid()) + "-7"));
+    fs::create_directories(parent / ".out.glint-new-notes");
+    // Killed between two renames: the earlier package is brought back, then replaced.
+    fs::rename(folder_, parent / (".out.glint-old-" + dead + "-0"));
+    std::ofstream(parent / (".out.glint-old-" + dead + "-0") / "mine.txt") << "mine";
+    ASSERT_TRUE(writePackage(second_, folder_));
+    EXPECT_EQ(readFolder(folder_).at("mine.txt"), "mine");
+    EXPECT_EQ(readFolder(folder_).at("tables.bin"), "two");
+    EXPECT_FALSE(fs::exists(parent / (".out.glint-new-" + dead + "-0")));
+    EXPECT_FALSE(fs::exists(parent / (".out.glint-old-" + dead + "-0")));
+    // Of a process that runs, or of nobody: not ours to remove.
+    EXPECT_TRUE(fs::exists(parent / (".out.glint-new-" + std::to_string(getpid()) + "-7")));
+    EXPECT_TRUE(fs::exists(parent / ".out.glint-new-notes"));
+}
+
+TEST_F(WritePackage, FollowsALinkToTheFolder) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    const fs::path link = temporary_.path() / "link";
+    fs::create_directory_symlink(folder_, link);
+    ASSERT_TRUE(writePackage(second_, link / ""));
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_EQ(readFolder(folder_).at("tables.bin"), "two");
+}
+
+TEST_F(WritePackage, KeepsThePermissionsOfTheFolder) {
+    ASSERT_TRUE(writePackage(first_, folder_));
+    fs::permissions(folder_, fs::perms::owner_all | fs::perms::group_read);
+    ASSERT_TRUE(writePackage(second_, folder_));
+    EXPECT_EQ(fs::status(folder_).permissions(), fs::perms::owner_all | fs::perms::group_read);
+}
+
+TEST(WriteCompiled, WritesWhatWasCompiled) {
+    const TemporaryFolder temporary;
+    CompileSettings settings;
+    settings.emitGlsl = true;
+    const CompiledPackage package = compileSample(settings);
+    const Status status = writePackage(package, temporary.path() / "out");
+    ASSERT_TRUE(status) << toString(status.error());
+    const auto contents = readFolder(temporary.path() / "out");
+    EXPECT_EQ(contents.size(), package.files.size());
+    for (const PackageFile& file : package.files) {
+        EXPECT_EQ(contents.at(file.name), textOf(&file));
+    }
+    EXPECT_EQ(manifestFiles(contents.at("manifest.json")).size(), package.files.size());
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,20 @@
+// What most geometry tests look at.
+#pragma once
+
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+namespace glint::test {
+
+// The only primitive of a scene that must import.
+inline const Primitive& onlyPrimitive(const Result<Scene>& scene) {
+    static const Primitive kNone;
+    if (!scene || scene->meshes.empty() || scene->meshes[0].primitives.empty()) {
+        ADD_FAILURE() << (scene ? "no primitive" : toString(scene.error()));
+        return kNone;
+    }
+    return scene->meshes[0].primitives[0];
+}
+
+}  // namespace glint::test

@@ -1,0 +1,73 @@
+// Tests on a Vulkan device, with synchronization validation: no test may leave a message.
+#pragma once
+
+#include "package_builder.h"
+
+#include <glint/renderer.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+
+// Arrays that a SceneView points into.
+struct TestScene {
+    struct Mesh {
+        std::uint32_t mesh = 0;
+        std::uint32_t primitive = 0;
+        std::vector<std::array<float, 3>> positions;
+        std::vector<std::uint32_t> indices;
+    };
+    struct Pixels {
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+        std::vector<std::uint8_t> rgba8;
+    };
+    std::vector<Mesh> meshes;
+    std::vector<InstanceView> instances;
+    std::vector<Pixels> images;
+    std::vector<LightView> lights;
+
+    // Valid until a member changes.
+    SceneView view();
+
+private:
+    std::vector<PrimitiveView> primitiveViews_;
+    std::vector<ImageView> imageViews_;
+};
+
+// A square of two triangles, side 2, in the plane z = `z`, counter-clockwise seen from +z.
+TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z = 0.0F);
+
+using Rows = std::array<float, 12>;
+inline constexpr Rows kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+// From z = `z`, towards the origin.
+CameraView makeCamera(float z);
+
+class DeviceTest : public testing::Test {
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    Context& context() {
+        return *context_;
+    }
+    // Writes and loads a package.
+    Package load(const PackageSpec& spec);
+    // Fails the test, and gives null, where there is an error.
+    std::unique_ptr<GpuScene> upload(const Package& package, TestScene& scene);
+    std::unique_ptr<Renderer> makeRenderer(const Package& package, GpuScene& scene,
+                                           package::Strategy strategy, std::uint32_t width,
+                                           std::uint32_t height);
+
+    TemporaryFolder folder_;
+    std::unique_ptr<Context> context_;
+};
+
+}  // namespace glint::test

@@ -1,0 +1,191 @@
+#include "package_builder.h"
+
+#include "interop_hash.h"
+
+#include <xxhash.h>
+
+#include <atomic>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <unistd.h>
+
+namespace glint::test {
+
+using package::ModuleRole;
+
+namespace {
+
+struct NamedRole {
+    ModuleRole role;
+    const char* name;
+};
+
+constexpr NamedRole kRoles[] = {
+    {ModuleRole::GBufferVertex, "gbuffer.vert"},
+    {ModuleRole::GBufferFragment, "gbuffer.frag"},
+    {ModuleRole::Lighting, "lighting.comp"},
+    {ModuleRole::ReflectionRays, "reflection_rays.comp"},
+    {ModuleRole::RayDispatch, "ray_dispatch.comp"},
+    {ModuleRole::UberShade, "uber.comp"},
+    {ModuleRole::Trace, "trace.comp"},
+    {ModuleRole::BucketCount, "bucket_count.comp"},
+    {ModuleRole::BucketOffset, "bucket_offset.comp"},
+    {ModuleRole::BucketCopy, "bucket_copy.comp"},
+    {ModuleRole::ShadeMiss, "shade_miss.comp"},
+    {ModuleRole::ShadeCase, "shade_case.comp"},
+    {ModuleRole::Compose, "compose.comp"},
+};
+
+// A module that is one by its header only.
+const std::vector<std::uint32_t> kEmptyModule{0x07230203, 0x00010500, 0, 1, 0};
+
+PackageSpec makeWithModules(const auto& wordsOf) {
+    PackageSpec spec;
+    spec.interopHash = interopHash();
+    for (const NamedRole& named : kRoles) {
+        spec.modules.push_back({named.role, 0, std::string(named.name) + ".spv", wordsOf(named.name)});
+    }
+    spec.caseCount = 1;
+    spec.cases = {{0, 0, "Plain"}};
+    spec.materials.resize(1);
+    spec.primitives = {makePrimitive(0, 0)};
+    return spec;
+}
+
+class Writer {
+public:
+    template <typename T>
+    void add(package::SectionKind kind, const std::vector<T>& elements) {
+        sections_.push_back({kind, sizeof(T), content_.size(), elements.size()});
+        const auto* first = reinterpret_cast<const std::uint8_t*>(elements.data());
+        content_.insert(content_.end(), first, first + elements.size() * sizeof(T));
+        content_.resize((content_.size() + 7) / 8 * 8);
+    }
+
+    std::vector<std::uint8_t> finish(const package::PackageHeader& header) {
+        const std::size_t start = sizeof(header) + sections_.size() * sizeof(package::PackageSection);
+        std::vector<std::uint8_t> bytes(start);
+        for (package::PackageSection& section : sections_) {
+            section.offset += start;
+        }
+        std::memcpy(bytes.data(), &header, sizeof(header));
+        std::memcpy(bytes.data() + sizeof(header), sections_.data(), start - sizeof(header));
+        bytes.insert(bytes.end(), content_.begin(), content_.end());
+        reseal(bytes);
+        return bytes;
+    }
+
+    std::uint32_t sectionCount() const {
+        return static_cast<std::uint32_t>(sections_.size());
+    }
+
+private:
+    std::vector<package::PackageSection> sections_;
+    std::vector<std::uint8_t> content_;
+};
+
+package::StringRef addString(std::vector<char>& strings, const std::string& text) {
+    const package::StringRef ref{static_cast<std::uint32_t>(strings.size()),
+                                 static_cast<std::uint32_t>(text.size())};
+    strings.insert(strings.end(), text.begin(), text.end());
+    return ref;
+}
+
+}  // namespace
+
+package::PrimitiveEntry makePrimitive(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t flags) {
+    package::PrimitiveEntry entry{};
+    entry.mesh = mesh;
+    entry.primitive = primitive;
+    entry.geometryFlags = flags;
+    return entry;
+}
+
+PackageSpec makeSpec() {
+    return makeWithModules([](const std::string&) { return kEmptyModule; });
+}
+
+PackageSpec makeDeviceSpec() {
+    return makeWithModules([](const std::string& name) { return readTestShader(name); });
+}
+
+std::vector<std::uint32_t> readTestShader(const std::string& name) {
+    std::ifstream stream(std::filesystem::path(GLINT_TEST_SHADERS) / (name + ".spv"), std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+    return words;
+}
+
+std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
+    std::vector<char> strings;
+    std::vector<package::ModuleEntry> modules;
+    for (const ModuleSpec& module : spec.modules) {
+        const std::uint64_t bytes = module.words.size() * sizeof(std::uint32_t);
+        modules.push_back({module.role, module.shaderId, addString(strings, module.file), bytes,
+                           XXH3_64bits(module.words.data(), bytes)});
+    }
+    std::vector<package::CaseEntry> cases;
+    for (const CaseSpec& entry : spec.cases) {
+        cases.push_back({entry.always, entry.sometimes, addString(strings, entry.name), 1, 0});
+    }
+    Writer writer;
+    writer.add(package::SectionKind::Modules, modules);
+    writer.add(package::SectionKind::Materials, spec.materials);
+    writer.add(package::SectionKind::Primitives, spec.primitives);
+    writer.add(package::SectionKind::Textures, spec.textures);
+    writer.add(package::SectionKind::Samplers, spec.samplers);
+    writer.add(package::SectionKind::Strings, strings);
+    writer.add(package::SectionKind::Cases, cases);
+
+    package::PackageHeader header{};
+    std::memcpy(header.magic, package::kMagic, sizeof(header.magic));
+    header.version = spec.version;
+    header.sectionCount = writer.sectionCount();
+    header.strategies = spec.strategies;
+    header.alphaTested = spec.alphaTested;
+    header.caseCount = spec.caseCount;
+    header.interopHash = spec.interopHash;
+    return writer.finish(header);
+}
+
+void reseal(std::vector<std::uint8_t>& tables) {
+    package::PackageHeader header{};
+    std::memcpy(&header, tables.data(), sizeof(header));
+    header.fileBytes = tables.size();
+    header.contentHash = XXH3_64bits(tables.data() + sizeof(header), tables.size() - sizeof(header));
+    std::memcpy(tables.data(), &header, sizeof(header));
+}
+
+void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
+    std::ofstream stream(path, std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void writeModules(const PackageSpec& spec, const std::filesystem::path& folder) {
+    for (const ModuleSpec& module : spec.modules) {
+        const auto* first = reinterpret_cast<const std::uint8_t*>(module.words.data());
+        writeBytes(folder / module.file, {first, first + module.words.size() * sizeof(std::uint32_t)});
+    }
+}
+
+void writePackage(const PackageSpec& spec, const std::filesystem::path& folder) {
+    writeModules(spec, folder);
+    writeBytes(folder / package::kTablesFile, serialize(spec));
+}
+
+TemporaryFolder::TemporaryFolder() {
+    static std::atomic<int> number{0};
+    path_ = std::filesystem::temp_directory_path() /
+            ("glint_runtime_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
+    std::filesystem::create_directories(path_);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace glint::test

@@ -1,0 +1,76 @@
+// Packages made by hand: what a compiler would write, and what it never should.
+#pragma once
+
+#include "interop/scene.h"
+
+#include <glint/package_format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+
+struct ModuleSpec {
+    package::ModuleRole role = package::ModuleRole::Trace;
+    std::uint32_t shaderId = 0;
+    std::string file;
+    std::vector<std::uint32_t> words;
+};
+
+struct CaseSpec {
+    std::uint64_t always = 0;
+    std::uint64_t sometimes = 0;
+    std::string name;
+};
+
+// Every member may be broken on purpose; serialize() writes what it finds.
+struct PackageSpec {
+    std::uint32_t version = package::kVersion;
+    std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    std::uint32_t alphaTested = 0;
+    std::uint32_t caseCount = 0;
+    std::uint32_t interopHash = 0;
+    std::vector<ModuleSpec> modules;
+    std::vector<gpu::MaterialRecord> materials;
+    std::vector<package::PrimitiveEntry> primitives;
+    std::vector<package::TextureEntry> textures;
+    std::vector<package::SamplerEntry> samplers;
+    std::vector<CaseSpec> cases;
+};
+
+// One case, one material, primitive 0 of mesh 0, both strategies; every module is the same SPIR-V header.
+PackageSpec makeSpec();
+// The same, with modules of the folder that tests/unit/runtime/shaders was compiled into.
+PackageSpec makeDeviceSpec();
+// Words of a module of that folder. Empty if there is none.
+std::vector<std::uint32_t> readTestShader(const std::string& name);
+
+package::PrimitiveEntry makePrimitive(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t flags = 0);
+
+// The bytes of tables.bin, header and hashes in order.
+std::vector<std::uint8_t> serialize(const PackageSpec& spec);
+// Makes the header's hash and size fit the bytes again, after a change to them.
+void reseal(std::vector<std::uint8_t>& tables);
+
+void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
+void writeModules(const PackageSpec& spec, const std::filesystem::path& folder);
+void writePackage(const PackageSpec& spec, const std::filesystem::path& folder);
+
+// A folder of its own, removed in the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const {
+        return path_;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace glint::test

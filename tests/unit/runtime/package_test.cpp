@@ -1,0 +1,295 @@
+// The loader accepts what a compiler writes, and nothing else.
+#include "package_builder.h"
+#include "package_state.h"
+
+#include <glint/package.h>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <functional>
+
+namespace glint {
+namespace {
+
+using package::ModuleRole;
+using test::PackageSpec;
+
+class PackageTest : public testing::Test {
+protected:
+    void write(const PackageSpec& spec) {
+        test::writePackage(spec, folder_.path());
+    }
+    // The ID of the error, or "" for a package that loads.
+    std::string load() {
+        const Result<Package> loaded = Package::load(folder_.path());
+        if (loaded) {
+            return "";
+        }
+        EXPECT_FALSE(loaded.error().where.empty());
+        EXPECT_FALSE(loaded.error().message.empty());
+        EXPECT_FALSE(loaded.error().hint.empty());
+        return loaded.error().id;
+    }
+    std::string loadTables(const std::vector<std::uint8_t>& bytes) {
+        test::writeBytes(folder_.path() / package::kTablesFile, bytes);
+        return load();
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+PackageSpec makeRichSpec() {
+    PackageSpec spec = test::makeSpec();
+    spec.alphaTested = 1;
+    spec.textures = {{0, 1}, {0, 0}};
+    spec.samplers = {{0, 1, 1, 1, 1, 1}};
+    spec.materials[0].textures[0].textureIndex = 1;
+    spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryAlphaTested), test::makePrimitive(2, 1)};
+    return spec;
+}
+
+TEST_F(PackageTest, LoadsAValidPackage) {
+    PackageSpec spec = makeRichSpec();
+    spec.caseCount = 2;
+    spec.cases.push_back({0b01, 0b10, "Textured"});
+    spec.modules.push_back({ModuleRole::ShadeCase, 1, "shade_case.comp.spv", spec.modules[0].words});
+    spec.primitives[1].shaderId = 1;
+    spec.primitives[1].featureLobes = 0b11;
+    write(spec);
+    const Result<Package> loaded = Package::load(folder_.path());
+    ASSERT_TRUE(loaded) << toString(loaded.error());
+    const Package& package = *loaded;
+    EXPECT_TRUE(package.supports(package::kStrategyUber));
+    EXPECT_TRUE(package.supports(package::kStrategyVisibility));
+    EXPECT_TRUE(package.alphaTested());
+    EXPECT_EQ(package.caseCount(), 2U);
+    EXPECT_EQ(package.bucketCount(), 3U);
+    EXPECT_EQ(package.string(package.cases()[1].name), "Textured");
+    EXPECT_EQ(package.materials()[0].textures[0].textureIndex, 1U);
+    EXPECT_EQ(package.spirv(ModuleRole::Trace).size(), 5U);
+    EXPECT_EQ(package.spirv(ModuleRole::ShadeCase, 0).data(), package.spirv(ModuleRole::ShadeCase, 1).data());
+    EXPECT_TRUE(package.spirv(ModuleRole::ShadeCase, 2).empty());
+    ASSERT_NE(package.findPrimitive(2, 1), nullptr);
+    EXPECT_EQ(package.findPrimitive(2, 1)->shaderId, 1U);
+    EXPECT_EQ(package.findPrimitive(2, 0), nullptr);
+    EXPECT_EQ(package.findPrimitive(3, 0), nullptr);
+}
+
+// The checks without the files: the ID of the error, or "".
+std::string checkBytes(std::vector<std::uint8_t> bytes) {
+    Package::State state;
+    state.tables = std::move(bytes);
+    Status status = readTables(state, "tables.bin");
+    if (status) {
+        status = checkTables(state, "tables.bin");
+    }
+    return status ? "" : status.error().id;
+}
+
+TEST_F(PackageTest, EveryTruncationIsAnError) {
+    write(makeRichSpec());
+    const std::vector<std::uint8_t> whole = test::serialize(makeRichSpec());
+    ASSERT_EQ(loadTables(whole), "");
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        ASSERT_EQ(checkBytes({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
+                  "package-truncated")
+            << size << " bytes";
+    }
+    for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{47}, whole.size() - 1}) {
+        EXPECT_EQ(loadTables({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
+                  "package-truncated");
+    }
+    std::vector<std::uint8_t> longer = whole;
+    longer.push_back(0);
+    EXPECT_EQ(loadTables(longer), "package-altered");
+}
+
+TEST_F(PackageTest, EveryFlippedBitIsAnError) {
+    const std::vector<std::uint8_t> whole = test::serialize(makeRichSpec());
+    ASSERT_EQ(checkBytes(whole), "");
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+        std::vector<std::uint8_t> flipped = whole;
+        flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1U << bit % 8));
+        ASSERT_NE(checkBytes(flipped), "") << "byte " << bit / 8 << ", bit " << bit % 8;
+    }
+}
+
+// Whoever alters a section can seal the file again: nothing past the hash may be trusted either.
+TEST_F(PackageTest, ResealedGarbageIsNoCrash) {
+    const std::vector<std::uint8_t> whole = test::serialize(makeRichSpec());
+    int refused = 0;
+    for (std::size_t byte = sizeof(package::PackageHeader); byte < whole.size(); ++byte) {
+        for (int value = 0; value < 256; ++value) {
+            std::vector<std::uint8_t> altered = whole;
+            altered[byte] = static_cast<std::uint8_t>(value);
+            test::reseal(altered);
+            refused += checkBytes(altered).empty() ? 0 : 1;
+        }
+    }
+    EXPECT_GT(refused, 50000);
+}
+
+TEST_F(PackageTest, FoldersThatAreNoPackage) {
+    EXPECT_EQ(load(), "package-missing");
+    const Result<Package> nowhere = Package::load(folder_.path() / "nowhere");
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().id, "package-missing");
+    EXPECT_EQ(loadTables({'P', 'N', 'G', ' ', 'f', 'i', 'l', 'e', '!'}), "package-foreign");
+    EXPECT_EQ(loadTables(std::vector<std::uint8_t>(4096, 0)), "package-foreign");
+    std::filesystem::remove(folder_.path() / package::kTablesFile);
+    std::filesystem::create_directory(folder_.path() / package::kTablesFile);
+    EXPECT_EQ(load(), "package-missing");
+}
+
+TEST_F(PackageTest, OtherVersionsAreNamed) {
+    PackageSpec spec = test::makeSpec();
+    spec.version = package::kVersion + 1;
+    write(spec);
+    const Result<Package> newer = Package::load(folder_.path());
+    ASSERT_FALSE(newer);
+    EXPECT_EQ(newer.error().id, "package-version");
+    EXPECT_NE(newer.error().message.find(std::to_string(package::kVersion + 1)), std::string::npos);
+    spec = test::makeSpec();
+    spec.interopHash ^= 1;
+    write(spec);
+    EXPECT_EQ(load(), "package-version");
+}
+
+TEST_F(PackageTest, ModulesAreChecked) {
+    const PackageSpec spec = test::makeSpec();
+    write(spec);
+    const std::filesystem::path module = folder_.path() / spec.modules[3].file;
+    std::filesystem::remove(module);
+    EXPECT_EQ(load(), "package-module-missing");
+    write(spec);
+    std::filesystem::resize_file(module, 16);
+    EXPECT_EQ(load(), "package-module-altered");
+    write(spec);
+    std::filesystem::resize_file(module, 24);
+    EXPECT_EQ(load(), "package-module-altered");
+    write(spec);
+    test::writeBytes(module, std::vector<std::uint8_t>(20, 7));
+    EXPECT_EQ(load(), "package-module-altered");
+}
+
+TEST_F(PackageTest, ModulesMustBeSpirv) {
+    PackageSpec spec = test::makeSpec();
+    spec.modules[3].words[0] = 1;
+    write(spec);
+    EXPECT_EQ(load(), "package-module-altered");
+    spec.modules[3].words.clear();
+    write(spec);
+    EXPECT_EQ(load(), "package-module-altered");
+}
+
+TEST_F(PackageTest, ModuleNamesStayInTheFolder) {
+    const std::filesystem::path inside = folder_.path() / "package";
+    std::filesystem::create_directory(inside);
+    for (const std::string name :
+         {"../gbuffer.vert.spv", "/etc/hostname", "a/../../b.spv", "", ".", "..", "a\\b", "./a.spv"}) {
+        PackageSpec spec = test::makeSpec();
+        spec.modules[0].file = name;
+        test::writeModules(test::makeSpec(), inside);
+        test::writeModules(test::makeSpec(), folder_.path());
+        test::writeBytes(inside / package::kTablesFile, test::serialize(spec));
+        const Result<Package> loaded = Package::load(inside);
+        ASSERT_FALSE(loaded) << name;
+        EXPECT_EQ(loaded.error().id, "package-file-name") << name;
+    }
+}
+
+TEST_F(PackageTest, LinksThatLeaveTheFolderAreRefused) {
+    const std::filesystem::path inside = folder_.path() / "package";
+    std::filesystem::create_directory(inside);
+    const PackageSpec spec = test::makeSpec();
+    test::writePackage(spec, inside);
+    test::writeModules(spec, folder_.path());
+    std::filesystem::remove(inside / spec.modules[0].file);
+    std::filesystem::create_symlink(folder_.path() / spec.modules[0].file, inside / spec.modules[0].file);
+    const Result<Package> loaded = Package::load(inside);
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().id, "package-file-name");
+}
+
+// Each breaks one promise of an otherwise valid package.
+TEST_F(PackageTest, BrokenPromisesAreErrors) {
+    const std::pair<const char*, std::function<void(PackageSpec&)>> breaks[] = {
+        {"shader ID", [](PackageSpec& s) { s.primitives[0].shaderId = 1; }},
+        {"material", [](PackageSpec& s) { s.primitives[0].materialIndex = 1; }},
+        {"texture", [](PackageSpec& s) { s.materials[0].textures[4].textureIndex = 2; }},
+        {"sampler", [](PackageSpec& s) { s.materials[0].textures[4].samplerIndex = 1; }},
+        {"UV set", [](PackageSpec& s) { s.materials[0].textures[4].texCoord = 2; }},
+        {"colour space", [](PackageSpec& s) { s.textures[0].srgb = 2; }},
+        {"wrap", [](PackageSpec& s) { s.samplers[0].wrapV = 3; }},
+        {"filter", [](PackageSpec& s) { s.samplers[0].mip = 2; }},
+        {"order", [](PackageSpec& s) { std::swap(s.primitives[0], s.primitives[1]); }},
+        {"twice", [](PackageSpec& s) { s.primitives[1] = s.primitives[0]; }},
+        {"alpha policy", [](PackageSpec& s) { s.alphaTested = 0; }},
+        {"alpha policy value", [](PackageSpec& s) { s.alphaTested = 2; }},
+        {"geometry flags", [](PackageSpec& s) { s.primitives[0].geometryFlags |= 1U << 31; }},
+        {"alpha mode", [](PackageSpec& s) { s.primitives[0].alphaMode = 3; }},
+        {"key beyond its case", [](PackageSpec& s) { s.primitives[0].featureInputs = 1; }},
+        {"case count", [](PackageSpec& s) { s.caseCount = 0; }},
+        {"case features",
+         [](PackageSpec& s) {
+             s.cases[0] = {1, 1, "Both"};
+         }},
+        {"no strategy", [](PackageSpec& s) { s.strategies = 0; }},
+        {"unknown strategy", [](PackageSpec& s) { s.strategies |= 4; }},
+        {"strategy without modules", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 5); }},
+        {"modules without strategy", [](PackageSpec& s) { s.strategies = package::kStrategyUber; }},
+        {"case without module", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 11); }},
+        {"pass without module", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 2); }},
+        {"module twice", [](PackageSpec& s) { s.modules.push_back(s.modules[0]); }},
+        {"unknown role", [](PackageSpec& s) { s.modules[12].role = ModuleRole{14}; }},
+        {"module's shader ID", [](PackageSpec& s) { s.modules[11].shaderId = 1; }},
+    };
+    write(makeRichSpec());
+    ASSERT_EQ(load(), "");
+    for (const auto& [name, change] : breaks) {
+        PackageSpec spec = makeRichSpec();
+        change(spec);
+        write(spec);
+        EXPECT_EQ(load(), "package-altered") << name;
+    }
+}
+
+TEST_F(PackageTest, SectionsAreBounded) {
+    write(makeRichSpec());
+    const std::vector<std::uint8_t> whole = test::serialize(makeRichSpec());
+    const auto withSection = [&](const std::function<void(package::PackageSection&)>& change) {
+        std::vector<std::uint8_t> bytes = whole;
+        package::PackageSection section{};
+        std::memcpy(&section, bytes.data() + sizeof(package::PackageHeader), sizeof(section));
+        change(section);
+        std::memcpy(bytes.data() + sizeof(package::PackageHeader), &section, sizeof(section));
+        test::reseal(bytes);
+        return loadTables(bytes);
+    };
+    EXPECT_EQ(withSection([](auto& section) { section.offset = ~0ULL - 7; }), "package-altered");
+    EXPECT_EQ(withSection([](auto& section) { section.offset += 4; }), "package-altered");
+    EXPECT_EQ(withSection([](auto& section) { section.count = ~0ULL; }), "package-altered");
+    // Times 32 bytes, this wraps to nothing.
+    EXPECT_EQ(withSection([](auto& section) { section.count = 1ULL << 59; }), "package-altered");
+    EXPECT_EQ(withSection([](auto& section) { section.elementBytes = 1; }), "package-altered");
+    EXPECT_EQ(withSection([](auto& section) { section.kind = package::SectionKind::Cases; }),
+              "package-altered");
+    EXPECT_EQ(withSection([](auto& section) { section.kind = package::SectionKind{99}; }), "package-altered");
+}
+
+TEST_F(PackageTest, OneStrategyIsEnough) {
+    PackageSpec spec = test::makeSpec();
+    spec.strategies = package::kStrategyUber;
+    spec.modules.erase(spec.modules.begin() + 6, spec.modules.begin() + 12);
+    write(spec);
+    const Result<Package> loaded = Package::load(folder_.path());
+    ASSERT_TRUE(loaded) << toString(loaded.error());
+    EXPECT_FALSE(loaded->supports(package::kStrategyVisibility));
+    EXPECT_TRUE(loaded->spirv(ModuleRole::Trace).empty());
+}
+
+}  // namespace
+}  // namespace glint

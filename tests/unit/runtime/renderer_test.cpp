@@ -1,0 +1,269 @@
+// Frames of passes that show what they were given: what the raster pass and the rays see must agree.
+#include "device_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+using package::kStrategyUber;
+using package::kStrategyVisibility;
+using test::TestScene;
+
+constexpr std::uint32_t kWidth = 40;
+constexpr std::uint32_t kHeight = 24;
+
+// Pixels of an image: by geometry + 1 as the raster pass (0) or the rays (1) see it.
+std::size_t countPixels(const LinearImage& image, std::size_t channel, float value) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(image.pixels, [&](const auto& pixel) { return pixel[channel] == value; }));
+}
+
+class RendererTest : public test::DeviceTest, public testing::WithParamInterface<package::Strategy> {
+protected:
+    LinearImage render(const Package& package, TestScene& scene, const FrameOptions& frame,
+                       std::uint32_t sampleCount = 1) {
+        gpuScene_ = upload(package, scene);
+        renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
+        Result<LinearImage> image = renderer_->render(frame, sampleCount);
+        EXPECT_TRUE(image) << toString(image.error());
+        return image ? std::move(*image) : LinearImage{};
+    }
+    void TearDown() override {
+        renderer_.reset();
+        gpuScene_.reset();
+        DeviceTest::TearDown();
+    }
+
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+FrameOptions makeFrame(float cameraZ) {
+    FrameOptions frame;
+    frame.camera = test::makeCamera(cameraZ);
+    frame.camera.halfHeight = 0.3F;
+    frame.camera.halfWidth = 0.5F;
+    return frame;
+}
+
+// Which side of a square is seen, by transform: the facing of rays against that of the raster pass, and both
+// against glTF, where counter-clockwise in object space is the front.
+struct FacingCase {
+    const char* name;
+    test::Rows transform;
+    bool doubleSided;
+    bool seenFromFront;  // from +z
+    bool seenFromBack;
+};
+
+constexpr FacingCase kFacingCases[] = {
+    {"as it is", test::kIdentity, false, true, false},
+    {"turned about y", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0}, false, false, true},
+    {"mirrored in x", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, false, true, false},
+    {"mirrored in z", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0}, false, false, true},
+    {"mirrored in all", {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0}, false, false, true},
+    {"double-sided", test::kIdentity, true, true, true},
+    {"double-sided, mirrored", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, true, true, true},
+};
+
+TEST_P(RendererTest, FacingIsThatOfGltf) {
+    for (const FacingCase& facing : kFacingCases) {
+        test::PackageSpec spec = test::makeDeviceSpec();
+        spec.primitives = {test::makePrimitive(0, 0, facing.doubleSided ? gpu::kGeometryDoubleSided : 0)};
+        const Package package = load(spec);
+        TestScene scene;
+        scene.meshes = {test::makeSquare(0, 0)};
+        scene.instances = {{0, facing.transform}};
+        for (const float z : {4.0F, -4.0F}) {
+            const LinearImage image = render(package, scene, makeFrame(z));
+            const bool seen = z > 0 ? facing.seenFromFront : facing.seenFromBack;
+            // The square covers 2 x 2 of the 4 x 2.4 metres in view.
+            const std::size_t expected = seen ? kWidth / 2 * kHeight * 10 / 12 : 0;
+            EXPECT_EQ(countPixels(image, 0, 1.0F), expected) << facing.name << " from " << z;
+            EXPECT_EQ(countPixels(image, 1, 1.0F), expected) << facing.name << " from " << z;
+        }
+    }
+}
+
+// Slanted squares and an orthographic or perspective camera, at many jitters: the ray of a pixel hits what
+// the raster pass saw there, but for the odd pixel on an edge.
+TEST_P(RendererTest, RaysAgreeWithTheRaster) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(0, 1, gpu::kGeometryDoubleSided)};
+    const Package package = load(spec);
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0), test::makeSquare(0, 1, -0.5F)};
+    scene.instances = {{0, {0.8F, 0.1F, -0.4F, 0.3F, 0.2F, 0.9F, 0.1F, 0.1F, 0.5F, 0.0F, 0.7F, -0.5F}},
+                       {0, {-0.8F, 0.1F, -0.4F, -0.6F, 0.2F, 0.9F, 0.1F, 0.1F, 0.5F, 0.0F, 0.7F, 0.5F}}};
+    gpuScene_ = upload(package, scene);
+    renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
+    for (const bool orthographic : {false, true}) {
+        FrameOptions frame = makeFrame(4.0F);
+        frame.camera.position = {0.0137F, 0.0071F, 4.0F};
+        frame.camera.orthographic = orthographic;
+        if (orthographic) {
+            frame.camera.halfWidth = 2.0F;
+            frame.camera.halfHeight = 1.2F;
+            frame.camera.far = 100.0F;
+        }
+        const Result<LinearImage> image = renderer_->render(frame, 1);
+        ASSERT_TRUE(image) << toString(image.error());
+        std::size_t seen = 0;
+        std::size_t different = 0;
+        for (const std::array<float, 4>& pixel : image->pixels) {
+            seen += pixel[0] > 0.0F ? 1 : 0;
+            different += pixel[0] != pixel[1] ? 1 : 0;
+        }
+        EXPECT_GT(seen, kWidth * kHeight / 4);
+        EXPECT_LE(different, 1U) << (orthographic ? "orthographic" : "perspective");
+    }
+}
+
+TEST_P(RendererTest, SamplesAccumulateWithoutDrift) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    const LinearImage image = render(package, scene, makeFrame(4.0F), 64);
+    // The mean over jittered samples is coverage: 2 x 2 metres of 4 x 2.4 in both channels.
+    for (const std::size_t channel : {0, 1}) {
+        double sum = 0.0;
+        for (const std::array<float, 4>& pixel : image.pixels) {
+            sum += pixel[channel];
+        }
+        EXPECT_NEAR(sum / (kWidth * kHeight), 4.0 / 9.6, 2e-3);
+    }
+    EXPECT_EQ(image.pixels[0][0], 0.0F);
+    EXPECT_NEAR(image.pixels[kWidth * kHeight / 2 + kWidth / 2][0], 1.0F, 1e-6F);
+}
+
+TEST_P(RendererTest, NearHidesFar) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(1, 0)};
+    const Package package = load(spec);
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0, 1.0F), test::makeSquare(1, 0, 0.0F)};
+    // The near one is drawn first, then last.
+    for (const std::uint32_t first : {0U, 1U}) {
+        scene.instances = {{first, test::kIdentity}, {1 - first, test::kIdentity}};
+        for (const float far : {0.0F, 10.0F}) {
+            FrameOptions frame = makeFrame(4.0F);
+            frame.camera.far = far;
+            const LinearImage image = render(package, scene, frame);
+            const std::array<float, 4>& centre = image.pixels[kWidth * (kHeight / 2) + kWidth / 2];
+            EXPECT_EQ(centre[0], static_cast<float>(first) + 1.0F);
+            EXPECT_EQ(centre[1], centre[0]);
+            EXPECT_NEAR(centre[3], 3.0F, 0.01F);
+        }
+    }
+}
+
+TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    gpuScene_ = upload(package, scene);
+    renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
+    EXPECT_FALSE(renderer_->timings());
+    EXPECT_FALSE(renderer_->counters());
+    EXPECT_GT(renderer_->pipelineCreationMs(), 0.0);
+    ASSERT_TRUE(renderer_->render(makeFrame(4.0F)));
+
+    const Result<FrameCounters> counters = renderer_->counters();
+    ASSERT_TRUE(counters);
+    EXPECT_EQ(counters->rays, kWidth * kHeight);
+    EXPECT_EQ(counters->unknownShader, 0U);
+    const Result<std::vector<PassTiming>> timings = renderer_->timings();
+    ASSERT_TRUE(timings) << toString(timings.error());
+    std::vector<std::string> names;
+    for (const PassTiming& timing : *timings) {
+        names.push_back(timing.name);
+        EXPECT_GE(timing.milliseconds, 0.0);
+        EXPECT_LT(timing.milliseconds, 60000.0);
+    }
+    if (GetParam() == kStrategyUber) {
+        EXPECT_EQ(names, (std::vector<std::string>{"gbuffer", "lighting", "reflection rays", "ray dispatch",
+                                                   "uber", "compose"}));
+        EXPECT_TRUE(counters->bucketCounts.empty());
+    } else {
+        EXPECT_EQ(names, (std::vector<std::string>{"gbuffer", "lighting", "reflection rays", "ray dispatch",
+                                                   "trace", "count", "offset", "copy", "shade miss",
+                                                   "shade Plain", "compose"}));
+        EXPECT_EQ(counters->bucketCounts, (std::vector<std::uint32_t>{560, 400}));
+    }
+}
+
+TEST_P(RendererTest, WithoutReflectionsThereAreNone) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    FrameOptions frame = makeFrame(4.0F);
+    render(package, scene, frame);
+    frame.reflections = false;
+    const Result<LinearImage> image = renderer_->render(frame);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(countPixels(*image, 0, 1.0F), 400U);
+    EXPECT_EQ(countPixels(*image, 1, 0.0F), kWidth * kHeight);
+    EXPECT_EQ(renderer_->timings()->size(), 3U);
+    EXPECT_EQ(renderer_->counters()->rays, 0U);
+}
+
+TEST_P(RendererTest, SceneWithoutAnything) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    const LinearImage image = render(package, scene, makeFrame(4.0F));
+    EXPECT_EQ(countPixels(image, 0, 0.0F), kWidth * kHeight);
+    EXPECT_EQ(countPixels(image, 1, 0.0F), kWidth * kHeight);
+}
+
+TEST_P(RendererTest, MipsAreMeansInLinearLight) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.textures = {{0, 1}, {0, 0}};
+    spec.samplers = {{0, 0, 0, 0, 0, 1}};
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    scene.images = {{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}}};
+    // sRGB: half of the light, 0.5, rounded to 188 of 255 in the format. Linear: 127 or 128 of 255.
+    for (const std::uint32_t texture : {0U, 1U}) {
+        spec.materials[0].textures[0].textureIndex = texture;
+        const Package package = load(spec);
+        const LinearImage image = render(package, scene, makeFrame(4.0F));
+        EXPECT_NEAR(image.pixels[kWidth * (kHeight / 2) + kWidth / 2][2], 0.5F, 5e-3F) << texture;
+    }
+}
+
+TEST_P(RendererTest, BadRequestsAreErrors) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    gpuScene_ = upload(package, scene);
+    for (const auto& [width, height] : {std::pair(0U, 8U), std::pair(8U, 0U), std::pair(1U << 20, 8U)}) {
+        const auto renderer = Renderer::create(context(), package, *gpuScene_, {GetParam(), width, height});
+        ASSERT_FALSE(renderer);
+        EXPECT_EQ(renderer.error().id, "render-size");
+    }
+    const auto noStrategy = Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8});
+    ASSERT_FALSE(noStrategy);
+    EXPECT_EQ(noStrategy.error().id, "package-strategy");
+    renderer_ = makeRenderer(package, *gpuScene_, GetParam(), 8, 8);
+    EXPECT_FALSE(renderer_->render(makeFrame(4.0F), 0));
+    FrameOptions frame = makeFrame(4.0F);
+    frame.camera.near = 0.0F;
+    EXPECT_FALSE(renderer_->render(frame));
+    frame = makeFrame(4.0F);
+    frame.sky.zenith[1] = std::nanf("");
+    EXPECT_FALSE(renderer_->render(frame));
+}
+
+INSTANTIATE_TEST_SUITE_P(Strategies, RendererTest, testing::Values(kStrategyUber, kStrategyVisibility),
+                         [](const auto& strategy) {
+                             return strategy.param == kStrategyUber ? std::string("Uber")
+                                                                    : std::string("Visibility");
+                         });
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,146 @@
+#include "spirv/compiler.h"
+
+#include "spirv/optimize.h"
+#include "spirv/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace glint {
+namespace {
+
+// The shape of the generated shaders: one shade() for all cases, features decided by literals and a mask.
+// Case 0 reads textures 0 and 1, case 1 texture 2; in case 2 the mask decides on texture 3.
+constexpr const char* kThreeCases = R"(#version 460
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform sampler2D images[5];
+layout(set = 0, binding = 1) buffer Data { uint shaderId; uint mask; vec4 result; } data;
+
+struct Features { uint always; uint sometimes; uint mask; };
+bool has(Features f, uint bits) {
+    return (f.always & bits) != 0u || ((f.sometimes & bits) != 0u && (f.mask & bits) != 0u);
+}
+vec4 shade(Features f) {
+    vec4 sum = vec4(0.0);
+    if (has(f, 1u)) { sum += textureLod(images[0], vec2(0.1), 0.0); }
+    if (has(f, 2u)) { sum *= textureLod(images[1], sum.xy, 0.0); }
+    if (has(f, 4u)) { sum += textureLod(images[2], sum.yz, 0.0); }
+    if (has(f, 8u)) { sum -= textureLod(images[3], sum.zw, 0.0); }
+    if (has(f, 16u)) { sum /= textureLod(images[4], sum.xw, 0.0); }
+    return sum;
+}
+void main() {
+    switch (data.shaderId) {
+        case 0u: data.result = shade(Features(3u, 0u, data.mask)); break;
+        case 1u: data.result = shade(Features(4u, 0u, data.mask)); break;
+        case 2u: data.result = shade(Features(0u, 8u, data.mask)); break;
+    }
+}
+)";
+
+std::string computeShader(const std::string& body) {
+    return "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+           "#line 2 \"passes/test.comp\"\nlayout(local_size_x = 1) in;\nvoid main() {\n" +
+           body + "}\n";
+}
+
+TEST(CompileShader, FoldsDecidedFeaturesAway) {
+    const auto words = compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {});
+    ASSERT_TRUE(words) << toString(words.error());
+    const auto statistics = measureSpirv(*words);
+    ASSERT_TRUE(statistics);
+    EXPECT_EQ(statistics->textureFetches, 4U);
+    // One branch on the mask, for the feature that some have.
+    EXPECT_EQ(statistics->branches, 2U);
+}
+
+TEST(CompileShader, MakesSpirv15) {
+    const auto words = compileShader({"a.comp", ShaderStage::Compute, computeShader("")}, {});
+    ASSERT_TRUE(words) << toString(words.error());
+    EXPECT_EQ(words->at(1), 0x00010500U);
+}
+
+TEST(CompileShader, NamesFileAndLineOfAnError) {
+    const auto words =
+        compileShader({"a.comp", ShaderStage::Compute, computeShader("    float x = missing;\n")}, {});
+    ASSERT_FALSE(words);
+    EXPECT_EQ(words.error().id, "glsl");
+    EXPECT_EQ(words.error().where, "passes/test.comp:4");
+    EXPECT_NE(words.error().message.find("missing"), std::string::npos) << words.error().message;
+    EXPECT_NE(words.error().message.find("a.comp"), std::string::npos);
+}
+
+TEST(CompileShader, ReportsLinkErrors) {
+    const auto words = compileShader(
+        {"a.comp", ShaderStage::Compute, "#version 460\nvoid undefined();\nvoid main() { undefined(); }\n"},
+        {});
+    ASSERT_FALSE(words);
+    EXPECT_EQ(words.error().id, "glsl");
+    EXPECT_FALSE(words.error().message.empty());
+}
+
+TEST(CompileShader, KeepsNamesForDebugInfoOnly) {
+    for (const bool debugInfo : {false, true}) {
+        const auto words =
+            compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo});
+        ASSERT_TRUE(words) << toString(words.error());
+        const auto text = disassemble(*words);
+        ASSERT_TRUE(text);
+        EXPECT_EQ(text->find("OpMemberName") != std::string::npos, debugInfo);
+    }
+}
+
+TEST(CompileShader, GivesTheSameWordsOnEveryThread) {
+    const ShaderSource source{"three.comp", ShaderStage::Compute, kThreeCases};
+    const auto expected = compileShader(source, {});
+    ASSERT_TRUE(expected);
+    std::vector<std::vector<std::uint32_t>> results(4);
+    {
+        std::vector<std::jthread> threads;
+        for (auto& result : results) {
+            threads.emplace_back([&] {
+                if (const auto words = compileShader(source, {})) {
+                    result = *words;
+                }
+            });
+        }
+    }
+    for (const auto& result : results) {
+        EXPECT_EQ(result, *expected);
+    }
+}
+
+TEST(ValidateSpirv, RefusesWhatIsNotValid) {
+    auto words = compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {});
+    ASSERT_TRUE(words);
+    EXPECT_TRUE(validateSpirv(*words, "three.comp"));
+    // The bound on IDs below the IDs in use.
+    words->at(3) = 2;
+    const Status status = validateSpirv(*words, "three.comp");
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().id, "spirv-validate");
+    EXPECT_EQ(status.error().where, "three.comp");
+}
+
+TEST(ValidateSpirv, AllowsScalarLayout) {
+    const auto words = compileShader({"scalar.comp", ShaderStage::Compute, R"(#version 460
+#extension GL_EXT_scalar_block_layout : require
+layout(local_size_x = 1) in;
+layout(set = 0, binding = 0, scalar) buffer Data { float a; vec3 b; float c[3]; } data;
+void main() { data.b = vec3(data.a, data.c[0], data.c[2]); }
+)"},
+                                     {});
+    EXPECT_TRUE(words) << toString(words.error());
+}
+
+TEST(Disassemble, RefusesGarbage) {
+    const auto text = disassemble({1, 2, 3});
+    ASSERT_FALSE(text);
+    EXPECT_EQ(text.error().id, "spirv-format");
+}
+
+}  // namespace
+}  // namespace glint
