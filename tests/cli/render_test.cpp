@@ -33,6 +33,22 @@ TEST_F(RenderCommand, CompileInspectRenderCompare) {
     EXPECT_EQ(same.exit, 0) << same.out << same.err;
 }
 
+TEST_F(RenderCommand, GalleryFromPackageInBothStrategies) {
+    const std::string gallery = std::string(GLINT_BINARY_DIR) + "/tests/render/gallery/gallery.gltf";
+    if (!std::filesystem::exists(gallery)) {
+        GTEST_SKIP() << "the gallery is not built: " << gallery;
+    }
+    ASSERT_EQ(run({"compile", gallery, "-o", "package"}).exit, 0);
+    ASSERT_EQ(run({"inspect", "package", "--json"}).exit, 0);
+    for (const char* strategy : {"uber", "visibility"}) {
+        const Outcome outcome = run({"render", gallery, "-o", std::string(strategy) + ".exr", "--size",
+                                     "64x36", "--package", "package", "--strategy", strategy});
+        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    }
+    const Outcome same = run({"compare", "uber.exr", "visibility.exr", "--max-error", "1e-4"});
+    EXPECT_EQ(same.exit, 0) << same.out << same.err;
+}
+
 TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     const Outcome outcome = render("a.png", {"--stats", "stats.json", "--json", "--spp", "2"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;

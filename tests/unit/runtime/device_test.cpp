@@ -1,0 +1,298 @@
+// Contexts, uploads and what upload refuses.
+#include "device_fixture.h"
+#include "gpu_scene_state.h"
+#include "interop/scene.h"
+
+#include <functional>
+
+namespace glint {
+namespace {
+
+using test::TestScene;
+
+// An instance and a device that the test owns, as a host application would.
+class HostDevice {
+public:
+    bool create() {
+        auto library = VulkanLibrary::open();
+        if (!library) {
+            return false;
+        }
+        library_ = *library;
+        const auto global = loadGlobalTable(library_->getInstanceProcAddr());
+        VkApplicationInfo application{};
+        application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+        application.apiVersion = DeviceRequirements::kApiVersion;
+        VkInstanceCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+        info.pApplicationInfo = &application;
+        if (!global || global->CreateInstance(&info, nullptr, &handles_.instance) != VK_SUCCESS) {
+            return false;
+        }
+        instance_ = *loadInstanceTable(library_->getInstanceProcAddr(), handles_.instance);
+        std::uint32_t count = 0;
+        instance_.EnumeratePhysicalDevices(handles_.instance, &count, nullptr);
+        std::vector<VkPhysicalDevice> devices(count);
+        instance_.EnumeratePhysicalDevices(handles_.instance, &count, devices.data());
+        for (VkPhysicalDevice device : devices) {
+            if (missingRequirements(device).empty()) {
+                handles_.physicalDevice = device;
+                return createDevice();
+            }
+        }
+        return false;
+    }
+    ~HostDevice() {
+        if (handles_.device != VK_NULL_HANDLE) {
+            device_.DestroyDevice(handles_.device, nullptr);
+        }
+        if (handles_.instance != VK_NULL_HANDLE) {
+            instance_.DestroyInstance(handles_.instance, nullptr);
+        }
+    }
+    const DeviceHandles& handles() const {
+        return handles_;
+    }
+
+private:
+    bool createDevice() {
+        const DeviceRequirements requirements;
+        const float priority = 1.0F;
+        VkDeviceQueueCreateInfo queue{};
+        queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+        queue.queueCount = 1;
+        queue.pQueuePriorities = &priority;
+        VkDeviceCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+        info.pNext = &requirements.features;
+        info.queueCreateInfoCount = 1;
+        info.pQueueCreateInfos = &queue;
+        info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
+        info.ppEnabledExtensionNames = requirements.extensions.data();
+        if (instance_.CreateDevice(handles_.physicalDevice, &info, nullptr, &handles_.device) != VK_SUCCESS) {
+            return false;
+        }
+        device_ = *loadDeviceTable(instance_, handles_.device);
+        device_.GetDeviceQueue(handles_.device, 0, 0, &handles_.queue);
+        return true;
+    }
+
+    std::shared_ptr<VulkanLibrary> library_;
+    InstanceTable instance_;
+    DeviceTable device_;
+    DeviceHandles handles_;
+};
+
+class ContextTest : public test::DeviceTest {};
+
+TEST_F(ContextTest, NamesItsDeviceAndDriver) {
+    EXPECT_FALSE(context().deviceName().empty());
+    EXPECT_FALSE(context().driverName().empty());
+    EXPECT_NE(context().handles().device, VK_NULL_HANDLE);
+    EXPECT_TRUE(missingRequirements(context().handles().physicalDevice).empty());
+    EXPECT_FALSE(missingRequirements(VK_NULL_HANDLE).empty());
+}
+
+TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
+    HeadlessOptions options;
+    options.deviceName = "no such device";
+    const auto other = Context::createHeadless(options);
+    ASSERT_FALSE(other);
+    EXPECT_EQ(other.error().id, "device-missing");
+    EXPECT_NE(other.error().hint.find(context().deviceName()), std::string::npos);
+}
+
+TEST_F(ContextTest, AdoptedDevicesRenderAndOutliveTheContext) {
+    HostDevice host;
+    ASSERT_TRUE(host.create());
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    // Twice on one device, beside the headless context of the fixture.
+    for (int round = 0; round < 2; ++round) {
+        auto adopted = Context::adopt(host.handles());
+        ASSERT_TRUE(adopted) << toString(adopted.error());
+        EXPECT_EQ((*adopted)->handles().device, host.handles().device);
+        EXPECT_TRUE((*adopted)->validationMessages().empty());
+        auto uploaded = GpuScene::upload(**adopted, package, scene.view());
+        ASSERT_TRUE(uploaded) << toString(uploaded.error());
+        auto renderer =
+            Renderer::create(**adopted, package, **uploaded, {package::kStrategyVisibility, 16, 16});
+        ASSERT_TRUE(renderer) << toString(renderer.error());
+        FrameOptions frame;
+        frame.camera = test::makeCamera(1.0F);
+        const auto image = (*renderer)->render(frame);
+        ASSERT_TRUE(image) << toString(image.error());
+        EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
+    }
+    EXPECT_NE(upload(package, scene), nullptr);
+}
+
+TEST_F(ContextTest, AdoptChecksItsHandles) {
+    const DeviceHandles good = context().handles();
+    const std::function<void(DeviceHandles&)> breaks[] = {
+        [](DeviceHandles& h) { h.instance = VK_NULL_HANDLE; },
+        [](DeviceHandles& h) { h.physicalDevice = VK_NULL_HANDLE; },
+        [](DeviceHandles& h) { h.device = VK_NULL_HANDLE; },
+        [](DeviceHandles& h) { h.queue = VK_NULL_HANDLE; },
+    };
+    for (const auto& change : breaks) {
+        DeviceHandles handles = good;
+        change(handles);
+        const auto adopted = Context::adopt(handles);
+        ASSERT_FALSE(adopted);
+        EXPECT_EQ(adopted.error().id, "context-handles");
+    }
+    DeviceHandles handles = good;
+    handles.queueFamily = 99;
+    const auto adopted = Context::adopt(handles);
+    ASSERT_FALSE(adopted);
+    EXPECT_EQ(adopted.error().id, "context-queue");
+}
+
+class UploadTest : public test::DeviceTest {
+protected:
+    std::string refuse(const Package& package, const SceneView& scene) {
+        const auto uploaded = GpuScene::upload(context(), package, scene);
+        if (uploaded) {
+            return "";
+        }
+        EXPECT_FALSE(uploaded.error().where.empty());
+        return uploaded.error().id;
+    }
+};
+
+TEST_F(UploadTest, PartsBySidednessAndRecordsByInstance) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryDoubleSided), test::makePrimitive(0, 1),
+                       test::makePrimitive(0, 2, gpu::kGeometryDoubleSided), test::makePrimitive(1, 0)};
+    const Package package = load(spec);
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0), test::makeSquare(0, 1), test::makeSquare(0, 2),
+                    test::makeSquare(1, 0)};
+    scene.instances = {{0, test::kIdentity}, {1, test::kIdentity}, {0, test::kIdentity}};
+    const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+    ASSERT_NE(uploaded, nullptr);
+    const GpuScene::Statistics& statistics = uploaded->statistics();
+    EXPECT_EQ(statistics.blasCount, 3U);
+    EXPECT_EQ(statistics.geometries, 7U);
+    EXPECT_EQ(statistics.instances, 3U);
+    EXPECT_EQ(statistics.triangles, 14U);
+    EXPECT_GT(statistics.blasBytes, 0U);
+    EXPECT_GE(statistics.blasUncompactedBytes, statistics.blasBytes);
+    const std::vector<Draw>& draws = uploaded->state().draws;
+    ASSERT_EQ(draws.size(), 7U);
+    EXPECT_FALSE(draws[0].doubleSided);
+    EXPECT_TRUE(draws[1].doubleSided && draws[2].doubleSided);
+}
+
+TEST_F(UploadTest, NothingToBuildIsNoError) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene empty;
+    const std::unique_ptr<GpuScene> nothing = upload(package, empty);
+    ASSERT_NE(nothing, nullptr);
+    EXPECT_EQ(nothing->statistics().blasCount, 0U);
+
+    TestScene scene;
+    scene.meshes = {{0, 0, {}, {}}};
+    // A mesh without triangles, one that nobody has, and a flattened instance.
+    scene.instances = {{0, test::kIdentity}, {7, test::kIdentity}};
+    const std::unique_ptr<GpuScene> hollow = upload(package, scene);
+    ASSERT_NE(hollow, nullptr);
+    EXPECT_EQ(hollow->statistics().geometries, 0U);
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}}, {0, {}}, {0, test::kIdentity}};
+    const std::unique_ptr<GpuScene> flat = upload(package, scene);
+    ASSERT_NE(flat, nullptr);
+    EXPECT_EQ(flat->statistics().geometries, 1U);
+    EXPECT_EQ(flat->statistics().instances, 3U);
+}
+
+TEST_F(UploadTest, ManyMeshesInBatches) {
+    constexpr std::uint32_t kMeshes = 300;
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.primitives.clear();
+    TestScene scene;
+    for (std::uint32_t mesh = 0; mesh < kMeshes; ++mesh) {
+        spec.primitives.push_back(test::makePrimitive(mesh, 0));
+        scene.meshes.push_back(test::makeSquare(mesh, 0));
+        scene.instances.push_back({mesh, test::kIdentity});
+    }
+    const Package package = load(spec);
+    const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+    ASSERT_NE(uploaded, nullptr);
+    EXPECT_EQ(uploaded->statistics().blasCount, kMeshes);
+}
+
+// Larger than the staging buffer, of odd sizes, and thin.
+TEST_F(UploadTest, TexturesOfAllShapes) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.textures = {{0, 1}, {1, 0}, {2, 1}, {0, 0}};
+    spec.samplers = {{0, 1, 0, 1, 0, 0}, {2, 0, 1, 0, 1, 1}};
+    const Package package = load(spec);
+    TestScene scene;
+    for (const auto& [width, height] : {std::pair(2100U, 2050U), std::pair(1U, 33U), std::pair(7U, 5U)}) {
+        scene.images.push_back(
+            {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 99)});
+    }
+    const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+    ASSERT_NE(uploaded, nullptr);
+    EXPECT_EQ(uploaded->state().textures.size(), 4U);
+    EXPECT_EQ(uploaded->state().textures[0].mips, 12U);
+    EXPECT_EQ(uploaded->state().textures[1].mips, 6U);
+}
+
+TEST_F(UploadTest, BrokenScenesAreErrors) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.textures = {{0, 1}};
+    spec.cases[0].always = 1ULL << 42;  // normals
+    spec.primitives[0].featureInputs = 1U << 10;
+    const Package package = load(spec);
+    const TestScene::Mesh square = test::makeSquare(0, 0);
+    const std::vector<std::array<float, 3>> normals(4, {0, 0, 1});
+    const std::vector<std::uint8_t> pixels(16, 0);
+    const ImageView image{2, 2, pixels};
+    const InstanceView instance;
+    const auto withScene = [&](const std::function<void(PrimitiveView&, SceneView&, ImageView&)>& change) {
+        PrimitiveView primitive;
+        primitive.positions = square.positions;
+        primitive.indices = square.indices;
+        primitive.normals = normals;
+        ImageView changedImage = image;
+        SceneView scene{{&primitive, 1}, {&instance, 1}, {&changedImage, 1}, {}};
+        change(primitive, scene, changedImage);
+        return refuse(package, scene);
+    };
+    using P = PrimitiveView;
+    using S = SceneView;
+    using I = ImageView;
+    EXPECT_EQ(withScene([](P&, S&, I&) {}), "");
+    EXPECT_EQ(withScene([](P& p, S&, I&) { p.normals = {}; }), "scene-package");
+    EXPECT_EQ(withScene([](P& p, S&, I&) { p.normals = p.normals.first(3); }), "scene-attribute");
+    EXPECT_EQ(withScene([](P& p, S&, I&) { p.positions = p.positions.first(3); }), "scene-attribute");
+    EXPECT_EQ(withScene([](P& p, S&, I&) {
+                  p.positions = p.positions.first(3);
+                  p.normals = p.normals.first(3);
+              }),
+              "scene-index");
+    EXPECT_EQ(withScene([](P& p, S&, I&) { p.indices = p.indices.first(5); }), "scene-index");
+    EXPECT_EQ(withScene([](P& p, S&, I&) { p.mesh = 1; }), "scene-package");
+    EXPECT_EQ(withScene([](P&, S& s, I&) { s.primitives = {}; }), "scene-package");
+    EXPECT_EQ(withScene([](P&, S& s, I&) { s.images = {}; }), "scene-package");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 3; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.height = 0; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 1U << 30; }), "scene-image");
+    LightView light;
+    light.range = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(withScene([&](P&, S& s, I&) { s.lights = {&light, 1}; }), "scene-light");
+    std::vector<PrimitiveView> twice(2);
+    EXPECT_EQ(withScene([&](P& p, S& s, I&) {
+                  twice = {p, p};
+                  s.primitives = twice;
+              }),
+              "scene-order");
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,214 @@
+// What the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
+#include "camera.h"
+#include "instance_math.h"
+#include "plan/features.h"
+#include "requirements.h"
+#include "scene_checks.h"
+#include "vulkan_error.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace glint {
+namespace {
+
+static_assert(kInputTexCoord0 == bit(Feature::TexCoord0) >> 32);
+static_assert(kInputTexCoord1 == bit(Feature::TexCoord1) >> 32);
+static_assert(kInputVertexColor == bit(Feature::VertexColor) >> 32);
+static_assert(kInputNormals == bit(Feature::Normals) >> 32);
+static_assert(kInputTangents == bit(Feature::Tangents) >> 32);
+
+double dot(const gpu::vec4& row, const std::array<double, 3>& p) {
+    return row.x * p[0] + row.y * p[1] + row.z * p[2] + row.w;
+}
+
+// A point on the ray of a pixel, at a distance along the view, goes to that pixel's centre.
+TEST(CameraTest, RasterAndRaysAgree) {
+    constexpr std::uint32_t kWidth = 31;
+    constexpr std::uint32_t kHeight = 17;
+    for (const bool orthographic : {false, true}) {
+        CameraView camera;
+        camera.position = {1.0F, -2.0F, 3.0F};
+        camera.forward = {0.6F, 0.0F, 0.8F};
+        camera.up = {0.0F, 1.0F, 0.0F};
+        camera.halfWidth = 0.9F;
+        camera.halfHeight = 0.5F;
+        camera.near = 0.1F;
+        camera.far = orthographic ? 50.0F : 0.0F;
+        camera.orthographic = orthographic;
+        for (const std::uint32_t sample : {0U, 1U, 7U}) {
+            gpu::FrameConstants c{};
+            fillCamera(camera, kWidth, kHeight, sampleJitter(sample), c);
+            const double x = 5;
+            const double y = 11;
+            const double px = (x + 0.5 + c.jitter.x) / kWidth * 2 - 1;
+            const double py = 1 - (y + 0.5 + c.jitter.y) / kHeight * 2;
+            for (const double d : {0.1, 2.0, 40.0}) {
+                const double side = orthographic ? 1.0 : d;
+                const std::array<double, 3> p{c.cameraPosition.x + d * c.cameraForward.x +
+                                                  side * (px * c.cameraRight.x + py * c.cameraUp.x),
+                                              c.cameraPosition.y + d * c.cameraForward.y +
+                                                  side * (px * c.cameraRight.y + py * c.cameraUp.y),
+                                              c.cameraPosition.z + d * c.cameraForward.z +
+                                                  side * (px * c.cameraRight.z + py * c.cameraUp.z)};
+                const double w = dot(c.worldToClip[3], p);
+                EXPECT_NEAR((dot(c.worldToClip[0], p) / w + 1) / 2 * kWidth, x + 0.5, 1e-4);
+                EXPECT_NEAR((dot(c.worldToClip[1], p) / w + 1) / 2 * kHeight, y + 0.5, 1e-4);
+                const double depth = orthographic ? (50.0 - d) / 49.9 : 0.1 / d;
+                EXPECT_NEAR(dot(c.worldToClip[2], p) / w, depth, 1e-5);
+            }
+        }
+    }
+}
+
+TEST(CameraTest, FiniteFarPlaneIsDepthZero) {
+    CameraView camera;
+    camera.near = 0.5F;
+    camera.far = 20.0F;
+    gpu::FrameConstants c{};
+    fillCamera(camera, 8, 8, {0, 0}, c);
+    const auto depth = [&](double d) {
+        return dot(c.worldToClip[2], {0, 0, -d}) / dot(c.worldToClip[3], {0, 0, -d});
+    };
+    EXPECT_NEAR(depth(0.5), 1.0, 1e-6);
+    EXPECT_NEAR(depth(20.0), 0.0, 1e-6);
+    EXPECT_GT(depth(5.0), depth(6.0));
+}
+
+TEST(CameraTest, JitterStartsAtTheCentreAndFillsThePixel) {
+    EXPECT_EQ(sampleJitter(0).x, 0.0F);
+    EXPECT_EQ(sampleJitter(0).y, 0.0F);
+    std::set<int> cells;
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        const gpu::vec2 jitter = sampleJitter(i);
+        ASSERT_TRUE(jitter.x >= -0.5F && jitter.x < 0.5F && jitter.y >= -0.5F && jitter.y < 0.5F) << i;
+        cells.insert(static_cast<int>((jitter.x + 0.5F) * 8) * 8 + static_cast<int>((jitter.y + 0.5F) * 8));
+        sum += jitter.x + jitter.y;
+    }
+    EXPECT_EQ(cells.size(), 64U);
+    EXPECT_NEAR(sum / 512, 0.0, 5e-3);
+    const gpu::vec2 last = sampleJitter(std::numeric_limits<std::uint32_t>::max());
+    EXPECT_TRUE(last.x >= -0.5F && last.x < 0.5F);
+}
+
+TEST(CameraTest, UnusableCamerasAreErrors) {
+    EXPECT_TRUE(checkCamera({}));
+    const auto refused = [](auto change) {
+        CameraView camera;
+        change(camera);
+        return !checkCamera(camera);
+    };
+    EXPECT_TRUE(refused([](CameraView& c) { c.position[0] = std::nanf(""); }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.forward = {0, 0, 0}; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.up = {0, 0, 1}; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.halfWidth = 0; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.halfHeight = -1; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.near = 0; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.far = c.near; }));
+    EXPECT_TRUE(refused([](CameraView& c) { c.orthographic = true; }));
+}
+
+TEST(InstanceTest, NormalsOfMirroredAndStretchedInstances) {
+    // Scale (-2, 3, 4): cofactors (12, -8, -6), times the sign of the determinant.
+    const gpu::InstanceRecord record = makeInstanceRecord({-2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 7});
+    EXPECT_EQ(record.flags, gpu::kInstanceMirrored);
+    EXPECT_EQ(record.normalToWorld[0].x, -12.0F);
+    EXPECT_EQ(record.normalToWorld[1].y, 8.0F);
+    EXPECT_EQ(record.normalToWorld[2].z, 6.0F);
+    EXPECT_EQ(record.objectToWorld[1].w, 6.0F);
+    EXPECT_EQ(makeInstanceRecord({2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0}).flags, 0U);
+}
+
+TEST(InstanceTest, ExtremeScalesStayFinite) {
+    for (const float scale : {1e-18F, 1e-6F, 1e6F, 1e18F}) {
+        const Rows rows{scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, -scale, 0};
+        EXPECT_TRUE(isInvertible(rows)) << scale;
+        const gpu::InstanceRecord record = makeInstanceRecord(rows);
+        EXPECT_TRUE(std::isfinite(record.normalToWorld[0].x)) << scale;
+        EXPECT_NE(record.normalToWorld[0].x, 0.0F) << scale;
+        EXPECT_EQ(record.normalToWorld[0].x, -record.normalToWorld[2].z) << scale;
+        EXPECT_EQ(record.flags, gpu::kInstanceMirrored) << scale;
+    }
+}
+
+TEST(InstanceTest, FlattenedInstancesHaveNoInverse) {
+    EXPECT_FALSE(isInvertible({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_FALSE(isInvertible({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}));
+    EXPECT_FALSE(isInvertible({1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}));
+    EXPECT_FALSE(isInvertible({std::nanf(""), 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
+    EXPECT_TRUE(isInvertible({1, 0, 0, 0, 0, 1e-5F, 0, 0, 0, 0, 1, 0}));
+    // Flat along y: the normal keeps a direction.
+    EXPECT_EQ(makeInstanceRecord({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}).normalToWorld[1].y, 1.0F);
+}
+
+TEST(LightTest, SpotFalloffIsThatOfTheExtension) {
+    LightView light;
+    light.type = LightView::Type::Spot;
+    light.innerConeAngle = 0.3F;
+    light.outerConeAngle = 0.6F;
+    const gpu::LightRecord record = makeLightRecord(light);
+    EXPECT_EQ(record.type, gpu::kLightSpot);
+    EXPECT_NEAR(std::cos(0.3F) * record.spotScale + record.spotOffset, 1.0F, 1e-5F);
+    EXPECT_NEAR(std::cos(0.6F) * record.spotScale + record.spotOffset, 0.0F, 1e-5F);
+    light.innerConeAngle = light.outerConeAngle;
+    EXPECT_NEAR(makeLightRecord(light).spotScale, 1000.0F, 1e-2F);
+}
+
+// A device that has everything.
+void fillReport(DeviceReport& report) {
+    report.apiVersion = VK_API_VERSION_1_3;
+    for (const char* extension : report.features.extensions) {
+        report.extensions.emplace_back(extension);
+    }
+    report.subgroupStages = VK_SHADER_STAGE_COMPUTE_BIT;
+    report.subgroupOperations = VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
+    report.maxPushConstantBytes = 128;
+    report.maxWorkgroupThreads = 1024;
+    report.hasQueue = true;
+}
+
+TEST(RequirementsTest, EachMissingFeatureIsNamed) {
+    DeviceReport complete;
+    fillReport(complete);
+    EXPECT_TRUE(missingFrom(complete).empty());
+    const auto missing = [](auto change) {
+        DeviceReport report;
+        fillReport(report);
+        change(report);
+        return joinNames(missingFrom(report));
+    };
+    EXPECT_EQ(missing([](DeviceReport& r) { r.apiVersion = VK_API_VERSION_1_2; }),
+              "Vulkan 1.3 (the device has 1.2)");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.features.rayQuery.rayQuery = VK_FALSE; }), "rayQuery");
+    EXPECT_EQ(missing([](DeviceReport& r) {
+                  r.features.vulkan12.bufferDeviceAddress = VK_FALSE;
+                  r.features.vulkan13.synchronization2 = VK_FALSE;
+                  r.features.accelerationStructure.accelerationStructure = VK_FALSE;
+              }),
+              "bufferDeviceAddress, synchronization2 and accelerationStructure");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.extensions.erase(r.extensions.begin() + 1); }),
+              "VK_KHR_ray_query");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupOperations = VK_SUBGROUP_FEATURE_BALLOT_BIT; }),
+              "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupStages = 0; }),
+              "subgroup operations in compute shaders");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.maxWorkgroupThreads = 128; }), "workgroups of 256 threads");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.maxPushConstantBytes = 16; }), "24 bytes of push constants");
+    EXPECT_EQ(missing([](DeviceReport& r) { r.hasQueue = false; }),
+              "a queue family with graphics and compute");
+}
+
+TEST(ErrorTest, CallsAndResultsAreNamed) {
+    const Diagnostic error = vulkanError("vkQueueSubmit2", VK_ERROR_DEVICE_LOST);
+    EXPECT_EQ(error.id, "vulkan-call");
+    EXPECT_EQ(error.message, "vkQueueSubmit2 failed with VK_ERROR_DEVICE_LOST");
+    EXPECT_EQ(vulkanResultName(static_cast<VkResult>(-12345)), "VkResult -12345");
+}
+
+}  // namespace
+}  // namespace glint
