@@ -87,7 +87,8 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
                     weights.z * geometry.colors.data[corner.z];
     }
 
-    // The cone meets the surface at an angle; below 0.01 radians its footprint is cut, as anisotropy is the sampler's.
-    hit.footprint = coneWidth / max(abs(dot(hit.geometricNormal, rayDirection)), 0.01);
+    // The cone meets the surface in an ellipse of axes coneWidth and coneWidth / cos. Its geometric mean keeps floors
+    // sharper than the long axis would and quieter than the short one. Below 0.01 radians the ellipse is cut.
+    hit.footprint = coneWidth * inversesqrt(max(abs(dot(hit.geometricNormal, rayDirection)), 0.01));
     return hit;
 }

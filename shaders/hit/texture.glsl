@@ -2,8 +2,8 @@
 #include "hit/hit.glsl"
 
 // Level of detail of a texture under a ray cone: Akenine-Möller et al., "Texture Level of Detail Strategies for
-// Real-Time Ray Tracing" (Ray Tracing Gems, chapter 20), equation 26 with the cone's footprint on the surface. The
-// ratio of areas is that of the triangle in texels and in the world; 0 where either vanishes.
+// Real-Time Ray Tracing" (Ray Tracing Gems, chapter 20), with the cone's footprint on the surface: texels under it, by
+// the ratio of the triangle's areas in texels and in the world; 0 where either vanishes.
 float coneLod(Hit hit, vec4 uvEdges, vec2 texels) {
     float uvArea = abs(uvEdges.x * uvEdges.w - uvEdges.y * uvEdges.z) * texels.x * texels.y;
     vec3 worldCross = cross(hit.edges[0], hit.edges[1]);

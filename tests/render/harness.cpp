@@ -30,21 +30,32 @@ void expectNoValidationMessages() {
 }
 
 LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan) {
+    const Status loaded = load(scene, plan);
+    if (!loaded) {
+        ADD_FAILURE() << toString(loaded.error());
+    }
+}
+
+Status LoadedScene::load(const Scene& scene, const PlanOptions& plan) {
     CompileSettings settings;
     settings.plan = plan;
     Result<CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {
-        ADD_FAILURE() << toString(compiled.error());
-        return;
+        return compiled.error();
     }
     compiled_ = std::move(*compiled);
     const Result<TemporaryFolder> folder = TemporaryFolder::create();
-    ASSERT_TRUE(folder.ok());
+    if (!folder) {
+        return folder.error();
+    }
     const std::filesystem::path path = folder->path() / "package";
-    const Status written = writePackage(compiled_, path);
-    ASSERT_TRUE(written.ok()) << toString(written.error());
+    if (Status written = writePackage(compiled_, path); !written) {
+        return written;
+    }
     Result<Package> package = Package::load(path);
-    ASSERT_TRUE(package.ok()) << toString(package.error());
+    if (!package) {
+        return package.error();
+    }
     package_ = std::make_unique<Package>(std::move(*package));
 
     SceneViewData data = makeSceneView(scene);
@@ -52,8 +63,11 @@ LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan) {
         data.lights.push_back(sunLight());
     }
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), *package_, data.view());
-    ASSERT_TRUE(uploaded.ok()) << toString(uploaded.error());
+    if (!uploaded) {
+        return uploaded.error();
+    }
     gpuScene_ = std::move(*uploaded);
+    return okStatus();
 }
 
 LoadedScene::~LoadedScene() = default;

@@ -46,6 +46,8 @@ public:
                        FrameCounters* counters = nullptr) const;
 
 private:
+    Status load(const Scene& scene, const PlanOptions& plan);
+
     CompiledPackage compiled_;
     std::unique_ptr<Package> package_;
     std::unique_ptr<GpuScene> gpuScene_;

@@ -50,8 +50,8 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Strategies, Pixels,
                          ::testing::Values(package::kStrategyUber, package::kStrategyVisibility),
-                         [](const auto& info) {
-                             return info.param == package::kStrategyUber ? "Uber" : "Visibility";
+                         [](const auto& strategy) {
+                             return strategy.param == package::kStrategyUber ? "Uber" : "Visibility";
                          });
 
 TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {

@@ -95,12 +95,12 @@ std::vector<std::string> scenePaths() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, StrategiesAgree, ::testing::ValuesIn(scenePaths()),
-                         [](const ::testing::TestParamInfo<std::string>& info) {
-                             std::string name = fs::path(info.param).stem().string();
+                         [](const ::testing::TestParamInfo<std::string>& path) {
+                             std::string name = fs::path(path.param).stem().string();
                              for (char& c : name) {
                                  c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
                              }
-                             return name + "_" + std::to_string(info.index);
+                             return name + "_" + std::to_string(path.index);
                          });
 
 }  // namespace

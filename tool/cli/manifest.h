@@ -13,7 +13,8 @@ namespace glint {
 struct Manifest {
     std::string toolVersion;
     std::string merge;
-    std::map<std::uint32_t, std::string> materialNames;  // of the materials that have one and that shaders list
+    std::map<std::uint32_t, std::string>
+        materialNames;  // of the materials that have one and that shaders list
 };
 
 // Errors of readFile(), and "manifest-format" where the file is not JSON or lacks a member.

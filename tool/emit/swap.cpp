@@ -40,7 +40,7 @@ std::string siblingPrefix(const fs::path& folder, std::string_view tag) {
 fs::path newSibling(const fs::path& folder, std::string_view tag) {
     std::error_code error;
     for (int i = 0;; ++i) {
-        const fs::path path =
+        fs::path path =
             folder.parent_path() / fmt::format("{}{}-{}", siblingPrefix(folder, tag), getpid(), i);
         if (fs::symlink_status(path, error).type() == fs::file_type::not_found) {
             return path;

@@ -36,6 +36,7 @@ TEST(CompileModules, SharesTheFileOfEqualSpirv) {
 TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
     for (const int jobs : {1, 2, 8}) {
         std::vector<ModuleSource> sources;
+        sources.reserve(12);
         for (int i = 0; i < 12; ++i) {
             sources.push_back(makeSource(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
         }

@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <map>
 
@@ -63,9 +64,9 @@ TEST(MaterialTables, ListEachImageOncePerColourSpace) {
 
 TEST(MaterialTables, LeaveEmptySlotsZero) {
     const MaterialTables tables = makeMaterialTables(makeSampleScene());
-    const gpu::TextureRecord zero{};
-    for (std::size_t slot = 0; slot < gpu::kTextureSlotCount; ++slot) {
-        EXPECT_EQ(std::memcmp(&tables.materials[0].textures[slot], &zero, sizeof zero), 0);
+    using Words = std::array<std::uint32_t, sizeof(gpu::TextureRecord) / sizeof(std::uint32_t)>;
+    for (const gpu::TextureRecord& record : tables.materials[0].textures) {
+        EXPECT_EQ(std::bit_cast<Words>(record), Words{});
     }
 }
 

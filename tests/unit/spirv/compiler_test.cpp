@@ -100,6 +100,7 @@ TEST(CompileShader, GivesTheSameWordsOnEveryThread) {
     std::vector<std::vector<std::uint32_t>> results(4);
     {
         std::vector<std::jthread> threads;
+        threads.reserve(results.size());
         for (auto& result : results) {
             threads.emplace_back([&] {
                 if (const auto words = compileShader(source, {})) {
