@@ -12,9 +12,11 @@ install(TARGETS ${glint_targets} EXPORT GlintTargets
 install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
-  foreach(folder plan gltf emit spirv base)
-    install(DIRECTORY tool/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler
-            FILES_MATCHING PATTERN "*.h")
+  # What compile.h includes, and no more: the rest is the compiler's own business.
+  foreach(header base/files.h emit/compile.h gltf/import.h gltf/scene.h plan/features.h plan/material.h plan/plan.h
+                 spirv/statistics.h)
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()
 endif()
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)

@@ -98,7 +98,8 @@ Status checkHandles(const DeviceHandles& handles) {
 }  // namespace
 
 Status finishContext(Context::State& state) {
-    Result<DeviceTable> table = loadDeviceTable(state.instance, state.handles.device);
+    Result<DeviceTable> table =
+        loadDeviceTable(state.instance, state.handles.device, state.handles.debugUtils);
     if (!table) {
         return table.error();
     }

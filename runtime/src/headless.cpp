@@ -123,6 +123,7 @@ Status createInstance(const GlobalTable& table, Validation validation, Context::
     }
     state.instance = *functions;
     state.ownsInstance = true;
+    state.handles.debugUtils = labels;
     if (validation != Validation::Off) {
         result = state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger, nullptr,
                                                              &state.messenger);

@@ -66,9 +66,11 @@ Result<std::vector<std::uint32_t>> readModule(const std::filesystem::path& folde
                          "the module's contents differ from the package's hash", kRecompile);
     }
     std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
-    std::memcpy(words.data(), bytes->data(), words.size() * sizeof(std::uint32_t));
-    if (bytes->size() % sizeof(std::uint32_t) != 0 || bytes->size() < kSpirvHeaderBytes ||
-        words[0] != kSpirvMagic) {
+    const bool holdsHeader = bytes->size() % sizeof(std::uint32_t) == 0 && bytes->size() >= kSpirvHeaderBytes;
+    if (holdsHeader) {
+        std::memcpy(words.data(), bytes->data(), bytes->size());
+    }
+    if (!holdsHeader || words[0] != kSpirvMagic) {
         return makeError("package-module-altered", where, "the module is not SPIR-V", kRecompile);
     }
     return words;

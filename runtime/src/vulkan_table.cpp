@@ -69,7 +69,7 @@ Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstancePro
     return table;
 }
 
-Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device) {
+Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils) {
     DeviceTable table;
 #define GLINT_LOAD(name)                                                                            \
     table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
@@ -78,10 +78,12 @@ Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice devi
     }
     GLINT_DEVICE_FUNCTIONS(GLINT_LOAD)
 #undef GLINT_LOAD
-    table.CmdBeginDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(
-        instance.GetDeviceProcAddr(device, "vkCmdBeginDebugUtilsLabelEXT"));
-    table.CmdEndDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(
-        instance.GetDeviceProcAddr(device, "vkCmdEndDebugUtilsLabelEXT"));
+    if (debugUtils) {
+        table.CmdBeginDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(
+            instance.GetDeviceProcAddr(device, "vkCmdBeginDebugUtilsLabelEXT"));
+        table.CmdEndDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(
+            instance.GetDeviceProcAddr(device, "vkCmdEndDebugUtilsLabelEXT"));
+    }
     return table;
 }
 

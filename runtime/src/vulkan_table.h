@@ -155,6 +155,7 @@ private:
 // Each error ("vulkan-function") names the first function that is missing.
 Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr);
 Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
-Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device);
+// `debugUtils`: whether the instance has VK_EXT_debug_utils; layers hand its functions out in any case.
+Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils);
 
 }  // namespace glint

@@ -16,4 +16,5 @@ run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" -DCMAKE_PR
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
+run("${build}/uses_tables")
 run("${prefix}/bin/glint" --version)

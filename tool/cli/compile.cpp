@@ -3,8 +3,10 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/held_signals.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/json.h"
 #include "gltf/import.h"
 
 #include <fmt/format.h>
@@ -106,12 +108,6 @@ Json shadersToJson(const Outcome& outcome) {
     return list;
 }
 
-// 2^n as a whole number as long as it fits.
-Json countToJson(double count) {
-    constexpr double kLargest = 9007199254740992.0;  // 2^53, up to which every JSON reader is exact
-    return count <= kLargest ? Json(static_cast<std::uint64_t>(count)) : Json(count);
-}
-
 Json toJson(const Outcome& outcome) {
     const CompiledPackage* package = outcome.package;
     const auto orNull = [&](auto value) { return package ? Json(value()) : Json(nullptr); };
@@ -170,6 +166,12 @@ int planOnly(const Console& console, const CompileArguments& arguments, const Sc
     return kExitDone;
 }
 
+// An interruption waits, so that it leaves no staging folder behind.
+Status writeWhole(const CompiledPackage& package, const std::string& folder) {
+    const HeldSignals held;
+    return writePackage(package, folder);
+}
+
 int compile(const Console& console, const CompileArguments& arguments) {
     const Clock::time_point start = Clock::now();
     console.progress("reading " + arguments.scene);
@@ -192,7 +194,7 @@ int compile(const Console& console, const CompileArguments& arguments) {
         return fail(console, package.error());
     }
     console.progress("writing " + arguments.output);
-    if (Status written = writePackage(*package, arguments.output); !written) {
+    if (Status written = writeWhole(*package, arguments.output); !written) {
         return fail(console, written.error());
     }
     tell(console, Outcome{arguments, *scene, package->plan, &*package}, start);

@@ -1,5 +1,6 @@
 #include "cli/render_input.h"
 
+#include "cli/held_signals.h"
 #include "cli/temporary_folder.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
@@ -54,10 +55,6 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
 }
 
 Result<Package> compileTemporary(const Scene& scene, package::Strategy strategy, const PlanOptions& plan) {
-    const Result<TemporaryFolder> folder = TemporaryFolder::create();
-    if (!folder) {
-        return folder.error();
-    }
     CompileSettings settings;
     settings.strategies = strategy;
     settings.plan = plan;
@@ -66,10 +63,17 @@ Result<Package> compileTemporary(const Scene& scene, package::Strategy strategy,
     if (!compiled) {
         return compiled.error();
     }
-    if (Status written = writePackage(*compiled, folder->path()); !written) {
+    // From here on an interruption waits until the folder is gone again: milliseconds.
+    const HeldSignals held;
+    const Result<TemporaryFolder> folder = TemporaryFolder::create();
+    if (!folder) {
+        return folder.error();
+    }
+    const std::filesystem::path path = folder->path() / "package";
+    if (Status written = writePackage(*compiled, path); !written) {
         return written.error();
     }
-    return Package::load(folder->path());
+    return Package::load(path);
 }
 
 }  // namespace glint

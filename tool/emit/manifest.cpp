@@ -1,6 +1,7 @@
 #include "emit/manifest.h"
 
 #include "emit/context.h"
+#include "emit/json.h"
 #include "emit/modules.h"
 
 #include <fmt/format.h>
@@ -145,10 +146,11 @@ Json effects() {
 }
 
 Json counts(const Scene& scene, const CompiledPackage& package) {
-    return {{"materials", scene.materials.size()},     {"keysPossible", package.plan.keysPossible},
-            {"keysPresent", package.plan.keys.size()}, {"cases", package.plan.cases.size()},
-            {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
-            {"spirvBytes", package.spirvBytes}};
+    return {
+        {"materials", scene.materials.size()},     {"keysPossible", countToJson(package.plan.keysPossible)},
+        {"keysPresent", package.plan.keys.size()}, {"cases", package.plan.cases.size()},
+        {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
+        {"spirvBytes", package.spirvBytes}};
 }
 
 Json files(const CompiledPackage& package) {
@@ -158,6 +160,13 @@ Json files(const CompiledPackage& package) {
             {{"file", file.name}, {"bytes", file.bytes.size()}, {"hash", hexHash(hashBytes(file.bytes))}});
     }
     return list;
+}
+
+// The manifest may come from anywhere: its names must not lead out of the package's folder.
+bool staysInside(const std::filesystem::path& name) {
+    return name.is_relative() && std::ranges::all_of(name, [](const std::filesystem::path& part) {
+               return !part.empty() && part != "." && part != "..";
+           });
 }
 
 }  // namespace
@@ -195,7 +204,7 @@ std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
     const Json list = manifest.value("files", Json::array());
     for (const Json& file : list) {
         const Json name = file.is_object() ? file.value("file", Json()) : Json();
-        if (name.is_string()) {
+        if (name.is_string() && staysInside(name.get<std::string>())) {
             names.insert(name.get<std::string>());
         }
     }

@@ -14,7 +14,8 @@ inline constexpr std::string_view kManifestFormat = "glint-package";
 // The text of the manifest; `package` must be complete but for the manifest itself.
 std::string makeManifest(const Scene& scene, const CompiledPackage& package, const CompileSettings& settings);
 
-// Names of the files that a manifest lists, itself included; empty if `text` is no manifest of a package.
+// Names of the files that a manifest lists, itself included, as far as they stay in its folder; empty if
+// `text` is no manifest of a package.
 std::set<std::string, std::less<>> manifestFiles(std::string_view text);
 
 }  // namespace glint

@@ -4,18 +4,18 @@
 
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fcntl.h>
 #include <string>
 #include <string_view>
+#include <sys/file.h>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
-
-#ifdef __linux__
-#include <fcntl.h>
-#endif
 
 namespace glint {
 
@@ -98,11 +98,44 @@ Result<fs::path> resolveOutput(const fs::path& folder) {
     if (!path.has_filename()) {
         return swapError(folder, "a package can't take the place of the root folder");
     }
+    if (fs::is_symlink(fs::symlink_status(path, error))) {
+        return swapError(folder, "it is a link that leads nowhere");
+    }
     fs::create_directories(path.parent_path(), error);
     if (error) {
         return swapError(folder, error.message());
     }
     return path;
+}
+
+fs::path innerStaging(const fs::path& folder) {
+    return folder / folder.filename();
+}
+
+Result<OutputLock> OutputLock::acquire(const fs::path& folder) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds kPatience(30);  // writing a package takes well below one
+    constexpr std::chrono::milliseconds kPause(20);
+    const int file = open(folder.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const Clock::time_point start = Clock::now();
+    while (file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR)) {
+        if (Clock::now() - start > kPatience) {
+            close(file);
+            return makeError("output-busy", folder.string(),
+                             "another process is writing below its parent folder",
+                             "wait for it, or choose an output folder elsewhere; nothing was changed");
+        }
+        std::this_thread::sleep_for(kPause);
+    }
+    return OutputLock(file);
+}
+
+OutputLock::OutputLock(OutputLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+
+OutputLock::~OutputLock() {
+    if (file_ >= 0) {
+        close(file_);
+    }
 }
 
 void recoverInterrupted(const fs::path& folder) {
@@ -114,8 +147,10 @@ void recoverInterrupted(const fs::path& folder) {
             fs::remove_all(old, error);
         }
     }
-    for (const fs::path& staging : abandonedSiblings(folder, kNewTag)) {
-        fs::remove_all(staging, error);
+    for (const fs::path& beside : {folder, innerStaging(folder)}) {
+        for (const fs::path& staging : abandonedSiblings(beside, kNewTag)) {
+            fs::remove_all(staging, error);
+        }
     }
 }
 

@@ -11,8 +11,27 @@ namespace glint {
 // "output-write".
 Result<std::filesystem::path> resolveOutput(const std::filesystem::path& folder);
 
-// Puts right what runs that were killed left beside `folder`: brings back a folder that was moved aside and
-// not yet replaced, and removes staging folders. Leaves alone those of processes that still run.
+// The folder inside `folder`, never made, whose siblings lie within: for StagingFolder::create() where
+// nothing may be made beside it.
+std::filesystem::path innerStaging(const std::filesystem::path& folder);
+
+// Keeps other processes that write a package below the same parent waiting while it lives; where the file
+// system has no such locks, it does nothing.
+class OutputLock {
+public:
+    // Waits for others, up to a time. Error "output-busy".
+    static Result<OutputLock> acquire(const std::filesystem::path& folder);
+    OutputLock(OutputLock&& other) noexcept;
+    OutputLock& operator=(OutputLock&&) = delete;
+    ~OutputLock();
+
+private:
+    explicit OutputLock(int file) : file_(file) {}
+    int file_;  // of the parent folder; -1: none
+};
+
+// Puts right what runs that were killed left beside and in `folder`: brings back a folder that was moved
+// aside and not yet replaced, and removes staging folders. Leaves alone those of processes that still run.
 void recoverInterrupted(const std::filesystem::path& folder);
 
 // A new folder beside the one that it will replace; goes, with its contents, when the object does.

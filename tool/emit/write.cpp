@@ -1,4 +1,5 @@
 #include "emit/compile.h"
+#include "emit/in_place.h"
 #include "emit/manifest.h"
 #include "emit/swap.h"
 
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <set>
 #include <string>
 #include <system_error>
@@ -156,12 +158,50 @@ Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path
     return error ? Status(writeError(folder, error.message())) : okStatus();
 }
 
+// Whether this process works in `folder` or below: a shell that does would be left in a folder that is gone.
+bool isWorkingFolder(const fs::path& folder) {
+    std::error_code error;
+    const fs::path current = fs::current_path(error);
+    return !error && std::ranges::mismatch(folder, current).in1 == folder.end();
+}
+
+// The same as a swap, file by file.
+Status updateFolder(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
+    std::vector<const PackageFile*> changed;
+    std::vector<std::string> leaving;
+    Names kept;
+    for (const PackageFile& file : package.files) {
+        if (holds(folder / file.name, file.bytes)) {
+            kept.insert(file.name);
+        } else {
+            changed.push_back(&file);
+        }
+    }
+    std::error_code error;
+    std::ranges::copy_if(earlier, std::back_inserter(leaving), [&](const std::string& name) {
+        const fs::file_status status = fs::symlink_status(folder / name, error);
+        return !kept.contains(name) && fs::exists(status) && !fs::is_directory(status);
+    });
+    return replaceInPlace(changed, leaving, folder);
+}
+
+// A mount point can't be swapped, nor a folder whose parent can't be written.
+Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs::path& folder,
+                 const Diagnostic& swapError) {
+    std::error_code error;
+    return fs::is_directory(folder, error) ? updateFolder(package, earlier, folder) : Status(swapError);
+}
+
 }  // namespace
 
 Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     const Result<fs::path> resolved = resolveOutput(folder);
     if (!resolved) {
         return resolved.error();
+    }
+    const Result<OutputLock> lock = OutputLock::acquire(*resolved);
+    if (!lock) {
+        return lock.error();
     }
     recoverInterrupted(*resolved);
     const Result<Names> earlier = inspectFolder(*resolved);
@@ -171,9 +211,12 @@ Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     if (isCurrent(package, *earlier, *resolved)) {
         return okStatus();
     }
+    if (isWorkingFolder(*resolved)) {
+        return updateFolder(package, *earlier, *resolved);
+    }
     Result<StagingFolder> staging = StagingFolder::create(*resolved);
     if (!staging) {
-        return staging.error();
+        return orInPlace(package, *earlier, *resolved, staging.error());
     }
     if (Status status = stagePackage(package, *resolved, staging->path()); !status) {
         return status;
@@ -184,7 +227,8 @@ Status writePackage(const CompiledPackage& package, const fs::path& folder) {
             return status;
         }
     }
-    return staging->swapInto(*resolved);
+    Status swapped = staging->swapInto(*resolved);
+    return swapped ? swapped : orInPlace(package, *earlier, *resolved, swapped.error());
 }
 
 }  // namespace glint

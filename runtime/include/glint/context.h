@@ -20,6 +20,7 @@ struct DeviceHandles {
     VkQueue queue = VK_NULL_HANDLE;  // graphics, compute and transfer
     std::uint32_t queueFamily = 0;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
+    bool debugUtils = false;  // VK_EXT_debug_utils is enabled on the instance: passes are labelled
 };
 
 enum class Validation { Off, On, Synchronization };

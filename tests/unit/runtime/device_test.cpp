@@ -1,87 +1,16 @@
 // Contexts, uploads and what upload refuses.
 #include "device_fixture.h"
 #include "gpu_scene_state.h"
+#include "host_device.h"
 #include "interop/scene.h"
 
 #include <functional>
+#include <limits>
 
 namespace glint {
 namespace {
 
 using test::TestScene;
-
-// An instance and a device that the test owns, as a host application would.
-class HostDevice {
-public:
-    bool create() {
-        auto library = VulkanLibrary::open();
-        if (!library) {
-            return false;
-        }
-        library_ = *library;
-        const auto global = loadGlobalTable(library_->getInstanceProcAddr());
-        VkApplicationInfo application{};
-        application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-        application.apiVersion = DeviceRequirements::kApiVersion;
-        VkInstanceCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-        info.pApplicationInfo = &application;
-        if (!global || global->CreateInstance(&info, nullptr, &handles_.instance) != VK_SUCCESS) {
-            return false;
-        }
-        instance_ = *loadInstanceTable(library_->getInstanceProcAddr(), handles_.instance);
-        std::uint32_t count = 0;
-        instance_.EnumeratePhysicalDevices(handles_.instance, &count, nullptr);
-        std::vector<VkPhysicalDevice> devices(count);
-        instance_.EnumeratePhysicalDevices(handles_.instance, &count, devices.data());
-        for (VkPhysicalDevice device : devices) {
-            if (missingRequirements(device).empty()) {
-                handles_.physicalDevice = device;
-                return createDevice();
-            }
-        }
-        return false;
-    }
-    ~HostDevice() {
-        if (handles_.device != VK_NULL_HANDLE) {
-            device_.DestroyDevice(handles_.device, nullptr);
-        }
-        if (handles_.instance != VK_NULL_HANDLE) {
-            instance_.DestroyInstance(handles_.instance, nullptr);
-        }
-    }
-    const DeviceHandles& handles() const {
-        return handles_;
-    }
-
-private:
-    bool createDevice() {
-        const DeviceRequirements requirements;
-        const float priority = 1.0F;
-        VkDeviceQueueCreateInfo queue{};
-        queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-        queue.queueCount = 1;
-        queue.pQueuePriorities = &priority;
-        VkDeviceCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-        info.pNext = &requirements.features;
-        info.queueCreateInfoCount = 1;
-        info.pQueueCreateInfos = &queue;
-        info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
-        info.ppEnabledExtensionNames = requirements.extensions.data();
-        if (instance_.CreateDevice(handles_.physicalDevice, &info, nullptr, &handles_.device) != VK_SUCCESS) {
-            return false;
-        }
-        device_ = *loadDeviceTable(instance_, handles_.device);
-        device_.GetDeviceQueue(handles_.device, 0, 0, &handles_.queue);
-        return true;
-    }
-
-    std::shared_ptr<VulkanLibrary> library_;
-    InstanceTable instance_;
-    DeviceTable device_;
-    DeviceHandles handles_;
-};
 
 class ContextTest : public test::DeviceTest {};
 
@@ -103,15 +32,17 @@ TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
 }
 
 TEST_F(ContextTest, AdoptedDevicesRenderAndOutliveTheContext) {
-    HostDevice host;
+    test::HostDevice host;
     ASSERT_TRUE(host.create());
     const Package package = load(test::makeDeviceSpec());
     TestScene scene;
     scene.meshes = {test::makeSquare(0, 0)};
     scene.instances = {{0, test::kIdentity}};
-    // Twice on one device, beside the headless context of the fixture.
-    for (int round = 0; round < 2; ++round) {
-        auto adopted = Context::adopt(host.handles());
+    // Twice on one device, beside the headless context of the fixture; with labels and without.
+    for (const bool debugUtils : {false, true}) {
+        DeviceHandles handles = host.handles();
+        handles.debugUtils = debugUtils && host.handles().debugUtils;
+        auto adopted = Context::adopt(handles);
         ASSERT_TRUE(adopted) << toString(adopted.error());
         EXPECT_EQ((*adopted)->handles().device, host.handles().device);
         EXPECT_TRUE((*adopted)->validationMessages().empty());
@@ -127,6 +58,11 @@ TEST_F(ContextTest, AdoptedDevicesRenderAndOutliveTheContext) {
         EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
     }
     EXPECT_NE(upload(package, scene), nullptr);
+    // A device that still has objects of a context when it goes is worth a message, too.
+    host.destroy();
+    for (const std::string& message : host.messages()) {
+        ADD_FAILURE() << message;
+    }
 }
 
 TEST_F(ContextTest, AdoptChecksItsHandles) {

@@ -1,0 +1,47 @@
+// An instance and a device that the test owns, as a host application would.
+#pragma once
+
+#include "vulkan_table.h"
+
+#include <glint/context.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+
+// With the validation layer and its messages where the layer is installed.
+class HostDevice {
+public:
+    HostDevice() = default;
+    ~HostDevice() {
+        destroy();
+    }
+    HostDevice(const HostDevice&) = delete;
+    HostDevice& operator=(const HostDevice&) = delete;
+
+    // False where there is no device that has what Glint requires.
+    bool create();
+    void destroy();
+
+    const DeviceHandles& handles() const {
+        return handles_;
+    }
+    const std::vector<std::string>& messages() const {
+        return messages_;
+    }
+
+private:
+    bool createInstance();
+    bool createDevice();
+
+    std::shared_ptr<VulkanLibrary> library_;
+    InstanceTable instance_;
+    DeviceTable device_;
+    DeviceHandles handles_;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    std::vector<std::string> messages_;
+};
+
+}  // namespace glint::test

@@ -1,0 +1,17 @@
+// What several files say alike in JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+
+namespace glint {
+
+// 2^n for n bits, as a whole number as long as every JSON reader takes it exactly.
+inline nlohmann::ordered_json countToJson(double count) {
+    constexpr double kLargest = 9007199254740992.0;  // 2^53
+    return count <= kLargest ? nlohmann::ordered_json(static_cast<std::uint64_t>(count))
+                             : nlohmann::ordered_json(count);
+}
+
+}  // namespace glint
