@@ -26,6 +26,7 @@ kNeeds=(
     "command ccache|ccache"
     "file /etc/ssl/certs/ca-certificates.crt|ca-certificates"
     "file /usr/include/glslang/Public/ShaderLang.h|glslang-dev"
+    "command glslangValidator|glslang-tools"
     "file /usr/include/spirv-tools/optimizer.hpp|spirv-tools-dev libspirv-tools-dev spirv-tools"
     "command spirv-val|spirv-tools"
     "file /usr/include/spirv/unified1/spirv.hpp|spirv-headers"

@@ -132,6 +132,7 @@ TEST(Manifest, DescribesThePackage) {
     EXPECT_EQ(manifest["strategies"], (nlohmann::json{"uber", "visibility"}));
     EXPECT_EQ(manifest["sources"][1]["file"], "data/sample.bin");
     EXPECT_EQ(manifest["counts"]["cases"], 4);
+    EXPECT_TRUE(manifest["counts"]["keysPossible"].is_number_integer());
     EXPECT_EQ(manifest["counts"]["uniqueSpirv"], package.uniqueSpirv);
     EXPECT_EQ(manifest["buckets"], 5);
     EXPECT_EQ(manifest["effects"][0]["name"], "reflection");
