@@ -32,7 +32,6 @@ kNeeds=(
     "file /usr/include/spirv/unified1/spirv.hpp|spirv-headers"
     "file /usr/include/tiny_gltf.h|libtinygltf-dev"
     "file /usr/include/vulkan/vulkan.h|libvulkan-dev"
-    "file /usr/include/volk.h|libvulkan-volk-dev"
     "file /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json|vulkan-validationlayers"
     "file /usr/share/vulkan/icd.d/lvp_icd*.json|mesa-vulkan-drivers"
     "file /usr/include/fmt/format.h|libfmt-dev"

@@ -208,7 +208,7 @@ void importMutation(const std::filesystem::path& path, const std::string& bytes,
 TEST(GltfFuzz, DamagedFilesAreRefusedOrRead) {
     Random random(kSeed);
     std::printf("seed %u\n", kSeed);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "scene.gltf";
     const GltfBuilder rich = richScene();
     GltfBuilder small;
@@ -238,7 +238,7 @@ TEST(GltfFuzz, DamagedFilesAreRefusedOrRead) {
 }
 
 TEST(GltfFuzz, EveryTruncationOfAGlbIsRefused) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "scene.glb";
     GltfBuilder small;
     small.addTriangle();

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
-#include <unistd.h>
 #include <utility>
 
 namespace glint::testing {
@@ -73,18 +71,6 @@ std::string_view textOf(const PackageFile* file) {
         return {};
     }
     return {reinterpret_cast<const char*>(file->bytes.data()), file->bytes.size()};
-}
-
-TemporaryFolder::TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "glint-test-XXXXXX").string();
-    const char* const made = mkdtemp(pattern.data());
-    EXPECT_NE(made, nullptr);
-    path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace glint::testing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "support/temporary_folder.h"
 
 #include <filesystem>
 #include <string_view>
@@ -18,19 +19,6 @@ CompiledPackage compileSample(const CompileSettings& settings = {});
 const PackageFile* findFile(const CompiledPackage& package, std::string_view name);
 std::string_view textOf(const PackageFile* file);
 
-// Made when constructed, removed when destroyed.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const {
-        return path_;
-    }
-
-private:
-    std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 }  // namespace glint::testing

@@ -1,6 +1,8 @@
 // The generated scene, read back as a reader of glTF sees it.
 #pragma once
 
+#include "support/temporary_folder.h"
+
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -13,21 +15,7 @@ namespace gallery::test {
 
 using Json = nlohmann::json;
 
-// A folder below the build's, for this process only; removed with the object.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const {
-        return path_;
-    }
-
-private:
-    std::filesystem::path path_;
-};
+using glint::test::TemporaryFolder;
 
 std::string readAll(const std::filesystem::path& path);
 

@@ -21,7 +21,7 @@ std::string triangleWithBuffer(const std::string& uri, Bytes& bytes) {
 }
 
 // Imports a scene in "<folder>/scenes" whose buffer has that URI.
-Result<Scene> importWithUri(const TempFolder& folder, const std::string& uri) {
+Result<Scene> importWithUri(const TemporaryFolder& folder, const std::string& uri) {
     Bytes bytes;
     const std::string text = triangleWithBuffer(uri, bytes);
     const fs::path scenes = folder.path() / "scenes";
@@ -35,7 +35,7 @@ Result<Scene> importWithUri(const TempFolder& folder, const std::string& uri) {
 }
 
 TEST(GltfFiles, OpensRelativeFilesAndRecordsThem) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const char* uri :
          {"a.bin", "./a.bin", "sub%20folder/b.bin", "sub folder/b.bin", "sub%20folder/../a.bin"}) {
         const Result<Scene> scene = importWithUri(folder, uri);
@@ -51,7 +51,7 @@ TEST(GltfFiles, OpensRelativeFilesAndRecordsThem) {
 }
 
 TEST(GltfFiles, RefusesToLeaveTheFolder) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     fs::create_directories(folder.path() / "scenes");
     fs::create_symlink(folder.path() / "outside.bin", folder.path() / "scenes/link.bin");
     fs::create_directory_symlink(folder.path(), folder.path() / "scenes/up");
@@ -71,7 +71,7 @@ TEST(GltfFiles, RefusesToLeaveTheFolder) {
 }
 
 TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Result<Scene> missing = importWithUri(folder, "none.bin");
     ASSERT_FALSE(missing.ok());
     EXPECT_EQ(missing.error().id, "file-open");

@@ -1,24 +1,10 @@
 #include "unit/gltf/gltf_builder.h"
 
-#include <cstdlib>
 #include <string>
 
 namespace glint::test {
 
 namespace fs = std::filesystem;
-
-TempFolder::TempFolder() {
-    std::string name = (fs::temp_directory_path() / "glint_test_XXXXXX").string();
-    // Null only where the machine's temporary folder is not writable; every later write then fails loudly.
-    if (mkdtemp(name.data()) != nullptr) {
-        path_ = name;
-    }
-}
-
-TempFolder::~TempFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
 
 GltfBuilder::GltfBuilder() : root{{"asset", {{"version", "2.0"}}}} {}
 
@@ -112,7 +98,7 @@ std::string base64(const Bytes& bytes) {
 }
 
 Result<Scene> importText(const std::string& text, const ImportOptions& options) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "scene.gltf";
     if (const Status status = writeFile(path, text); !status) {
         return status.error();

@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "gltf/import.h"
+#include "support/temporary_folder.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,22 +19,6 @@
 namespace glint::test {
 
 using Json = nlohmann::json;
-
-// A fresh folder, removed with its contents at the end.
-class TempFolder {
-public:
-    TempFolder();
-    ~TempFolder();
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-
-    const std::filesystem::path& path() const {
-        return path_;
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 // glTF's numbers.
 template <typename T>

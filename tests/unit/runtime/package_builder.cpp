@@ -4,12 +4,10 @@
 
 #include <xxhash.h>
 
-#include <atomic>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
-#include <unistd.h>
 
 namespace glint::test {
 
@@ -174,18 +172,6 @@ void writeModules(const PackageSpec& spec, const std::filesystem::path& folder) 
 void writePackage(const PackageSpec& spec, const std::filesystem::path& folder) {
     writeModules(spec, folder);
     writeBytes(folder / package::kTablesFile, serialize(spec));
-}
-
-TemporaryFolder::TemporaryFolder() {
-    static std::atomic<int> number{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("glint_runtime_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
-    std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace glint::test

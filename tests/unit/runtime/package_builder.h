@@ -2,6 +2,7 @@
 #pragma once
 
 #include "interop/scene.h"
+#include "support/temporary_folder.h"
 
 #include <glint/package_format.h>
 
@@ -57,20 +58,5 @@ void reseal(std::vector<std::uint8_t>& tables);
 void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
 void writeModules(const PackageSpec& spec, const std::filesystem::path& folder);
 void writePackage(const PackageSpec& spec, const std::filesystem::path& folder);
-
-// A folder of its own, removed in the end.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const {
-        return path_;
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 }  // namespace glint::test
