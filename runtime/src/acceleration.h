@@ -27,10 +27,19 @@ struct BlasGeometry {
     bool opaque = true;
 };
 
-struct BlasInput {
-    std::vector<BlasGeometry> geometries;  // not empty
-    std::string where;                     // for messages
+// What one BLAS may hold.
+struct BlasCapacity {
+    std::uint64_t triangles = 0;
+    std::uint64_t geometries = 0;
 };
+
+struct BlasInput {
+    std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
+};
+
+// What one BLAS of this device may hold: its limits, and no structure or scratch above maxStorageBufferRange,
+// as mobile drivers bind both as storage buffers.
+BlasCapacity blasCapacity(const Context::State& context);
 
 struct BlasStatistics {
     std::uint64_t bytes = 0;
@@ -39,7 +48,7 @@ struct BlasStatistics {
 };
 
 // Builds and compacts all inputs, in batches that bound scratch and transient memory; waits for the device.
-// `pool` must outlive the result. Errors: "blas-limit", naming the mesh; those of buffers and submissions.
+// `pool` must outlive the result. Errors: those of buffers and submissions.
 Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
                                                        std::span<const BlasInput> inputs,
                                                        BlasStatistics& statistics);

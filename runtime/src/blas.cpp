@@ -31,27 +31,6 @@ struct BlasBuild {
     VkDeviceSize scratchBytes = 0;  // rounded up to the alignment of scratch
 };
 
-Status checkLimits(const Context::State& context, const BlasInput& input) {
-    const VkPhysicalDeviceAccelerationStructurePropertiesKHR& limits = context.limits.accelerationStructure;
-    if (input.geometries.size() > limits.maxGeometryCount) {
-        return makeError("blas-limit", input.where,
-                         "the mesh has " + std::to_string(input.geometries.size()) +
-                             " primitives, the device takes " + std::to_string(limits.maxGeometryCount),
-                         "split the mesh");
-    }
-    std::uint64_t triangles = 0;
-    for (const BlasGeometry& geometry : input.geometries) {
-        triangles += geometry.triangleCount;
-    }
-    if (triangles > limits.maxPrimitiveCount) {
-        return makeError("blas-limit", input.where,
-                         "the mesh has " + std::to_string(triangles) + " triangles, the device takes " +
-                             std::to_string(limits.maxPrimitiveCount),
-                         "split the mesh");
-    }
-    return okStatus();
-}
-
 VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
     VkAccelerationStructureGeometryKHR described{};
     described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
@@ -258,15 +237,31 @@ std::size_t batchEnd(const Context::State& context, std::span<const BlasBuild> b
 
 }  // namespace
 
+BlasCapacity blasCapacity(const Context::State& context) {
+    // More than any mesh needs in one piece, and few enough that no driver's 32-bit sum of bytes overflows.
+    constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 24;
+    const VkPhysicalDeviceAccelerationStructurePropertiesKHR& limits = context.limits.accelerationStructure;
+    const VkDeviceSize range = context.limits.core.maxStorageBufferRange;
+    BlasCapacity capacity{std::clamp<std::uint64_t>(limits.maxPrimitiveCount, 1, kMostTriangles),
+                          std::max<std::uint64_t>(limits.maxGeometryCount, 1)};
+    while (capacity.triangles > 1) {
+        const auto triangles = static_cast<std::uint32_t>(capacity.triangles);
+        const BlasInput probe{{{0, 0, 3 * triangles, triangles, true}}};
+        const BlasBuild build = describeBuild(context, probe);
+        if (std::max(build.structureBytes, build.scratchBytes) <= range) {
+            break;
+        }
+        capacity.triangles /= 2;
+    }
+    return capacity;
+}
+
 Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
                                                        std::span<const BlasInput> inputs,
                                                        BlasStatistics& statistics) {
     std::vector<BlasBuild> builds;
     builds.reserve(inputs.size());
     for (const BlasInput& input : inputs) {
-        if (Status status = checkLimits(context, input); !status) {
-            return status.error();
-        }
         builds.push_back(describeBuild(context, input));
     }
     std::vector<AccelerationStructure> structures;

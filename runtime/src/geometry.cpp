@@ -2,6 +2,7 @@
 
 #include "instance_math.h"
 
+#include <algorithm>
 #include <map>
 
 namespace glint {
@@ -9,6 +10,7 @@ namespace {
 
 // Vectors of four floats are aligned to their size, which any device is content with.
 constexpr VkDeviceSize kAttributeAlignment = 16;
+constexpr VkDeviceSize kTriangleIndexBytes = 3 * sizeof(std::uint32_t);
 // Custom indices have 24 bits.
 constexpr std::size_t kMaxGeometries = std::size_t{1} << 24;
 
@@ -68,7 +70,7 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
 }
 
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
-                                       std::uint32_t instance) {
+                                       std::uint32_t firstTriangle, std::uint32_t instance) {
     gpu::GeometryRecord record{};
     record.shaderId = entry.shaderId;
     record.materialIndex = entry.materialIndex;
@@ -76,7 +78,7 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     record.featureInputs = entry.featureInputs;
     record.instanceIndex = instance;
     record.flags = entry.geometryFlags;
-    record.indices = primitive.indices;
+    record.indices = primitive.indices + firstTriangle * kTriangleIndexBytes;
     record.positions = primitive.positions;
     record.normals = primitive.normals;
     record.tangents = primitive.tangents;
@@ -89,20 +91,48 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
 // Parts of each mesh that has triangles: indices into SceneLayout::parts.
 using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
 
+// Appends the triangles of a primitive to `ranges`, and begins a new part where one is full.
+void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
+                  std::vector<std::vector<TriangleRange>>& ranges) {
+    const auto room = [&]() -> std::uint64_t {
+        if (ranges.empty() || ranges.back().size() >= capacity.geometries) {
+            return 0;
+        }
+        std::uint64_t held = 0;
+        for (const TriangleRange& range : ranges.back()) {
+            held += range.count;
+        }
+        return capacity.triangles - held;
+    };
+    for (std::uint32_t first = 0; first < triangleCount;) {
+        // A primitive that fits into a part of its own is not torn.
+        if (room() < std::min<std::uint64_t>(triangleCount - first, capacity.triangles)) {
+            ranges.emplace_back();
+        }
+        const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(triangleCount - first, room()));
+        ranges.back().push_back({primitive, first, count});
+        first += count;
+    }
+}
+
 PartsOfMesh partition(const Package& package, const SceneView& scene,
-                      std::span<const GpuPrimitive> primitives, std::vector<MeshPart>& parts) {
-    std::map<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>> members;
+                      std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                      std::vector<MeshPart>& parts) {
+    std::map<std::pair<std::uint32_t, bool>, std::vector<std::vector<TriangleRange>>> members;
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {
         const PrimitiveView& view = scene.primitives[i];
         if (primitives[i].triangleCount > 0) {
             const std::uint32_t flags = package.findPrimitive(view.mesh, view.primitive)->geometryFlags;
-            members[{view.mesh, (flags & gpu::kGeometryDoubleSided) != 0}].push_back(i);
+            appendRanges(i, primitives[i].triangleCount, capacity,
+                         members[{view.mesh, (flags & gpu::kGeometryDoubleSided) != 0}]);
         }
     }
     PartsOfMesh partsOfMesh;
-    for (auto& [key, indices] : members) {
-        partsOfMesh[key.first].push_back(static_cast<std::uint32_t>(parts.size()));
-        parts.push_back({key.first, key.second, std::move(indices)});
+    for (auto& [key, blases] : members) {
+        for (std::vector<TriangleRange>& ranges : blases) {
+            partsOfMesh[key.first].push_back(static_cast<std::uint32_t>(parts.size()));
+            parts.push_back({key.first, key.second, std::move(ranges)});
+        }
     }
     return partsOfMesh;
 }
@@ -125,9 +155,9 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
 }
 
 Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives) {
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity) {
     SceneLayout layout;
-    const PartsOfMesh partsOfMesh = partition(package, scene, primitives, layout.parts);
+    const PartsOfMesh partsOfMesh = partition(package, scene, primitives, capacity, layout.parts);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
@@ -140,15 +170,15 @@ Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
         }
         for (const std::uint32_t part : parts->second) {
             layout.partInstances.push_back({part, i, static_cast<std::uint32_t>(layout.geometries.size())});
-            for (const std::uint32_t index : layout.parts[part].primitives) {
-                const PrimitiveView& view = scene.primitives[index];
-                const GpuPrimitive& primitive = primitives[index];
+            for (const TriangleRange& range : layout.parts[part].ranges) {
+                const PrimitiveView& view = scene.primitives[range.primitive];
+                const GpuPrimitive& primitive = primitives[range.primitive];
                 const package::PrimitiveEntry& entry = *package.findPrimitive(view.mesh, view.primitive);
-                layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()),
-                                        3 * primitive.triangleCount, layout.parts[part].doubleSided,
+                layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
+                                        layout.parts[part].doubleSided,
                                         (record.flags & gpu::kInstanceMirrored) != 0});
-                layout.geometries.push_back(makeGeometryRecord(entry, primitive, i));
-                layout.triangles += primitive.triangleCount;
+                layout.geometries.push_back(makeGeometryRecord(entry, primitive, range.first, i));
+                layout.triangles += range.count;
             }
         }
         if (layout.geometries.size() > kMaxGeometries) {

@@ -1,6 +1,7 @@
 // Vertex data on the device, and what of it forms which acceleration structure.
 #pragma once
 
+#include "acceleration.h"
 #include "interop/scene.h"
 #include "resources.h"
 #include "upload.h"
@@ -34,12 +35,20 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
                                                    Uploader& uploader,
                                                    std::span<const PrimitiveView> primitives);
 
-// The primitives of a mesh that are seen from one side, or from both: one BLAS, as culling is a property of
-// its instances. Primitives without triangles are in no part.
+// Consecutive triangles of a primitive: a geometry of a BLAS.
+struct TriangleRange {
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+// Triangles of a mesh that are seen from one side, or from both: one BLAS, as culling is a property of its
+// instances. A mesh above the capacity of a BLAS has several parts of a kind. Primitives without triangles
+// are in no part.
 struct MeshPart {
     std::uint32_t mesh = 0;
     bool doubleSided = false;
-    std::vector<std::uint32_t> primitives;  // indices into SceneView::primitives
+    std::vector<TriangleRange> ranges;
 };
 
 // A part placed in the world: an instance of the TLAS.
@@ -66,9 +75,9 @@ struct SceneLayout {
     std::uint64_t triangles = 0;                 // of all instances
 };
 
-// Pure. `primitives` are those of uploadPrimitives(). Error "scene-geometries": more records than the 24 bits
-// of a custom index can number.
+// Pure. `primitives` are those of uploadPrimitives(); the capacity is at least one triangle. Error
+// "scene-geometries": more records than the 24 bits of a custom index can number.
 Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives);
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity);
 
 }  // namespace glint

@@ -35,7 +35,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         return primitives.error();
     }
     state.primitives = std::move(*primitives);
-    Result<SceneLayout> laidOut = layOutScene(package, scene, state.primitives);
+    Result<SceneLayout> laidOut = layOutScene(package, scene, state.primitives, blasCapacity(state.context));
     if (!laidOut) {
         return laidOut.error();
     }
@@ -77,13 +77,13 @@ Status buildBottomLevels(GpuScene::State& state, const Package& package, const S
     std::vector<BlasInput> inputs;
     for (const MeshPart& part : layout.parts) {
         BlasInput input;
-        input.where = "mesh " + std::to_string(part.mesh);
-        for (const std::uint32_t index : part.primitives) {
-            const PrimitiveView& view = scene.primitives[index];
+        for (const TriangleRange& range : part.ranges) {
+            const PrimitiveView& view = scene.primitives[range.primitive];
             const std::uint32_t flags = package.findPrimitive(view.mesh, view.primitive)->geometryFlags;
-            const GpuPrimitive& primitive = state.primitives[index];
-            input.geometries.push_back({primitive.positions, primitive.indices, primitive.vertexCount,
-                                        primitive.triangleCount, (flags & gpu::kGeometryAlphaTested) == 0});
+            const GpuPrimitive& primitive = state.primitives[range.primitive];
+            const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
+            input.geometries.push_back({primitive.positions, indices, primitive.vertexCount, range.count,
+                                        (flags & gpu::kGeometryAlphaTested) == 0});
         }
         inputs.push_back(std::move(input));
     }

@@ -1,5 +1,6 @@
 // Pictures whose pixels can be worked out on paper: orientation, colour, light, shadow, reflection, alpha,
 // facing. Each holds for both strategies.
+#include "context_state.h"
 #include "render/harness.h"
 #include "render/scene_builder.h"
 
@@ -280,6 +281,33 @@ INSTANTIATE_TEST_SUITE_P(All, Facing,
                          ::testing::Combine(::testing::Values(package::kStrategyUber,
                                                               package::kStrategyVisibility),
                                             ::testing::Bool(), ::testing::Bool()));
+
+// A mesh split over several acceleration structures is the same mesh: triangles keep their vertices and
+// materials.
+TEST_P(Pixels, SplittingAMeshChangesNothing) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    Material textured = unlitMaterial({1.0F, 1.0F, 1.0F});
+    textured.texture(TextureSlot::BaseColor).texture =
+        addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
+    const int picture = addMaterial(scene, textured);
+    Mesh mesh;
+    mesh.primitives = {
+        makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}),
+        makeQuad(picture, {9, 0, 3}, {-18, 0, 0}, {0, 9, 0}),
+        makeQuad(addMaterial(scene, unlitMaterial(kBlue)), {9, -9, 3}, {-18, 0, 0}, {0, 9, 0})};
+    scene.meshes.push_back(mesh);
+    addInstance(scene, 0);
+    const RenderSetup setup = squareSetup(scene);
+    const LinearImage whole = render(scene, setup);
+    auto& limits = sharedContext().state().limits.accelerationStructure;
+    const auto before = limits.maxPrimitiveCount;
+    limits.maxPrimitiveCount = 1;
+    const LinearImage split = render(scene, setup);
+    limits.maxPrimitiveCount = before;
+    ASSERT_FALSE(whole.pixels.empty());
+    EXPECT_EQ(whole.pixels, split.pixels);
+}
 
 TEST_P(Pixels, SamplesAverageAndSeedsRepeat) {
     Scene scene = emptyScene();

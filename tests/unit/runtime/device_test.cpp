@@ -1,4 +1,5 @@
 // Contexts, uploads and what upload refuses.
+#include "acceleration.h"
 #include "device_fixture.h"
 #include "gpu_scene_state.h"
 #include "host_device.h"
@@ -159,6 +160,39 @@ TEST_F(UploadTest, ManyMeshesInBatches) {
     const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
     ASSERT_NE(uploaded, nullptr);
     EXPECT_EQ(uploaded->statistics().blasCount, kMeshes);
+}
+
+// A mesh above what a BLAS may hold comes in several, each triangle in exactly one.
+TEST_F(UploadTest, LargeMeshesAreSplit) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(0, 1), test::makePrimitive(0, 2)};
+    const Package package = load(spec);
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0), test::makeSquare(0, 1), test::makeSquare(0, 2)};
+    scene.instances = {{0, test::kIdentity}};
+    const auto count = [&](std::uint64_t triangles, std::uint64_t geometries) {
+        DeviceLimits& limits = context().state().limits;
+        limits.accelerationStructure.maxPrimitiveCount = triangles;
+        limits.accelerationStructure.maxGeometryCount = geometries;
+        const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+        EXPECT_EQ(uploaded->statistics().triangles, 6U);
+        EXPECT_EQ(uploaded->state().draws.size(), uploaded->statistics().geometries);
+        return std::pair(uploaded->statistics().blasCount, uploaded->statistics().geometries);
+    };
+    EXPECT_EQ(count(6, 3), std::pair(1U, 3U));
+    EXPECT_EQ(count(4, 3), std::pair(2U, 3U));
+    EXPECT_EQ(count(6, 1), std::pair(3U, 3U));
+    EXPECT_EQ(count(3, 3), std::pair(3U, 3U)) << "a primitive that fits is not torn";
+    EXPECT_EQ(count(1, 3), std::pair(6U, 6U)) << "one that does not fit is";
+}
+
+TEST_F(UploadTest, BlasesKeepToTheStorageBufferRange) {
+    const BlasCapacity all = blasCapacity(context().state());
+    context().state().limits.core.maxStorageBufferRange = 1U << 16;
+    const BlasCapacity few = blasCapacity(context().state());
+    EXPECT_LT(few.triangles, all.triangles);
+    EXPECT_GT(few.triangles, 16U);
+    EXPECT_EQ(few.geometries, all.geometries);
 }
 
 // Larger than the staging buffer, of odd sizes, and thin.
