@@ -1,0 +1,55 @@
+// What the tests of single pixels share.
+#pragma once
+
+#include "render/harness.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace glint::testing {
+
+using Pixel = std::array<float, 4>;
+
+inline Pixel at(const LinearImage& image, std::uint32_t x, std::uint32_t y) {
+    return image.pixels[static_cast<std::size_t>(y) * image.width + x];
+}
+
+inline void expectColor(const Pixel& pixel, Float3 expected, float tolerance, const char* where) {
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(pixel[channel], expected[channel], tolerance) << where << ", channel " << channel;
+    }
+}
+
+inline constexpr Float3 kRed{0.8F, 0.1F, 0.1F};
+inline constexpr Float3 kGreen{0.1F, 0.7F, 0.1F};
+inline constexpr Float3 kBlue{0.1F, 0.2F, 0.9F};
+
+// A square picture by the camera of addCamera(); the sky is white, so that ambient light is easy to work out.
+inline RenderSetup squareSetup(const Scene& scene) {
+    RenderSetup setup = defaultSetup(scene, 32, 32);
+    setup.frame.sky = {{1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}};
+    return setup;
+}
+
+// Renders with the strategy of the parameter.
+class PixelTest : public ::testing::TestWithParam<package::Strategy> {
+protected:
+    LinearImage render(const Scene& scene, const RenderSetup& setup, AlphaPolicy alpha = AlphaPolicy::Opaque,
+                       FrameCounters* counters = nullptr) {
+        PlanOptions plan;
+        plan.keys.alpha = alpha;
+        plan.merge = MergePolicy::None;
+        const LoadedScene loaded(scene, plan);
+        return loaded.ok() ? loaded.render(GetParam(), setup, counters) : LinearImage{};
+    }
+};
+
+inline const char* strategyName(const ::testing::TestParamInfo<package::Strategy>& strategy) {
+    return strategy.param == package::kStrategyUber ? "Uber" : "Visibility";
+}
+
+}  // namespace glint::testing
