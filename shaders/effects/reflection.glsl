@@ -1,6 +1,5 @@
 // The reflection effect: which surfaces trace a ray, and which ray.
 #include "hit/bindings.glsl"
-#include "hit/camera.glsl"
 #include "hit/geometry.glsl"
 
 // Roughness of a pixel that reflects nothing: no surface, or an unlit one.
@@ -8,13 +7,14 @@ const float kNoReflection = -1.0;
 const float kUnlitSurface = -2.0;
 
 // How much of a surface's reflection its ray brings; the sky stands in for the rest. Falls to 0 over the last fifth
-// below the roughness limit, so that no edge shows where a texture crosses it.
+// below the roughness limit, so that no edge shows where a texture crosses it; at the limit a ray is still worth sending.
 float tracedShare(float roughness) {
     float limit = GLINT_FRAME.maxReflectionRoughness;
     if (roughness > limit) {
         return 0.0;
     }
-    return 1.0 - smoothstep(0.8 * limit, limit, min(roughness, 0.999 * limit));
+    float fade = limit > 0.0 ? clamp((roughness - 0.8 * limit) / (0.2 * limit), 0.0, 0.999) : 0.0;
+    return 1.0 - fade * fade * (3.0 - 2.0 * fade);
 }
 
 // The mirror direction about the shading normal. Where that points below the geometric surface it is lifted to leave

@@ -24,8 +24,7 @@ Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixe
     return fetchHit(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features);
 }
 
-vec3 directLight(Hit hit, Surface surface) {
-    vec3 origin = offsetRayOrigin(hit.position, hit.geometricNormal);
+vec3 directLight(Hit hit, Surface surface, vec3 origin) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
         LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
@@ -57,8 +56,8 @@ void main() {
         GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
         Features features = GLINT_SCENE_FEATURES(geometry);
         Hit hit = primaryHit(geometry, surfaceId.y, ray, pixel.x + pixel.y * GLINT_FRAME.width, features);
-        position = vec4(offsetRayOrigin(hit.position, hit.geometricNormal),
-                        uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
+        vec3 origin = offsetRayOrigin(hit.position, hit.geometricNormal);
+        position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         if (hasLobe(features, GLINT_UNLIT)) {
             radiance = baseColor(hit, GLINT_FRAME.materials.data[hit.material], features).rgb;
             normalRoughness = vec4(hit.normal, kUnlitSurface);
@@ -66,7 +65,7 @@ void main() {
             Surface surface = evaluateSurface(hit, features);
             float traced = tracedShare(surface.roughness);
             radiance = surface.emission + ambientDiffuse(surface) +
-                       (1.0 - traced) * ambientSpecular(surface, hit.view) + directLight(hit, surface);
+                       (1.0 - traced) * ambientSpecular(surface, hit.view) + directLight(hit, surface, origin);
             normalRoughness = vec4(surface.normal, surface.roughness);
             reflectance = traced * ggxDirectionalAlbedo(surface.f0, surface.roughness,
                                                         clampedNDotV(surface, hit.view));

@@ -5,6 +5,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 
 #include "effects/reflection.glsl"
+#include "hit/camera.glsl"
 #include "hit/images.glsl"
 
 layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;

@@ -154,6 +154,21 @@ INSTANTIATE_TEST_SUITE_P(All, Facing,
                                                               package::kStrategyVisibility),
                                             ::testing::Bool(), ::testing::Bool()));
 
+TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
+                                               {0, 2, 0})));
+    RenderSetup setup = squareSetup(scene);
+    setup.frame.sky = {kGreen, kGreen, kGreen};
+    setup.frame.maxReflectionRoughness = 0.0F;
+    FrameCounters counters;
+    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    ASSERT_FALSE(image.pixels.empty());
+    EXPECT_EQ(counters.rays, 32U * 32U);
+    expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
+}
+
 // A mesh split over several acceleration structures is the same mesh: triangles keep their vertices and
 // materials.
 TEST_P(Pixels, SplittingAMeshChangesNothing) {
