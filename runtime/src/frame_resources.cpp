@@ -45,7 +45,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
         if (binding == gpu::kBindingAccumulated) {
             info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // so that the caller can draw it
         }
-        Result<Image> image = createImage(context, frame.pool, info);
+        Result<DeviceImage> image = createImage(context, frame.pool, info);
         if (!image) {
             return image.error();
         }
@@ -56,7 +56,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
     info.format = kDepthFormat;
     info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    Result<Image> depth = createImage(context, frame.pool, info);
+    Result<DeviceImage> depth = createImage(context, frame.pool, info);
     if (!depth) {
         return depth.error();
     }
@@ -168,7 +168,7 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
     if (!commands) {
         return commands.error();
     }
-    for (const Image& image : frame.images) {
+    for (const DeviceImage& image : frame.images) {
         recordTransition(
             context, *commands,
             {image.handle.get(),

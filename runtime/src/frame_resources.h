@@ -20,9 +20,9 @@ struct FrameResources {
     explicit FrameResources(Context::State& context) : pool(context) {}
 
     MemoryPool pool;
-    std::array<Image, gpu::kFrameImageCount> images;  // by binding; layout GENERAL from creation on
-    Image depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
-    Buffer constants;                                 // FrameConstants, host-visible
+    std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL from creation on
+    DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
+    Buffer constants;                                       // FrameConstants, host-visible
     Buffer rays;
     Buffer hits;         // one element unless buckets are used
     Buffer orderedHits;  // likewise

@@ -63,7 +63,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
         return s;
     }
-    Result<std::vector<Image>> textures =
+    Result<std::vector<DeviceImage>> textures =
         uploadTextures(state.context, state.pool, **uploader, package.textures(), scene.images);
     if (!textures) {
         return textures.error();

@@ -29,7 +29,7 @@ struct GpuScene::State {
     Buffer materials;
     Buffer lights;
     std::uint32_t lightCount = 0;
-    std::vector<Image> textures;
+    std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;

@@ -49,7 +49,7 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
 
 namespace {
 
-Status createView(Context::State& context, const ImageInfo& info, Image& image) {
+Status createView(Context::State& context, const ImageInfo& info, DeviceImage& image) {
     VkImageViewCreateInfo view{};
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
     view.image = image.handle.get();
@@ -67,8 +67,8 @@ Status createView(Context::State& context, const ImageInfo& info, Image& image) 
 
 }  // namespace
 
-Result<Image> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info) {
-    Image image;
+Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info) {
+    DeviceImage image;
     image.format = info.format;
     image.extent = info.extent;
     image.mips = info.mips;

@@ -18,7 +18,7 @@ struct Buffer {
 Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                             VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device);
 
-struct Image {
+struct DeviceImage {
     UniqueImage handle;
     UniqueImageView view;  // of all mips
     VkFormat format = VK_FORMAT_UNDEFINED;
@@ -35,7 +35,7 @@ struct ImageInfo {
 };
 
 // A two-dimensional image on the device, layout undefined. `pool` must outlive it.
-Result<Image> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);
+Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);
 
 // Layers 0..0 and all mips of an image.
 VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);

@@ -97,7 +97,7 @@ void fillSet(const GpuScene::State& state) {
     structures.accelerationStructureCount = 1;
     structures.pAccelerationStructures = &tlas;
     std::vector<VkDescriptorImageInfo> textures;
-    for (const Image& texture : state.textures) {
+    for (const DeviceImage& texture : state.textures) {
         textures.push_back({VK_NULL_HANDLE, texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     }
     std::vector<VkDescriptorImageInfo> samplers;

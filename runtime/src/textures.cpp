@@ -12,15 +12,15 @@ namespace {
 // What a slot that names no texture finds: it leaves a factor as it is.
 constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
 
-Result<Image> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                            const ImageView& image, bool srgb) {
+Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                  const ImageView& image, bool srgb) {
     ImageInfo info;
     info.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
     info.extent = {image.width, image.height};
     info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
     info.usage =
         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    Result<Image> texture = createImage(context, pool, info);
+    Result<DeviceImage> texture = createImage(context, pool, info);
     if (!texture) {
         return texture.error();
     }
@@ -67,18 +67,18 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
 
 }  // namespace
 
-Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                          std::span<const package::TextureEntry> textures,
-                                          std::span<const ImageView> images) {
+Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                                std::span<const package::TextureEntry> textures,
+                                                std::span<const ImageView> images) {
     if (textures.size() > context.limits.maxTextures) {
         return makeError("scene-textures", "",
                          "the scene has " + std::to_string(textures.size()) + " textures, the device takes " +
                              std::to_string(context.limits.maxTextures),
                          "use a smaller scene");
     }
-    std::vector<Image> uploaded;
+    std::vector<DeviceImage> uploaded;
     for (const package::TextureEntry& texture : textures) {
-        Result<Image> image =
+        Result<DeviceImage> image =
             uploadTexture(context, pool, uploader, images[texture.image], texture.srgb != 0);
         if (!image) {
             return image.error();
@@ -86,7 +86,7 @@ Result<std::vector<Image>> uploadTextures(Context::State& context, MemoryPool& p
         uploaded.push_back(std::move(*image));
     }
     if (uploaded.empty()) {
-        Result<Image> image = uploadTexture(context, pool, uploader, {1, 1, kWhite}, false);
+        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhite}, false);
         if (!image) {
             return image.error();
         }

@@ -89,7 +89,7 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
     return okStatus();
 }
 
-Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const Image& target) {
+Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const DeviceImage& target) {
     if (Status status = start(); !status) {
         return status;
     }
@@ -122,7 +122,7 @@ Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const Image& t
     return okStatus();
 }
 
-void Uploader::recordMips(const Image& target) {
+void Uploader::recordMips(const DeviceImage& target) {
     const VkImage image = target.handle.get();
     auto width = static_cast<std::int32_t>(target.extent.width);
     auto height = static_cast<std::int32_t>(target.extent.height);

@@ -18,7 +18,7 @@ public:
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
     // Fills mip 0 of an RGBA8 image of undefined layout, blits the other mips from it, and leaves all of them
     // in SHADER_READ_ONLY_OPTIMAL. `target` needs TRANSFER_SRC and TRANSFER_DST usage.
-    Status copyToImage(std::span<const std::uint8_t> rgba8, const Image& target);
+    Status copyToImage(std::span<const std::uint8_t> rgba8, const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.
     Status finish();
 
@@ -27,7 +27,7 @@ private:
     // Room for at least `unit` bytes, at most `wanted`; submits what there is to make room.
     Result<VkDeviceSize> reserve(VkDeviceSize wanted, VkDeviceSize unit);
     Status start();
-    void recordMips(const Image& target);
+    void recordMips(const DeviceImage& target);
 
     Context::State* context_;
     MemoryPool pool_;

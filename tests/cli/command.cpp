@@ -32,6 +32,7 @@ namespace {
     std::vector<std::string> all{GLINT_COMMAND};
     all.insert(all.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
+    pointers.reserve(all.size() + 1);
     for (std::string& argument : all) {
         pointers.push_back(argument.data());
     }

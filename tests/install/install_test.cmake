@@ -12,7 +12,7 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install "${GLINT_BUILD}" --prefix "${prefix}")
 run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" -DCMAKE_PREFIX_PATH=${prefix}
-    "-DCMAKE_CXX_FLAGS=${FLAGS}")
+    "-DCMAKE_CXX_FLAGS=${FLAGS}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")

@@ -124,13 +124,13 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
 }
 
 // Reads a part of a sparse accessor; nothing is in it where `count` is 0.
-Result<Layout> sparseLayout(Document& document, const std::string& pointer, int bufferView, int offset,
-                            std::size_t elementSize, std::size_t count) {
+Result<Layout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
+                            std::size_t offset, std::size_t elementSize, std::size_t count) {
     const Result<ByteView> bytes = document.bufferView(bufferView);
     if (!bytes) {
         return bytes.error();
     }
-    const Layout layout{*bytes, static_cast<std::size_t>(offset), elementSize, elementSize};
+    const Layout layout{*bytes, offset, elementSize, elementSize};
     if (!fits(layout, count)) {
         return rangeError(document, pointer, count, layout);
     }
