@@ -117,7 +117,7 @@ std::string toText(const Planned& planned, int material) {
         rows.push_back({"    primitives", primitives.front() + more});
     }
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
-        rows.push_back({"  dropped", feature + ": " + reason});
+        rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
     return text + formatFields(rows);
 }

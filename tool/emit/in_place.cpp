@@ -3,7 +3,6 @@
 #include "emit/swap.h"
 
 #include <algorithm>
-#include <ranges>
 #include <system_error>
 #include <utility>
 
@@ -43,7 +42,8 @@ public:
     Moves& operator=(const Moves&) = delete;
     ~Moves() {
         std::error_code ignored;
-        for (const auto& [from, to] : std::views::reverse(done_)) {
+        for (auto move = done_.rbegin(); move != done_.rend(); ++move) {
+            const auto& [from, to] = *move;
             fs::rename(to, from, ignored);
             removeEmptyParents(to, folder_);
         }
@@ -82,7 +82,9 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
                       const fs::path& folder) {
     Result<StagingFolder> staging = StagingFolder::create(innerStaging(folder));
     if (!staging) {
-        return staging.error();
+        Diagnostic error = staging.error();
+        error.where = folder.string();
+        return error;
     }
     std::vector<const PackageFile*> incoming(arriving.begin(), arriving.end());
     std::ranges::sort(incoming, std::greater<>{}, [](const PackageFile* file) { return rank(file->name); });
