@@ -1,55 +1,271 @@
 #!/usr/bin/env python3
-"""Fits ggxDirectionalAlbedo() of shaders/bsdf/fresnel.glsl and prints its constants and errors. Needs NumPy.
+"""Fits the directional albedos of shaders/bsdf/albedo.glsl; prints its constants and errors. Needs NumPy and SciPy.
 
-Reference: quadrature over visible normals (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
-2023) of the single-scatter lobe with height-correlated Smith shadowing.
+Truth: quadrature over half vectors with the light above the horizon, whose edge is exact. Fits: rational functions
+whose errors are held one-sided by linear programs, as N / Q in [low, high] is low Q <= N <= high Q. Checks: single
+precision, on grids that the fits have not seen. Exits 1 where a bound is broken. Takes about two minutes.
 """
+import sys
+
 import numpy as np
+from scipy.optimize import linprog
+
+UNDER, OVER, SHEEN_OVER = 2e-4, 6e-3, 1e-2  # bounds of fit - truth
+MIN_ALPHA, MIN_SHEEN_ALPHA = 1e-4, 0.07**2
+MEAN_LOW, MEAN_HIGH = 0.98, 1 + 3e-4  # bounds of (1 - mean of the fit) / (1 - fitted mean)
+
+# ---- Truth
 
 
-def albedo(alpha, mu, n=128):
-    """(albedo of a white lobe, the part of it that Schlick's (1 - v·h)^5 weights)"""
-    mid = (np.arange(n) + 0.5) / n
-    u, phi = np.meshgrid(mid, 2 * np.pi * mid)
-    view = np.array([np.sqrt(1 - mu * mu), 0, mu])
-    stretched = np.array([alpha * view[0], 0, view[2]])
-    stretched /= np.linalg.norm(stretched)
-    z = (1 - u) * (1 + stretched[2]) - stretched[2]
-    s = np.sqrt(np.clip(1 - z * z, 0, 1))
-    half = np.stack([s * np.cos(phi) + stretched[0], s * np.sin(phi), z + stretched[2]])
-    half = np.stack([alpha * half[0], alpha * half[1], np.maximum(half[2], 1e-12)])
-    half /= np.linalg.norm(half, axis=0)
-    v_dot_h = half[0] * view[0] + half[2] * view[2]
-    light_z = 2 * v_dot_h * half[2] - view[2]
-    above = light_z > 0
-    light_z = np.where(above, light_z, 1.0)
+def half_vector_quadrature(mu, warp, unwarp, integrand, nodes=(48, 32)):
+    """∫ D integrand dω over half vectors h whose light l is above the horizon, for each cosine of view mu.
+
+    With θ the angle of h, l is above it for every azimuth if 2θ < 90° - θv, for none if 2θ > 90° + θv, and for
+    |φ| < acos(-cot θv cot 2θ) between. warp maps θ to where D is smooth; unwarp gives θ and D sin θ dθ of it back.
+    Cosine substitutions take the square roots at the ends.
+    """
+
+    def ends(n):
+        x, w = np.polynomial.legendre.leggauss(n)
+        return (1 - np.cos(np.pi * (x + 1) / 2)) / 2, w * np.pi * np.sin(np.pi * (x + 1) / 2) / 4
+
+    (p, p_weight), (q, q_weight) = ends(nodes[0]), ends(nodes[1])
+    sin_view = np.sqrt((1 - mu) * (1 + mu))
+    elevation = np.arctan2(mu, sin_view)
+    first, last = elevation / 2, np.pi / 2 - elevation / 2
+    total = 0
+    for low, high in ((0 * first, first), (first, last)):
+        a, b = warp(low)[:, None], warp(high)[:, None]
+        theta, density = unwarp(a + (b - a) * p)
+        edge = np.full(theta.shape, np.pi)
+        if low is first:
+            edge = np.arccos(np.clip(-np.tan(elevation)[:, None] / np.tan(2 * theta), -1, 1))
+        c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
+        v_dot_h = np.clip(sin_view[:, None, None] * s * np.cos(edge[..., None] * q) + mu[:, None, None] * c, 0, 1)
+        light = np.clip(2 * v_dot_h * c - mu[:, None, None], 1e-150, 1)
+        weight = (2 * edge * density * p_weight * (b - a))[..., None] * q_weight
+        total = total + np.stack([(value * weight).sum((1, 2)) for value in integrand(v_dot_h, light)])
+    return total
+
+
+def ggx(mu, alpha):
+    """(white albedo, its part weighted by Schlick's (1 - v·h)^5), shape (2, mu); correlated Smith (Heitz 2014)."""
 
     def smith(c):
-        return (np.sqrt(1 + alpha**2 * (1 / c**2 - 1)) - 1) / 2
+        t = alpha**2 * (1 - c) * (1 + c) / (c * c)
+        return t / (np.sqrt(1 + t) + 1) / 2
 
-    g = np.where(above, (1 + smith(mu)) / (1 + smith(mu) + smith(light_z)), 0)
-    return g.mean(), (g * np.clip(1 - v_dot_h, 0, 1) ** 5).mean()
+    def unwarp(w):
+        theta = np.arctan2(alpha * np.sin(w), np.cos(w))
+        return theta, np.sin(w) * np.cos(w) / (np.pi * np.cos(theta))
+
+    def integrand(v_dot_h, light):
+        g = v_dot_h / (1 + smith(mu)[:, None, None] + smith(light)) / mu[:, None, None]
+        return g, g * (1 - v_dot_h) ** 5
+
+    return half_vector_quadrature(mu, lambda t: np.arctan2(np.sin(t), alpha * np.cos(t)), unwarp, integrand)
+
+
+def sheen_lambda(x, alpha):
+    """Λ of KHR_materials_sheen (Estevez and Kulla 2017)."""
+    m = (1 - alpha) ** 2
+    ends = ((21.5473, 25.3245), (3.82987, 3.32435), (0.19823, 0.16801), (-1.97760, -1.27393), (-4.32054, -4.85967))
+    a, b, c, d, e = (rough + (smooth - rough) * m for rough, smooth in ends)
+
+    def exponent(x):
+        return a / (1 + b * x**c) + d * x + e
+
+    return np.exp(np.where(x < 0.5, exponent(x), 2 * exponent(0.5) - exponent(np.maximum(1 - x, 0))))
+
+
+def sheen(mu, alpha):
+    """White albedo of the Charlie lobe, shape (1, mu)."""
+    scale = np.sqrt(alpha / 2)  # D falls over this cosine
+
+    def unwarp(w):
+        c = np.clip(scale * np.sinh(-w), 0, 1)
+        s = np.sqrt((1 - c) * (1 + c))
+        return np.arccos(c), (2 + 1 / alpha) * s ** (1 / alpha) * scale * np.cosh(w) / (2 * np.pi)
+
+    def integrand(v_dot_h, light):
+        view = sheen_lambda(mu, alpha)[:, None, None]
+        return (v_dot_h / (1 + view + sheen_lambda(light, alpha)) / mu[:, None, None],)
+
+    return half_vector_quadrature(mu, lambda t: -np.arcsinh(np.cos(t) / scale), unwarp, integrand)
+
+
+def grid(truth, alphas, cosines):
+    """(alpha, cosine, truth...) as flat arrays"""
+    values = np.array([truth(cosines, alpha) for alpha in alphas])
+    alpha, mu = np.meshgrid(alphas, cosines, indexing="ij")
+    return (alpha.ravel(), mu.ravel(), *(values[:, k].ravel() for k in range(values.shape[1])))
+
+
+def cosine_nodes(low, n):
+    return np.unique(np.concatenate([np.geomspace(low, 1, n // 2).clip(low, 1), np.linspace(low, 1, n // 2)]))
+
+
+# ---- Fits. Terms are exponents (i, j) of the cosine and of alpha; the sheen's j are of √alpha, the mean loss's i of
+# -log2(alpha). The long ones are what is left of all low orders after dropping one after another while the bounds held.
+
+LOSS_N = [(1, 2), (1, 4), (2, 2), (2, 3), (2, 4)]
+LOSS_Q = [(0, 3), (0, 4), (0, 5), (0, 6), (1, 2), (1, 3), (2, 1), (2, 2), (2, 4), (3, 0), (3, 1)]
+SHIFT_N = [(0, 3), (0, 3.5), (1, 2.5), (1, 3), (3, 2)]
+SHIFT_Q = [(0, 2), (0, 2.5), (0, 3.5), (1, 1), (1, 1.5), (2, 0), (2, 0.5)]
+SHEEN_N = [(0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1)]
+SHEEN_Q = [(0, 2), (0, 3), (1, 1), (1, 2), (2, 0), (2, 2)]
+SHEEN_FALL = 0.2  # of the factor exp2(-fall cos² / alpha)
+MEAN_LOSS_N = [(i, j) for i in (0, 1) for j in (2, 3, 4)]
+MEAN_BIAS_N = [(0, j) for j in (0, 1, 2)]
+POLYNOMIAL = [(0, 0)]
+
+
+def fit(name, x, y, numerator, denominator, low, high, factor=1.0):
+    """Constants of N and Q with low <= factor N / Q <= high, Q > 0 everywhere: linear programs on growing subsets."""
+    terms = [np.stack([x**i * y**j for i, j in side], 1) for side in (numerator, denominator)]
+    size = terms[1].max(1, keepdims=True)
+    n, q = terms[0] / size * np.reshape(factor * np.ones(len(x)), (-1, 1)), terms[1] / size
+    rows = np.arange(0, len(x), max(1, len(x) // 2000))
+    for _ in range(12):
+        a, b = n[rows], q[rows]
+        matrix = np.block([[a, -high[rows, None] * b], [-a, low[rows, None] * b], [0 * a, -b]])
+        limits = np.concatenate([np.zeros(2 * len(rows)), -np.ones(len(rows))])
+        result = linprog(np.zeros(matrix.shape[1]), A_ub=matrix, b_ub=limits, bounds=(None, None), method="highs")
+        if result.status != 0:
+            sys.exit(f"{name}: no such fit: {result.message}")
+        constants = result.x / result.x[len(numerator)]
+        value = (n @ constants[: len(numerator)]) / (q @ constants[len(numerator) :])
+        broken = np.flatnonzero((value < low - 1e-5) | (value > high + 1e-5) | (q @ result.x[len(numerator) :] <= 0))
+        if not len(broken):
+            break
+        rows = np.union1d(rows, broken[:: 1 + len(broken) // 500])
+    constants = np.array([float(f"{c:.7g}") for c in constants])
+    print(f"{name}:")
+    for letter, side, values in (("n", numerator, constants), ("q", denominator, constants[len(numerator) :])):
+        print("  " + ", ".join(f"{letter}{i}_{j:g} {c:.7g}" for (i, j), c in zip(side, values)))
+    return constants
+
+
+def rational(constants, numerator, denominator, x, y):
+    """N / Q in the precision of x."""
+    c = constants.astype(x.dtype)
+    n = sum(k * x**i * y ** x.dtype.type(j) for k, (i, j) in zip(c, numerator))
+    return n / sum(k * x**i * y ** x.dtype.type(j) for k, (i, j) in zip(c[len(numerator) :], denominator))
+
+
+def fitted_ggx(loss, shift, mu, alpha):
+    """(1 - white, weighted part) of the fits"""
+    lost = rational(loss, LOSS_N, LOSS_Q, mu, alpha)
+    m = np.clip(1 - mu - rational(shift, SHIFT_N, SHIFT_Q, mu, alpha), 0, 1)
+    return lost, (1 - lost) * m**5
+
+
+def fit_ggx():
+    """(constants of the loss, of the shift) on cosines from 1e-3"""
+    alphas = np.union1d(np.geomspace(MIN_ALPHA, 1, 90), np.linspace(0.02, 1, 50))
+    alpha, mu, white, weighted = grid(ggx, alphas, cosine_nodes(1e-3, 140))
+    truth = 1 - white
+    loss = fit("loss", mu, alpha, LOSS_N, LOSS_Q, np.maximum(truth - 5.8e-3, 0), truth + 1e-4)
+    # The rest is in the effective cosine: weighted = white (1 - cosine)^5. Where it is a mirror's, Schlick to 1e-3.
+    kept = 1 - rational(loss, LOSS_N, LOSS_Q, mu, alpha)
+    over = np.where(mu > 100 * alpha, 9e-4, 5.75e-3)
+    low = 1 - mu - np.minimum((weighted + over) / kept, 1) ** 0.2
+    high = np.where(weighted < 1e-4, 5, 1 - mu - (np.maximum(weighted - 1e-4, 0) / kept) ** 0.2)
+    return loss, fit("shift", mu, alpha, SHIFT_N, SHIFT_Q, low, high)
+
+
+def means(loss, shift, alphas):
+    """(mean loss, mean weighted part) of the fits: Gauss in log cosine, as the loss lies about cos = alpha."""
+    x, w = np.polynomial.legendre.leggauss(400)
+    mu = np.exp((x - 1) / 2 * np.log(1e9))
+    weight = w * np.log(1e9) * mu * mu
+    lost, bias = fitted_ggx(loss, shift, mu[None], alphas[:, None])
+    return lost @ weight, bias @ weight
+
+
+def fit_means(loss, shift):
+    alphas = np.geomspace(MIN_ALPHA, 1, 600)
+    lost, bias = means(loss, shift, alphas)
+    decades, one = -np.log2(alphas), np.ones(len(alphas))
+    mean_loss = fit("mean loss", decades, alphas, MEAN_LOSS_N, POLYNOMIAL, one / (1 + 2e-4), one / 0.986, 1 / lost)
+    mean_bias = fit("mean bias", decades, alphas, MEAN_BIAS_N, POLYNOMIAL, np.maximum(bias - 9e-3, 3e-5), bias)
+    return mean_loss, mean_bias
+
+
+def fitted_sheen(constants, mu, alpha):
+    x = mu.dtype.type
+    bell = np.exp2(x(-SHEEN_FALL) * mu * mu / alpha)
+    smith = sheen_lambda(mu, alpha).astype(mu.dtype)
+    return np.maximum(bell * rational(constants, SHEEN_N, SHEEN_Q, mu, np.sqrt(alpha)), 0) / (mu * (1 + smith))
+
+
+def fit_sheen():
+    cosines = np.concatenate([np.geomspace(1e-7, 1e-3, 40)[:-1], cosine_nodes(1e-3, 150)])
+    alpha, mu, truth = grid(sheen, np.geomspace(MIN_SHEEN_ALPHA, 1, 90), cosines)
+    factor = np.exp2(-SHEEN_FALL * mu * mu / alpha) / (mu * (1 + sheen_lambda(mu, alpha)))
+    high = truth + 9.6e-3 * np.maximum(1, truth)
+    return fit("sheen", mu, np.sqrt(alpha), SHEEN_N, SHEEN_Q, np.maximum(truth - 1e-4, 0), high, factor)
+
+
+# ---- Checks, in single precision
+
+
+def check(name, values, low, high):
+    least, most = float(np.min(values)), float(np.max(values))
+    broken = not (least >= low and most <= high)
+    print(f"{name:42} {least:10.2e} .. {most:9.2e}  in {low:.2e} .. {high:.2e}{'  BROKEN' if broken else ''}")
+    return broken
+
+
+def single(*arrays):
+    return [a.astype(np.float32) for a in arrays]
+
+
+def check_ggx(loss, shift, mean_loss, mean_bias):
+    broken = []
+    for place, low, n, under, over in (("", 1e-3, 420, UNDER, OVER), (" below 1e-3", 1e-7, 60, 3e-3, 7e-3)):
+        cosines = cosine_nodes(low, n) if not place else np.geomspace(low, 1e-3, n)
+        alpha, mu, white, weighted = grid(ggx, np.geomspace(MIN_ALPHA, 1, 401), cosines)
+        lost, bias = fitted_ggx(loss, shift, *single(mu, alpha))
+        broken.append(check(f"white{place}", 1 - lost - white, -under, over))
+        broken.append(check(f"weighted{place}", bias - weighted, -under, over))
+        broken.append(check(f"weighted over white{place}", bias / (1 - lost), 0, 1))
+        broken.append(check(f"loss{place}", lost, 0, 1))
+    mu = np.linspace(0.05, 1, 400)
+    lost, bias = fitted_ggx(loss, shift, *single(mu, np.full(400, MIN_ALPHA)))
+    broken.append(check("mirror: loss", lost, 0, 1e-3))
+    broken.append(check("mirror: weighted - Schlick", bias - (1 - mu) ** 5, -1e-3, 1e-3))
+
+    alphas = np.geomspace(MIN_ALPHA, 1, 1499)
+    lost, bias = means(loss, shift, alphas)
+    decades, alphas = single(-np.log2(alphas), alphas)
+    fitted_loss = rational(mean_loss, MEAN_LOSS_N, POLYNOMIAL, decades, alphas)
+    fitted_bias = rational(mean_bias, MEAN_BIAS_N, POLYNOMIAL, decades, alphas)
+    broken.append(check("C of the loss", lost / fitted_loss, MEAN_LOW, MEAN_HIGH))
+    broken.append(check("C of the weighted part", (1 - bias) / (1 - fitted_bias), MEAN_LOW, MEAN_HIGH))
+    return broken
+
+
+def check_sheen(constants):
+    cosines = np.concatenate([np.geomspace(1e-7, 1e-3, 60)[:-1], cosine_nodes(1e-3, 420)])
+    alpha, mu, truth = grid(sheen, np.geomspace(MIN_SHEEN_ALPHA, 1, 401), cosines)
+    fitted = fitted_sheen(constants, *single(mu, alpha))
+    usual = mu >= 1e-4  # the lobe's own Λ is too small nearer to grazing
+    sane = alpha[usual & (truth > 1)].max()
+    print(f"sheen from cosine 1e-4: at most {truth[usual].max():.4f}; at most 1 above alpha {sane:.4f}")
+    print(f"sheen above alpha {sane:.4f}: above 1 up to cosine {mu[(alpha > sane) & (truth > 1)].max():.1e}")
+    return [check("sheen, over max(1, truth)", (fitted - truth) / np.maximum(1, truth), -UNDER, SHEEN_OVER)]
 
 
 def main():
-    roughness = np.linspace(0, 1, 33)[1:]
-    cosine = np.concatenate([[0.02, 0.05], np.linspace(0.08, 1, 24)])
-    table = np.array([[albedo(max(r * r, 1e-4), m) for m in cosine] for r in roughness])
-    white, weighted = table[:, :, 0], table[:, :, 1]
-    r, m = np.meshgrid(roughness, cosine, indexing="ij")
-
-    terms = np.stack([(r ** (i + 1) * np.sqrt(m) ** j).ravel() for i in range(3) for j in range(3)], 1)
-    constants, *_ = np.linalg.lstsq(terms, (1 - white).ravel(), rcond=None)
-    error = terms @ constants - (1 - white).ravel()
-    print("loss: r^(i+1) sqrt(mu)^j, i major:", np.round(constants, 4).tolist())
-    print(f"  largest error {np.abs(error).max():.3f}, RMS {np.sqrt((error**2).mean()):.3f}")
-
-    best = (np.inf,)
-    for a in np.arange(1, 4.01, 0.25):
-        for b in np.arange(1, 30, 0.5):
-            fit = (1 - m) ** (5 * np.exp(-a * r)) / (1 + b * r * r)
-            best = min(best, (np.abs(fit - weighted).max(), a, b, np.sqrt(((fit - weighted) ** 2).mean())))
-    print(f"bias: a = {best[1]}, b = {best[2]}: largest error {best[0]:.3f}, RMS {best[3]:.3f}")
+    # Known: white = 1 - cos ln(1 + 1 / cos) at alpha = 1.
+    mu = np.geomspace(1e-3, 1, 50)
+    broken = [check("quadrature at alpha 1", ggx(mu, 1.0)[0] - (1 - mu * np.log1p(1 / mu)), -5e-5, 5e-5)]
+    loss, shift = fit_ggx()
+    mean_loss, mean_bias = fit_means(loss, shift)
+    constants = fit_sheen()
+    broken += check_ggx(loss, shift, mean_loss, mean_bias) + check_sheen(constants)
+    sys.exit(any(broken))
 
 
 if __name__ == "__main__":

@@ -61,6 +61,13 @@ void queryLimits(Context::State& state) {
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
     state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
+    constexpr VkFormatFeatureFlags kTexture = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+                                              VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+                                              VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    VkFormatProperties wide{};
+    state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
+                                                     VK_FORMAT_R16G16B16A16_UNORM, &wide);
+    limits.wideTextures = (wide.optimalTilingFeatures & kTexture) == kTexture;
 }
 
 Status checkQueueFamily(Context::State& state) {

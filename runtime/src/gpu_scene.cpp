@@ -69,6 +69,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         return textures.error();
     }
     state.textures = std::move(*textures);
+    state.statistics.narrowedTextures = countNarrowed(state.context, package.textures(), scene.images);
     return (*uploader)->finish();
 }
 

@@ -67,10 +67,8 @@ gpu::InstanceRecord makeInstanceRecord(const Rows& objectToWorld) {
             largest = std::max(largest, std::abs(value));
         }
     }
-    // Only the direction counts: a power of two keeps products of extreme scales within floats.
-    const double scale = largest > 0.0 && (largest > 1e15 || largest < 1e-15)
-                             ? std::exp2(-std::floor(std::log2(largest)))
-                             : 1.0;
+    // Only the direction counts: a power of two, which rounds nothing, brings the largest to [1, 2).
+    const double scale = largest > 0.0 ? std::exp2(-std::floor(std::log2(largest))) : 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         record.normalToWorld[i] = {static_cast<float>(sign * scale * cofactors[i][0]),
                                    static_cast<float>(sign * scale * cofactors[i][1]),

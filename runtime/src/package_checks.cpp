@@ -140,8 +140,9 @@ Status checkPrimitive(const Package::State& state, const package::PrimitiveEntry
     }
     const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32 | entry.featureLobes;
     const package::CaseEntry& shadedBy = state.cases[entry.shaderId];
-    if ((shadedBy.always & ~key) != 0 || (key & ~(shadedBy.always | shadedBy.sometimes)) != 0) {
-        return altered(where, name + " has a key that its case does not shade");
+    // The key may hold more than its case knows: lobes that primary surfaces have and hits do not keep.
+    if ((shadedBy.always & ~key) != 0) {
+        return altered(where, name + " lacks features that its case takes for granted");
     }
     constexpr std::uint32_t kKnownFlags =
         gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided | gpu::kGeometryMasked;

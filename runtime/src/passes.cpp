@@ -43,18 +43,18 @@ public:
         pushed_.frame = state.frame.constants.address;
     }
 
-    void record(bool reflections) {
+    void record(const FrameOptions& frame) {
         state_.passes.clear();
         state_.timer.recordReset(commands_);
         barrier(kAllToAll);
-        clear(reflections);
+        clear(frame);
         barrier(kClearToPasses);
         recordGBuffer();
         barrier(kRasterToCompute);
         bindSets(VK_PIPELINE_BIND_POINT_COMPUTE);
         dispatchPixels("lighting", ModuleRole::Lighting);
         barrier(kComputeToCompute);
-        if (reflections) {
+        if (frame.reflections) {
             recordReflections();
         }
         dispatchPixels("compose", ModuleRole::Compose);
@@ -97,10 +97,14 @@ private:
                              &pushed_);
     }
 
-    void clear(bool reflections) {
-        vk_.CmdFillBuffer(commands_, state_.frame.counters.handle.get(), 0, VK_WHOLE_SIZE, 0);
+    void clear(const FrameOptions& frame) {
+        // The last counter is of the accumulated picture: it starts with it.
+        static_assert(gpu::kCounterNonFinite + 1 == gpu::kCounterCount);
+        const bool starts = frame.sampleIndex == 0 || !state_.recorded;
+        vk_.CmdFillBuffer(commands_, state_.frame.counters.handle.get(), 0,
+                          starts ? VK_WHOLE_SIZE : gpu::kCounterNonFinite * sizeof(std::uint32_t), 0);
         vk_.CmdFillBuffer(commands_, state_.frame.buckets.handle.get(), 0, VK_WHOLE_SIZE, 0);
-        if (!reflections) {
+        if (!frame.reflections) {
             const VkClearColorValue black{};
             const VkImageSubresourceRange range = wholeImage();
             vk_.CmdClearColorImage(commands_, state_.frame.images[gpu::kBindingReflection].handle.get(),
@@ -232,8 +236,8 @@ private:
 
 }  // namespace
 
-void recordFrame(Renderer::State& state, VkCommandBuffer commands, bool reflections) {
-    FrameRecorder(state, commands).record(reflections);
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame) {
+    FrameRecorder(state, commands).record(frame);
 }
 
 }  // namespace glint

@@ -162,7 +162,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     }
     const gpu::FrameConstants constants = makeConstants(*state_, frame);
     std::memcpy(state_->frame.constants.mapped, &constants, sizeof(constants));
-    recordFrame(*state_, commands, frame.reflections);
+    recordFrame(*state_, commands, frame);
     state_->recorded = true;
     return okStatus();
 }
@@ -228,6 +228,7 @@ Result<FrameCounters> Renderer::counters() {
     counters.skippedRough = values[gpu::kCounterSkippedRough];
     counters.skippedUnlit = values[gpu::kCounterSkippedUnlit];
     counters.unknownShader = values[gpu::kCounterUnknownShader];
+    counters.nonFinite = values[gpu::kCounterNonFinite];
     if (state_->size.ordered) {
         std::vector<gpu::BucketRecord> buckets(state_->size.bucketCount);
         std::memcpy(buckets.data(), bytes + kReadbackBucketOffset,

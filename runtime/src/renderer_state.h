@@ -37,6 +37,6 @@ struct Renderer::State {
 inline constexpr std::uint32_t kMaxFixedPasses = 16;
 
 // Records all passes of a frame whose constants are in state.frame.constants.
-void recordFrame(Renderer::State& state, VkCommandBuffer commands, bool reflections);
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame);
 
 }  // namespace glint

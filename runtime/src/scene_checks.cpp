@@ -139,12 +139,16 @@ Status checkImages(const Package& package, std::span<const ImageView> images, st
                                  std::to_string(maxImageSize),
                              "scale the image");
         }
-        if (image.rgba8.size() != std::uint64_t{4} * image.width * image.height) {
+        if (image.format > ImageView::Format::Rgba16) {
+            return makeError("scene-image", where, "the image has an unknown format",
+                             "use a value of ImageView::Format");
+        }
+        if (image.pixels.size() != std::uint64_t{image.bytesPerPixel()} * image.width * image.height) {
             return makeError("scene-image", where,
-                             std::to_string(image.rgba8.size()) + " bytes do not make " +
+                             std::to_string(image.pixels.size()) + " bytes do not make " +
                                  std::to_string(image.width) + " x " + std::to_string(image.height) +
                                  " RGBA pixels",
-                             "give four bytes a pixel");
+                             "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
         }
     }
     return okStatus();

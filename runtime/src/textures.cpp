@@ -1,5 +1,6 @@
 #include "textures.h"
 
+#include "texels.h"
 #include "vulkan_error.h"
 
 #include <algorithm>
@@ -14,8 +15,11 @@ constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
 
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb) {
+    const bool isWide = image.format == ImageView::Format::Rgba16 && context.limits.wideTextures;
     ImageInfo info;
-    info.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+    info.format = isWide ? VK_FORMAT_R16G16B16A16_UNORM
+                  : srgb ? VK_FORMAT_R8G8B8A8_SRGB
+                         : VK_FORMAT_R8G8B8A8_UNORM;
     info.extent = {image.width, image.height};
     info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
     info.usage =
@@ -24,7 +28,13 @@ Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Upl
     if (!texture) {
         return texture.error();
     }
-    if (Status status = uploader.copyToImage(image.rgba8, *texture); !status) {
+    // Mips are blitted from linear values: of sRGB formats, blits decode and encode.
+    std::vector<std::uint8_t> converted;
+    if (image.format == ImageView::Format::Rgba16 && (srgb || !isWide)) {
+        converted = isWide ? linearizeRgba16(image.pixels) : narrowRgba16(image.pixels);
+    }
+    const std::span<const std::uint8_t> texels = converted.empty() ? image.pixels : converted;
+    if (Status status = uploader.copyToImage(texels, isWide ? 8 : 4, *texture); !status) {
         return status.error();
     }
     return texture;
@@ -93,6 +103,17 @@ Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryP
         uploaded.push_back(std::move(*image));
     }
     return uploaded;
+}
+
+std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
+                            std::span<const ImageView> images) {
+    if (context.limits.wideTextures) {
+        return 0;
+    }
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(textures, [&](const package::TextureEntry& texture) {
+            return images[texture.image].format == ImageView::Format::Rgba16;
+        }));
 }
 
 std::vector<gpu::MaterialRecord> materialsWithSizes(const Package& package,

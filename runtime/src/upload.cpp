@@ -7,11 +7,10 @@ namespace glint {
 namespace {
 
 // Large enough that submissions don't show, small enough for every host-visible heap. A row of the largest
-// image that a device may have (65536 pixels) fits 64 times.
+// image that a device may have (65536 pixels of 8 bytes) fits 32 times.
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
 // Copies start at multiples of a texel, and of what devices like best.
 constexpr VkDeviceSize kStagingAlignment = 256;
-constexpr VkDeviceSize kTexelBytes = 4;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
 constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
@@ -89,7 +88,8 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
     return okStatus();
 }
 
-Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const DeviceImage& target) {
+Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+                             const DeviceImage& target) {
     if (Status status = start(); !status) {
         return status;
     }
@@ -99,7 +99,7 @@ Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const DeviceIm
          VK_IMAGE_LAYOUT_UNDEFINED,
          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
          {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
-    const VkDeviceSize rowBytes = kTexelBytes * target.extent.width;
+    const VkDeviceSize rowBytes = VkDeviceSize{texelBytes} * target.extent.width;
     std::uint32_t row = 0;
     while (row < target.extent.height) {
         Result<VkDeviceSize> room = reserve(rowBytes * (target.extent.height - row), rowBytes);
@@ -107,7 +107,7 @@ Status Uploader::copyToImage(std::span<const std::uint8_t> rgba8, const DeviceIm
             return room.error();
         }
         const auto rows = static_cast<std::uint32_t>(*room / rowBytes);
-        std::memcpy(staging_.mapped + used_, rgba8.data() + row * rowBytes, *room);
+        std::memcpy(staging_.mapped + used_, texels.data() + row * rowBytes, *room);
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};

@@ -16,9 +16,11 @@ public:
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills mip 0 of an RGBA8 image of undefined layout, blits the other mips from it, and leaves all of them
-    // in SHADER_READ_ONLY_OPTIMAL. `target` needs TRANSFER_SRC and TRANSFER_DST usage.
-    Status copyToImage(std::span<const std::uint8_t> rgba8, const DeviceImage& target);
+    // Fills mip 0 of an image of undefined layout with texels of `texelBytes` bytes, blits the other mips
+    // from it, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. `target` needs TRANSFER_SRC and
+    // TRANSFER_DST usage.
+    Status copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+                       const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.
     Status finish();
 

@@ -1,21 +1,66 @@
 // Fresnel reflectance.
+#include "bsdf/exact.glsl"
 
-// Schlick's approximation with f90 = 1: glTF 2.0, appendix B.3.4. cosine is that of view and half vector, in [0, 1].
-vec3 fresnelSchlick(vec3 f0, float cosine) {
-    float m = clamp(1.0 - cosine, 0.0, 1.0);
-    float m2 = m * m;
-    return f0 + (vec3(1.0) - f0) * (m2 * m2 * m);
+float largest(vec3 v) {
+    return max(v.x, max(v.y, v.z));
 }
 
-// Directional albedo of a single-scatter GGX lobe with Schlick's Fresnel: what it reflects of a uniform white sky.
-// Fitted by scripts/fit_directional_albedo.py, within 0.05 of the quadrature for f0 = 0 and 1. The loss is the light
-// that single scattering drops; the bias is the part that (1 - v·h)⁵ weights.
-vec3 ggxDirectionalAlbedo(vec3 f0, float roughness, float nDotV) {
-    float s = sqrt(nDotV);
-    float loss = roughness * (1.0851 - 2.6717 * s + 1.2389 * nDotV +
-                              roughness * (-3.2357 + 10.8412 * s - 6.5117 * nDotV) +
-                              roughness * roughness * (2.1175 - 7.2329 * s + 5.1085 * nDotV));
-    float white = clamp(1.0 - loss, 0.0, 1.0);
-    float bias = pow(max(1.0 - nDotV, 0.0), 5.0 * exp(-1.5 * roughness)) / (1.0 + 14.5 * roughness * roughness);
-    return f0 * max(white - bias, 0.0) + vec3(min(bias, white));
+// Luminance of linear Rec. 709.
+float luminance(vec3 color) {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Reflectance at normal incidence of a dielectric in air: KHR_materials_ior. 0 stands for an infinite index and gives 1.
+float dielectricF0(float ior) {
+    float r = (ior - 1.0) / (ior + 1.0);
+    return r * r;
+}
+
+// (1 - cosine)⁵, the weight of f90 in Schlick's approximation.
+float schlickWeight(float cosine) {
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    float m2 = m * m;
+    return m2 * m2 * m;
+}
+
+// 1 - schlickWeight() as a polynomial, whose terms do not cancel near grazing as the difference does.
+float schlickRest(float cosine) {
+    float c = clamp(cosine, 0.0, 1.0);
+    return c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
+}
+
+// Schlick's approximation: glTF 2.0, appendix B.3.4; f90 from KHR_materials_specular. cosine is that of view and half
+// vector, in [0, 1].
+vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
+    return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
+}
+
+// The same at an interface of relative index eta = n_t / n_i. Where light leaves the denser side Schlick's cosine is
+// that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and beyond the critical angle all of it
+// is reflected, whatever f90.
+vec3 fresnelInterface(vec3 f0, float f90, float cosine, float eta) {
+    if (eta >= 1.0) {
+        return fresnelSchlick(f0, f90, cosine);
+    }
+    float refracted2 = refractedCosine2(cosine, eta);
+    return refracted2 > 0.0 ? fresnelSchlick(f0, f90, sqrt(refracted2)) : vec3(1.0);
+}
+
+// What such an interface lets through of the channel that it reflects most: 1 - largest(fresnelInterface()), with its
+// digits where little passes. f90 is at least f0.
+float interfacePassed(vec3 f0, float f90, float cosine, float eta) {
+    if (eta < 1.0) {
+        cosine = sqrt(max(refractedCosine2(cosine, eta), 0.0));
+        if (cosine <= 0.0) {
+            return 0.0;
+        }
+    }
+    return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
+}
+
+// The f0 with which Schlick's approximation gives `reflectance` at `cosine`. Within 1e-4 of grazing the division says
+// nothing of f0; the weight is cut there.
+vec3 schlickF0(vec3 reflectance, float f90, float cosine) {
+    float rest = max(schlickRest(cosine), 1e-4);
+    return clamp((reflectance - vec3(f90)) / rest + vec3(f90), vec3(0.0), vec3(1.0));
 }

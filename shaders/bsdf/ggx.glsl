@@ -1,20 +1,42 @@
-// The GGX microfacet lobe in well-conditioned forms. alpha = roughness².
+// The GGX microfacet lobe. Vectors are unit and in the frame of the surface: z is the normal. There |n×h|² is
+// h.x² + h.y², which keeps its digits where h nears n and a smooth lobe has its energy; 1 - (n·h)² loses them all.
+// alpha: along x and y, at least kMinAlpha.
+#include "bsdf/exact.glsl"
 
-// Trowbridge-Reitz NDF: glTF 2.0, appendix B.3.2, with 1 - (n·h)² written as |n×h|². The difference loses every digit
-// where h nears n, which is where a smooth lobe has its energy. n and h are unit; alpha > 0.
-float ggxDistribution(vec3 n, vec3 h, float alpha) {
-    vec3 c = cross(n, h);
-    float nDotH = dot(n, h);
-    float a2 = alpha * alpha;
-    float t = dot(c, c) + a2 * nDotH * nDotH;
-    return nDotH > 0.0 ? a2 / (kPi * t * t) : 0.0;
+// Trowbridge-Reitz NDF: glTF 2.0, appendix B.3.2; with two alphas KHR_materials_anisotropy.
+float ggxDistribution(vec3 h, vec2 alpha) {
+    vec2 slope = vec2(h.x / alpha.x, h.y / alpha.y);
+    float t = dot(slope, slope) + h.z * h.z;
+    return h.z > 0.0 ? 1.0 / (kPi * alpha.x * alpha.y * t * t) : 0.0;
 }
 
-// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; glTF 2.0, appendix B.3.3. Both cosines in
-// (0, 1], alpha > 0: the sum of roots is then above 0.
-float ggxVisibility(float nDotL, float nDotV, float alpha) {
-    float a2 = alpha * alpha;
-    float lambdaV = nDotL * sqrt(nDotV * nDotV * (1.0 - a2) + a2);
-    float lambdaL = nDotV * sqrt(nDotL * nDotL * (1.0 - a2) + a2);
-    return 0.5 / (lambdaV + lambdaL);
+// |(alpha.x v.x, alpha.y v.y, v.z)|: the projected area of the ellipsoid whose normals are the microfacets.
+float ggxProjection(vec3 v, vec2 alpha) {
+    vec3 stretched = vec3(alpha.x * v.x, alpha.y * v.y, v.z);
+    return sqrt(dot(stretched, stretched));
+}
+
+// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; glTF 2.0, appendix B.3.3. Cosines count without
+// sign, so that it serves transmission too. With alpha > 0 the sum is 0 only if both are.
+float ggxVisibility(vec3 l, vec3 v, vec2 alpha) {
+    return 0.5 / (abs(l.z) * ggxProjection(v, alpha) + abs(v.z) * ggxProjection(l, alpha));
+}
+
+// A normal that `v` sees, v.z > 0: Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps" (2023).
+vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {
+    vec3 stretched = normalize(vec3(alpha.x * v.x, alpha.y * v.y, v.z));
+    // A point of the sphere above -stretched.z, by its distance from the pole; 1 - z and the sum with stretched.z are
+    // products, as differences would lose the digits of normals near the pole and on the edge.
+    float fromPole = u.y * (1.0 + stretched.z);
+    float above = (1.0 - u.y) * (1.0 + stretched.z);
+    float fromEdge = above + dot(stretched.xy, stretched.xy) / (1.0 + stretched.z);
+    float sine = sqrt(fromPole * fromEdge);
+    float phi = 2.0 * kPi * u.x;
+    vec3 h = vec3(sine * cos(phi) + stretched.x, sine * sin(phi) + stretched.y, above);
+    return normalize(vec3(alpha.x * h.x, alpha.y * h.y, h.z));
+}
+
+// Density of sampleVisibleNormal(), G₁(v) D(h) (v·h) / (n·v), with G₁ / (n·v) in one piece that is finite at grazing.
+float visibleNormalPdf(vec3 v, vec3 h, vec2 alpha) {
+    return 2.0 * ggxDistribution(h, alpha) * max(accurateDot(v, h), 0.0) / (v.z + ggxProjection(v, alpha));
 }

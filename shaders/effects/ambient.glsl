@@ -1,15 +1,69 @@
 // Light of the sky on a surface that traces no ray for it.
-#include "bsdf/surface.glsl"
 #include "effects/sky.glsl"
+#include "hit/geometry.glsl"
+#include "hit/surface.glsl"
 
-vec3 ambientDiffuse(Surface surface) {
-    return surface.diffuseAlbedo * skyIrradianceOverPi(surface.normal) * surface.occlusion;
+// The sky in one direction; a rough lobe sees the sky's mean around it.
+vec3 skyAround(vec3 direction, float roughness) {
+    return mix(skyRadiance(direction), skyIrradianceOverPi(direction), roughness);
 }
 
-// The sky in the mirror direction; a rough lobe sees the sky's mean around it.
-vec3 ambientSpecular(Surface surface, vec3 view) {
-    vec3 mirrored = reflect(-view, surface.normal);
-    vec3 sky = mix(skyRadiance(mirrored), skyIrradianceOverPi(mirrored), surface.roughness);
-    return ggxDirectionalAlbedo(surface.f0, surface.roughness, clampedNDotV(surface, view)) * sky *
-           surface.occlusion;
+// The mirror direction. An anisotropic lobe spreads across its grooves: the normal bends towards the view within the
+// plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
+vec3 ambientMirror(Surface surface, Features features, vec3 view) {
+    vec3 normal = surface.normal;
+    if (hasLobe(features, GLINT_ANISOTROPY)) {
+        vec3 across = cross(cross(surface.bitangent, view), surface.bitangent);
+        float bend = (surface.bsdf.alpha.x - surface.bsdf.alpha.y) * (1.0 - surface.roughness * surface.roughness);
+        normal = directionOr(mix(normal, directionOr(across, normal), bend), normal);
+    }
+    return reflect(-view, normal);
+}
+
+// The sky behind, through the microfacets. A thin wall does not bend the view, a volume does as it enters.
+vec3 skyBehind(Surface surface, Features features, float eta) {
+    vec3 direction = -surface.bsdf.view;
+    if (hasLobe(features, GLINT_VOLUME) && refracts(eta) &&
+        !refractDirection(surface.bsdf.view, vec3(0.0, 0.0, 1.0), eta, direction)) {
+        return vec3(0.0);
+    }
+    return skyAround(toWorld(surface, direction), surface.roughness);
+}
+
+vec3 ambientTransmission(Surface surface, Features features) {
+    Bsdf bsdf = surface.bsdf;
+    vec3 behind = skyBehind(surface, features, bsdf.eta.y);
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        behind.x = skyBehind(surface, features, bsdf.eta.x).x;
+        behind.z = skyBehind(surface, features, bsdf.eta.z).z;
+    }
+    float reflected = largest(bsdf.f0) * (1.0 - bsdf.viewLoss - bsdf.viewBias) + bsdf.f90 * bsdf.viewBias;
+    return bsdf.transmitted * behind * max(1.0 - bsdf.viewLoss - reflected, 0.0);
+}
+
+// mirrored and coated: shares of the sky that base and coat reflect; a traced ray brings the rest.
+vec3 ambientLight(Surface surface, Features features, vec3 view, float mirrored, float coated) {
+    vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    float below = max(1.0 - largest(albedo), 0.0);
+    vec3 front = surface.bsdf.diffuse * below * skyIrradianceOverPi(surface.normal) +
+                 albedo * mirrored * skyAround(ambientMirror(surface, features, view), surface.roughness);
+    vec3 back = vec3(0.0);
+    if (hasLobe(features, GLINT_TRANSMISSION)) {
+        back += ambientTransmission(surface, features);
+    }
+    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        back += surface.bsdf.diffuseTransmitted * below * skyIrradianceOverPi(-surface.normal);
+    }
+    // The occlusion texture is of the outside.
+    vec3 result = (front * surface.occlusion + back) * baseShare(surface, features);
+    float coat = coatReflectance(surface, features);
+    if (hasLobe(features, GLINT_SHEEN)) {
+        result += surface.bsdf.sheenColor * min(surface.bsdf.sheenAlbedo, 1.0) * skyIrradianceOverPi(surface.normal) *
+                  (surface.occlusion * (1.0 - coat));
+    }
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        vec3 direction = reflect(-view, toWorld(surface, surface.bsdf.clearcoatNormal));
+        result += skyAround(direction, sqrt(surface.bsdf.clearcoatAlpha)) * (coat * coated * surface.occlusion);
+    }
+    return result;
 }

@@ -5,7 +5,7 @@
 // Whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. Reads mip 0: traversal knows no
 // footprint.
 bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
-    Features features = GLINT_SCENE_FEATURES(geometry);
+    Features features = GLINT_HIT_FEATURES(geometry);
     MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
     uvec3 corner = uvec3(geometry.indices.data[3u * primitive], geometry.indices.data[3u * primitive + 1u],
                          geometry.indices.data[3u * primitive + 2u]);

@@ -4,7 +4,6 @@
 #extension GL_EXT_nonuniform_qualifier : require
 
 #include "interop/frame.h"
-#include "generated/features.glsl"
 #include "generated/scene.glsl"
 
 layout(push_constant, scalar) uniform PushBlock {

@@ -1,3 +1,5 @@
+#include "generated/features.glsl"
+
 // What a case knows of its keys. `always` and `sometimes` are literals of the case; `lobes` and `inputs` are the key
 // of the geometry at hand. Written so that SPIRV-Tools folds every decided bit: a feature that no key of the case has
 // leaves no code, one that every key has leaves no branch.
@@ -10,17 +12,38 @@ struct Features {
     uint inputs;
 };
 
-bool hasLobe(Features features, uint bit) {
+bool lobeOfKey(Features features, uint bit) {
     return (features.alwaysLobes & bit) != 0u ||
            ((features.sometimesLobes & bit) != 0u && (features.lobes & bit) != 0u);
 }
 
-bool hasInput(Features features, uint bit) {
+bool inputOfKey(Features features, uint bit) {
     return (features.alwaysInputs & bit) != 0u ||
            ((features.sometimesInputs & bit) != 0u && (features.inputs & bit) != 0u);
 }
 
-// The features of any key of the scene: for code that runs before the switch, or for all materials.
-#define GLINT_SCENE_FEATURES(geometry)                                                                          \
+// What all cases of the module have, and what any has. A module that says so before it includes this file is compiled
+// several times faster: what is decided for the module as a whole goes before functions are inlined.
+#ifndef GLINT_MODULE_ALWAYS_LOBES
+#define GLINT_MODULE_ALWAYS_LOBES 0u
+#define GLINT_MODULE_ALWAYS_INPUTS 0u
+#define GLINT_MODULE_ANY_LOBES 0xFFFFFFFFu
+#define GLINT_MODULE_ANY_INPUTS 0xFFFFFFFFu
+#endif
+
+#define hasLobe(features, bit)                                                                                  \
+    ((GLINT_MODULE_ALWAYS_LOBES & (bit)) != 0u ||                                                               \
+     ((GLINT_MODULE_ANY_LOBES & (bit)) != 0u && lobeOfKey(features, bit)))
+#define hasInput(features, bit)                                                                                 \
+    ((GLINT_MODULE_ALWAYS_INPUTS & (bit)) != 0u ||                                                              \
+     ((GLINT_MODULE_ANY_INPUTS & (bit)) != 0u && inputOfKey(features, bit)))
+
+// The features of any key of the scene, all lobes: for primary surfaces.
+#define GLINT_PRIMARY_FEATURES(geometry)                                                                        \
     Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \
              (geometry).featureLobes, (geometry).featureInputs)
+
+// The same for what rays hit, with the lobes that hits keep: for code before the switch.
+#define GLINT_HIT_FEATURES(geometry)                                                                            \
+    Features(GLINT_HIT_ALWAYS_LOBES, GLINT_HIT_ALWAYS_INPUTS, GLINT_HIT_SOMETIMES_LOBES,                        \
+             GLINT_HIT_SOMETIMES_INPUTS, (geometry).featureLobes, (geometry).featureInputs)

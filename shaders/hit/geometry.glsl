@@ -10,18 +10,6 @@ void buildBasis(vec3 n, out vec3 tangent, out vec3 bitangent) {
     bitangent = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
-// A ray origin off the surface, on the side that n points to: Wächter and Binder, "A Fast and Robust Method for
-// Avoiding Self-Intersection" (Ray Tracing Gems, chapter 6). n is the geometric normal. Away from 0 it steps by units
-// in the last place, scaled so that it exceeds the error of an interpolated position; near 0 by a fixed length.
-vec3 offsetRayOrigin(vec3 position, vec3 n) {
-    const float kOrigin = 1.0 / 32.0;
-    const float kFloatScale = 1.0 / 65536.0;
-    const float kIntScale = 256.0;
-    ivec3 offset = ivec3(kIntScale * n);
-    vec3 stepped = intBitsToFloat(floatBitsToInt(position) + mix(offset, -offset, lessThan(position, vec3(0.0))));
-    return mix(stepped, position + kFloatScale * n, lessThan(abs(position), vec3(kOrigin)));
-}
-
 // Octahedral mapping of a unit vector to [-1, 1]²: Cigolle et al., "A Survey of Efficient Representations for
 // Independent Unit Vectors" (JCGT 2014).
 vec2 octahedralEncode(vec3 v) {
@@ -31,10 +19,18 @@ vec2 octahedralEncode(vec3 v) {
 }
 
 vec3 octahedralDecode(vec2 e) {
-    vec3 v = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-    float t = max(-v.z, 0.0);
-    v.xy += vec2(v.x >= 0.0 ? -t : t, v.y >= 0.0 ? -t : t);
-    return normalize(v);
+    float z = 1.0 - abs(e.x) - abs(e.y);
+    float t = max(-z, 0.0);
+    return normalize(vec3(e.x + (e.x >= 0.0 ? -t : t), e.y + (e.y >= 0.0 ? -t : t), z));
+}
+
+// A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms) or is no number.
+// Scaled first, so that no square leaves the range of floats: good for lengths from 1e-37 to 1e37.
+vec3 directionOr(vec3 v, vec3 fallback) {
+    vec3 scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
+    float squared = dot(scaled, scaled);
+    // 1 to 3; 0, infinity and NaN leave the range.
+    return squared > 0.5 && squared < 4.0 ? scaled * inversesqrt(squared) : fallback;
 }
 
 vec3 transformPoint(vec4 rows[3], vec3 p) {
@@ -47,4 +43,36 @@ vec3 transformVector(vec4 rows[3], vec3 v) {
 
 vec3 transformNormal(vec3 rows[3], vec3 n) {
     return vec3(dot(rows[0], n), dot(rows[1], n), dot(rows[2], n));
+}
+
+// A triangle in its mesh's space, and a point on it.
+struct TrianglePoint {
+    vec3 corner;
+    vec3 edge1;
+    vec3 edge2;
+    vec3 position;
+};
+
+// How far from its triangle's plane, along the world's unit normal n, rounding may put a point that has been
+// transformed into the world, sent off as a ray's origin, transformed back by the traversal and intersected with the
+// triangle. Forward error analysis (Higham, Accuracy and Stability of Numerical Algorithms, chapter 3): each sum of
+// products is off by at most the sum of their absolute values times the number of roundings in a row, here below 16.
+float planeError(vec3 n, TrianglePoint point, vec4 objectToWorld[3], vec3 normalToWorld[3]) {
+    const float kSixteenRoundings = 1.0 / 1048576.0;
+    // The plane's normal in the mesh's space, in metres of the world for one of the mesh.
+    vec3 r = abs(n.x * objectToWorld[0].xyz + n.y * objectToWorld[1].xyz + n.z * objectToWorld[2].xyz);
+    // Interpolation and intersection.
+    float object = dot(r, abs(point.corner) + abs(point.edge1) + abs(point.edge2));
+    // Into the world. The terms are no smaller than their sum: this bounds the world's coordinates, too.
+    vec3 terms = vec3(dot(abs(objectToWorld[0]), vec4(abs(point.position), 1.0)),
+                      dot(abs(objectToWorld[1]), vec4(abs(point.position), 1.0)),
+                      dot(abs(objectToWorld[2]), vec4(abs(point.position), 1.0)));
+    float world = dot(abs(n), terms);
+    // And back: by the inverse, which is the transposed cofactors over the determinant.
+    vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r), dot(abs(normalToWorld[2]), r));
+    float determinant = dot(objectToWorld[0].xyz, normalToWorld[0]);
+    float back = dot(inverse, terms) / determinant;
+    // Past a condition of 1000 an origin so far off would leave the scene's detail behind.
+    float most = 1024.0 * (object + world);
+    return kSixteenRoundings * (object + world + (back < most ? back : most));
 }

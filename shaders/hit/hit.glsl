@@ -2,10 +2,12 @@
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"
 #include "hit/geometry.glsl"
+#include "hit/lod.glsl"
 
 struct Hit {
     vec3 position;         // world
     vec3 geometricNormal;  // unit, on the viewer's side
+    float clearance;       // how far along it a ray that leaves the surface must start, metres
     vec3 normal;           // interpolated, unit, on the side that the surface's front faces
     vec3 view;             // unit, towards the viewer
     bool frontFace;
@@ -17,12 +19,13 @@ struct Hit {
     vec3 edges[2];   // world: from the first vertex to the second and third
     vec4 uvEdges[2]; // by UV set: (Δu, Δv) along each edge
     float footprint; // width of the ray cone on the surface, metres
+    float scale;     // metres of the world in one of the mesh
 };
 
-// A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms).
-vec3 directionOr(vec3 v, vec3 fallback) {
-    float squared = dot(v, v);
-    return squared > 0.0 && !isinf(squared) ? v * inversesqrt(squared) : fallback;
+// Where a ray from the surface starts: off it, on the side that `direction` points to.
+vec3 rayOrigin(Hit hit, vec3 direction) {
+    float side = dot(hit.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
+    return hit.position + side * hit.clearance * hit.geometricNormal;
 }
 
 // Attributes are fetched where `features` may need them. rayDirection is unit; coneWidth is that of the ray cone at
@@ -44,13 +47,16 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     vec3 p0 = geometry.positions.data[corner.x];
     vec3 e1 = geometry.positions.data[corner.y] - p0;
     vec3 e2 = geometry.positions.data[corner.z] - p0;
-    precise vec3 position = transformPoint(instance.objectToWorld, p0 + barycentrics.x * e1 + barycentrics.y * e2);
+    precise vec3 objectPosition = p0 + (barycentrics.x * e1 + barycentrics.y * e2);
+    precise vec3 position = transformPoint(instance.objectToWorld, objectPosition);
     hit.position = position;
     hit.edges[0] = transformVector(instance.objectToWorld, e1);
     hit.edges[1] = transformVector(instance.objectToWorld, e2);
-    vec3 front = directionOr(cross(hit.edges[0], hit.edges[1]), hit.view) * (mirrored ? -1.0 : 1.0);
+    vec3 front = directionOr(transformNormal(instance.normalToWorld, cross(e1, e2)), hit.view);
     hit.frontFace = dot(front, hit.view) >= 0.0;
     hit.geometricNormal = hit.frontFace ? front : -front;
+    hit.clearance = planeError(front, TrianglePoint(p0, e1, e2, objectPosition), instance.objectToWorld,
+                               instance.normalToWorld);
 
     hit.normal = front;
     if (hasInput(features, GLINT_NORMALS)) {
@@ -73,13 +79,17 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.uvEdges[1] = vec4(0.0);
     if (hasInput(features, GLINT_TEXCOORD_0)) {
         vec2 uv0 = geometry.texCoords0.data[corner.x];
-        hit.uvEdges[0] = vec4(geometry.texCoords0.data[corner.y] - uv0, geometry.texCoords0.data[corner.z] - uv0);
-        hit.texCoords[0] = uv0 + barycentrics.x * hit.uvEdges[0].xy + barycentrics.y * hit.uvEdges[0].zw;
+        vec2 uv1 = geometry.texCoords0.data[corner.y];
+        vec2 uv2 = geometry.texCoords0.data[corner.z];
+        hit.texCoords[0] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
+        hit.uvEdges[0] = vec4(uv1 - uv0, uv2 - uv0);
     }
     if (hasInput(features, GLINT_TEXCOORD_1)) {
         vec2 uv0 = geometry.texCoords1.data[corner.x];
-        hit.uvEdges[1] = vec4(geometry.texCoords1.data[corner.y] - uv0, geometry.texCoords1.data[corner.z] - uv0);
-        hit.texCoords[1] = uv0 + barycentrics.x * hit.uvEdges[1].xy + barycentrics.y * hit.uvEdges[1].zw;
+        vec2 uv1 = geometry.texCoords1.data[corner.y];
+        vec2 uv2 = geometry.texCoords1.data[corner.z];
+        hit.texCoords[1] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
+        hit.uvEdges[1] = vec4(uv1 - uv0, uv2 - uv0);
     }
     hit.color = vec4(1.0);
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
@@ -87,8 +97,14 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
                     weights.z * geometry.colors.data[corner.z];
     }
 
-    // The cone meets the surface in an ellipse of axes coneWidth and coneWidth / cos. Its geometric mean keeps floors
-    // sharper than the long axis would and quieter than the short one. Below 0.01 radians the ellipse is cut.
-    hit.footprint = coneWidth * inversesqrt(max(abs(dot(hit.geometricNormal, rayDirection)), 0.01));
+    hit.footprint = coneFootprint(coneWidth, dot(hit.geometricNormal, rayDirection));
+    hit.scale = 1.0;
+    if (hasLobe(features, GLINT_ATTENUATION)) {
+        // Root mean square over the axes.
+        vec3 x = instance.objectToWorld[0].xyz;
+        vec3 y = instance.objectToWorld[1].xyz;
+        vec3 z = instance.objectToWorld[2].xyz;
+        hit.scale = sqrt((dot(x, x) + dot(y, y) + dot(z, z)) / 3.0);
+    }
     return hit;
 }

@@ -1,9 +1,9 @@
 // From a hit and its material to a Surface.
-#include "bsdf/surface.glsl"
+#include "hit/surface.glsl"
 #include "hit/texture.glsl"
 
-vec4 baseColor(Hit hit, MaterialRecord material, Features features) {
-    vec4 color = material.baseColorFactor;
+vec4 baseColor(Hit hit, Features features) {
+    vec4 color = GLINT_MATERIAL(hit).baseColorFactor;
     if (hasInput(features, GLINT_BASE_COLOR_TEXTURE)) {
         color *= sampleSlot(hit, kTextureBaseColor, features);
     }
@@ -13,58 +13,246 @@ vec4 baseColor(Hit hit, MaterialRecord material, Features features) {
     return color;
 }
 
-// The shading normal, on the viewer's side where the material is double-sided.
-vec3 shadingNormal(Hit hit, MaterialRecord material, Features features) {
-    vec3 normal = hit.normal;
-    if (hasInput(features, GLINT_NORMAL_TEXTURE)) {
-        vec3 texel = sampleSlot(hit, kTextureNormal, features).xyz * 2.0 - 1.0;
-        vec3 tangent;
-        vec3 bitangent;
-        tangentFrame(hit, features, tangent, bitangent);
-        vec3 scaled = texel * vec3(material.normalScale, material.normalScale, 1.0);
-        normal = directionOr(scaled.x * tangent + scaled.y * bitangent + scaled.z * hit.normal, hit.normal);
-    }
-    if (hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace) {
-        normal = -normal;
-    }
-    return normal;
+// Normals of double-sided materials turn to the viewer.
+float facing(Hit hit, Features features) {
+    return hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace ? -1.0 : 1.0;
 }
 
-vec3 emission(Hit hit, MaterialRecord material, Features features) {
-    vec3 emitted = material.emissiveFactor;
+vec3 emission(Hit hit, Features features) {
+    vec3 emitted = GLINT_MATERIAL(hit).emissiveFactor;
     if (hasInput(features, GLINT_EMISSIVE_TEXTURE)) {
         emitted *= sampleSlot(hit, kTextureEmissive, features).rgb;
     }
     if (hasInput(features, GLINT_EMISSIVE_STRENGTH)) {
-        emitted *= material.emissiveStrength;
+        emitted *= GLINT_MATERIAL(hit).emissiveStrength;
     }
     return emitted;
 }
 
-// Metallic-roughness: glTF 2.0, section 3.9.2 and appendix B.3.5. Requires a lit key.
-Surface evaluateSurface(Hit hit, Features features) {
-    MaterialRecord material = GLINT_FRAME.materials.data[hit.material];
-    vec3 color = baseColor(hit, material, features).rgb;
+// The base's colour as the extensions on top see it.
+struct Base {
+    vec3 color;
+    float metallic;
+    float roughness;
+};
 
-    float metallic = material.metallicFactor;
-    float roughness = material.roughnessFactor;
+// Metallic-roughness: glTF 2.0, section 3.9.2 and appendix B.3.5, the dielectric's reflectance by KHR_materials_ior
+// and KHR_materials_specular. The fields of other lobes are left as they are.
+void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
+    base.color = baseColor(hit, features).rgb;
+    base.metallic = GLINT_MATERIAL(hit).metallicFactor;
+    base.roughness = GLINT_MATERIAL(hit).roughnessFactor;
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
         vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
-        roughness *= texel.g;
-        metallic *= texel.b;
+        base.roughness *= texel.g;
+        base.metallic *= texel.b;
     }
+    vec3 f0 = vec3(hasLobe(features, GLINT_IOR) ? dielectricF0(GLINT_MATERIAL(hit).ior) : 0.04);
+    float f90 = 1.0;
+    if (hasLobe(features, GLINT_SPECULAR)) {
+        float specular = GLINT_MATERIAL(hit).specularFactor;
+        vec3 specularColor = GLINT_MATERIAL(hit).specularColorFactor;
+        if (hasInput(features, GLINT_SPECULAR_TEXTURE)) {
+            specular *= sampleSlot(hit, kTextureSpecular, features).a;
+        }
+        if (hasInput(features, GLINT_SPECULAR_COLOR_TEXTURE)) {
+            specularColor *= sampleSlot(hit, kTextureSpecularColor, features).rgb;
+        }
+        f0 = min(f0 * specularColor, vec3(1.0)) * specular;
+        f90 = specular;
+    }
+    bsdf.diffuse = base.color * (1.0 - base.metallic);
+    bsdf.f0 = mix(f0, base.color, base.metallic);
+    bsdf.f90 = mix(f90, 1.0, base.metallic);
+}
 
+// KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, of which the surface reflects no more than there is.
+void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
+    base.color = baseColor(hit, features).rgb;
+    base.metallic = 0.0;
+    vec3 specular = GLINT_MATERIAL(hit).specularColorFactor;
+    float glossiness = GLINT_MATERIAL(hit).glossinessFactor;
+    if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
+        vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
+        specular *= texel.rgb;
+        glossiness *= texel.a;
+    }
+    base.roughness = 1.0 - glossiness;
+    bsdf.diffuse = base.color * (1.0 - largest(specular));
+    bsdf.f0 = specular;
+    bsdf.f90 = 1.0;
+}
+
+// KHR_materials_anisotropy: alphas along the direction of anisotropy and across, and that direction as the frame's x.
+void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
+    vec2 direction = GLINT_MATERIAL(hit).anisotropyDirection;
+    float strength = GLINT_MATERIAL(hit).anisotropyStrength;
+    if (hasInput(features, GLINT_ANISOTROPY_TEXTURE)) {
+        vec3 texel = sampleSlot(hit, kTextureAnisotropy, features).rgb;
+        vec2 turned = texel.rg * 2.0 - 1.0;
+        direction = vec2(direction.x * turned.x - direction.y * turned.y,
+                         direction.y * turned.x + direction.x * turned.y);
+        strength *= texel.b;
+    }
+    uint slot = hasInput(features, GLINT_ANISOTROPY_TEXTURE) ? kTextureAnisotropy : kTextureNormal;
+    vec3 tangent;
+    vec3 bitangent;
+    tangentFrame(hit, slot, features, tangent, bitangent);
+    vec3 along = tangent * direction.x + bitangent * direction.y;
+    surface.tangent = directionOr(along - surface.normal * dot(surface.normal, along), surface.tangent);
+    surface.bitangent = cross(surface.normal, surface.tangent);
+    float alpha = surface.bsdf.alpha.y;
+    surface.bsdf.alpha.x = mix(alpha, 1.0, strength * strength);
+}
+
+// KHR_materials_iridescence, at the angle of the view for all lights, as the reference renderer has it: the film's
+// reflectance becomes the f0 with which Schlick gives it, so that the albedos of the lobe stay known.
+void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) {
+    float factor = GLINT_MATERIAL(hit).iridescenceFactor;
+    float thickness = GLINT_MATERIAL(hit).iridescenceThicknessMaximum;
+    if (hasInput(features, GLINT_IRIDESCENCE_TEXTURE)) {
+        factor *= sampleSlot(hit, kTextureIridescence, features).r;
+    }
+    if (hasInput(features, GLINT_IRIDESCENCE_THICKNESS_TEXTURE)) {
+        thickness = mix(GLINT_MATERIAL(hit).iridescenceThicknessMinimum, thickness,
+                        sampleSlot(hit, kTextureIridescenceThickness, features).g);
+    }
+    vec3 film = iridescentFresnel(nDotV, bsdf.f0, GLINT_MATERIAL(hit).iridescenceIor, thickness);
+    bsdf.f0 = mix(bsdf.f0, min(schlickF0(film, bsdf.f90, nDotV), vec3(bsdf.f90)), factor);
+}
+
+// KHR_materials_transmission, KHR_materials_diffuse_transmission, KHR_materials_volume, KHR_materials_dispersion: what
+// passes the surface, out of what the diffuse lobe would have had.
+void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
+    float transmission = 0.0;
+    if (hasLobe(features, GLINT_TRANSMISSION)) {
+        transmission = GLINT_MATERIAL(hit).transmissionFactor;
+        if (hasInput(features, GLINT_TRANSMISSION_TEXTURE)) {
+            transmission *= sampleSlot(hit, kTextureTransmission, features).r;
+        }
+        bsdf.transmitted = base.color * (1.0 - base.metallic) * transmission;
+        bsdf.diffuse *= 1.0 - transmission;
+    }
+    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        float share = GLINT_MATERIAL(hit).diffuseTransmissionFactor;
+        vec3 color = GLINT_MATERIAL(hit).diffuseTransmissionColorFactor;
+        if (hasInput(features, GLINT_DIFFUSE_TRANSMISSION_TEXTURE)) {
+            share *= sampleSlot(hit, kTextureDiffuseTransmission, features).a;
+        }
+        if (hasInput(features, GLINT_DIFFUSE_TRANSMISSION_COLOR_TEXTURE)) {
+            color *= sampleSlot(hit, kTextureDiffuseTransmissionColor, features).rgb;
+        }
+        bsdf.diffuseTransmitted = color * (share * (1.0 - transmission) * (1.0 - base.metallic));
+        bsdf.diffuse *= 1.0 - share;
+    }
+    if (hasLobe(features, GLINT_VOLUME)) {
+        float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL(hit).ior : 1.5;
+        vec3 iors = vec3(ior);
+        if (hasLobe(features, GLINT_DISPERSION)) {
+            iors = dispersedIor(ior, GLINT_MATERIAL(hit).dispersion);
+        }
+        bool inside = hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace;
+        bsdf.eta = inside ? vec3(1.0) / iors : iors;
+        if (inside) {
+            // From within, more is reflected than the albedos of the outside say: the diffuse lobe makes way.
+            bsdf.diffuse = vec3(0.0);
+            bsdf.diffuseTransmitted = vec3(0.0);
+        }
+    }
+    if (hasLobe(features, GLINT_ATTENUATION)) {
+        float thickness = GLINT_MATERIAL(hit).thicknessFactor * hit.scale;
+        if (hasInput(features, GLINT_THICKNESS_TEXTURE)) {
+            thickness *= sampleSlot(hit, kTextureThickness, features).g;
+        }
+        vec3 transmittance = volumeTransmittance(GLINT_MATERIAL(hit).absorption, thickness);
+        bsdf.transmitted *= transmittance;
+        bsdf.diffuseTransmitted *= transmittance;
+    }
+}
+
+void applySheen(Hit hit, Features features, inout Bsdf bsdf) {
+    float roughness = GLINT_MATERIAL(hit).sheenRoughnessFactor;
+    bsdf.sheenColor = GLINT_MATERIAL(hit).sheenColorFactor;
+    if (hasInput(features, GLINT_SHEEN_COLOR_TEXTURE)) {
+        bsdf.sheenColor *= sampleSlot(hit, kTextureSheenColor, features).rgb;
+    }
+    if (hasInput(features, GLINT_SHEEN_ROUGHNESS_TEXTURE)) {
+        roughness *= sampleSlot(hit, kTextureSheenRoughness, features).a;
+    }
+    bsdf.sheenAlpha = max(roughness * roughness, kMinSheenAlpha);
+}
+
+void applyClearcoat(Hit hit, Features features, inout Surface surface) {
+    float factor = GLINT_MATERIAL(hit).clearcoatFactor;
+    float roughness = GLINT_MATERIAL(hit).clearcoatRoughnessFactor;
+    if (hasInput(features, GLINT_CLEARCOAT_TEXTURE)) {
+        factor *= sampleSlot(hit, kTextureClearcoat, features).r;
+    }
+    if (hasInput(features, GLINT_CLEARCOAT_ROUGHNESS_TEXTURE)) {
+        roughness *= sampleSlot(hit, kTextureClearcoatRoughness, features).g;
+    }
+    surface.bsdf.clearcoat = factor;
+    surface.bsdf.clearcoatAlpha = max(roughness * roughness, kMinAlpha);
+    surface.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
+    // The base's normal texture does not bend the coat: without one of its own the coat has the mesh's normal.
+    if (hasInput(features, GLINT_CLEARCOAT_NORMAL_TEXTURE)) {
+        vec3 normal = mappedNormal(hit, kTextureClearcoatNormal, GLINT_MATERIAL(hit).clearcoatNormalScale, features);
+        surface.bsdf.clearcoatNormal = directionOr(toSurface(surface, normal * facing(hit, features)),
+                                                   vec3(0.0, 0.0, 1.0));
+    } else if (hasInput(features, GLINT_NORMAL_TEXTURE) && !hasInput(features, GLINT_CLEARCOAT_SHARES_NORMAL)) {
+        surface.bsdf.clearcoatNormal = directionOr(toSurface(surface, hit.normal * facing(hit, features)),
+                                                   vec3(0.0, 0.0, 1.0));
+    }
+}
+
+// Requires a lit key.
+Surface evaluateSurface(Hit hit, Features features) {
     Surface surface;
-    surface.diffuseAlbedo = color * (1.0 - metallic);
-    surface.f0 = mix(vec3(0.04), color, metallic);
-    surface.roughness = roughness;
-    surface.alpha = max(roughness * roughness, kMinAlpha);
-    surface.normal = shadingNormal(hit, material, features);
-    surface.emission = emission(hit, material, features);
+    surface.normal = hit.normal;
+    if (hasInput(features, GLINT_NORMAL_TEXTURE)) {
+        surface.normal = mappedNormal(hit, kTextureNormal, GLINT_MATERIAL(hit).normalScale, features);
+    }
+    surface.normal *= facing(hit, features);
+    buildBasis(surface.normal, surface.tangent, surface.bitangent);
+
+    Bsdf bsdf;
+    Base base;
+    bsdf.transmitted = vec3(0.0);
+    bsdf.diffuseTransmitted = vec3(0.0);
+    bsdf.eta = vec3(1.0);
+    bsdf.clearcoat = 0.0;
+    bsdf.clearcoatAlpha = 1.0;
+    bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
+    bsdf.sheenColor = vec3(0.0);
+    bsdf.sheenAlpha = 1.0;
+    if (hasLobe(features, GLINT_SPECULAR_GLOSSINESS)) {
+        specularGlossinessBase(hit, features, bsdf, base);
+    } else {
+        metallicRoughnessBase(hit, features, bsdf, base);
+    }
+    bsdf.alpha = vec2(max(base.roughness * base.roughness, kMinAlpha));
+    surface.bsdf = bsdf;
+    if (hasLobe(features, GLINT_ANISOTROPY)) {
+        applyAnisotropy(hit, features, surface);
+    }
+    surface.roughness = hasLobe(features, GLINT_ANISOTROPY) ? sqrt(surface.bsdf.alpha.x) : base.roughness;
+    vec3 view = toSurface(surface, hit.view);
+    if (hasLobe(features, GLINT_IRIDESCENCE)) {
+        applyIridescence(hit, features, clamp(view.z, 0.0, 1.0), surface.bsdf);
+    }
+    applyTransmission(hit, features, base, surface.bsdf);
+    if (hasLobe(features, GLINT_SHEEN)) {
+        applySheen(hit, features, surface.bsdf);
+    }
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        applyClearcoat(hit, features, surface);
+    }
+    prepareBsdf(surface.bsdf, features, view);
+    surface.emission = emission(hit, features) * (1.0 - coatReflectance(surface, features));
     surface.occlusion = 1.0;
     if (hasInput(features, GLINT_OCCLUSION_TEXTURE)) {
         float texel = sampleSlot(hit, kTextureOcclusion, features).r;
-        surface.occlusion = 1.0 + material.occlusionStrength * (texel - 1.0);
+        surface.occlusion = 1.0 + GLINT_MATERIAL(hit).occlusionStrength * (texel - 1.0);
     }
     return surface;
 }

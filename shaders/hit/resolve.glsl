@@ -15,8 +15,7 @@ Hit loadHit(HitRecord record, GeometryRecord geometry, Features features) {
 vec3 resolveRadiance(Hit hit, ShadeResult result) {
     vec3 radiance = result.radiance;
     if (result.shadowDistance > 0.0) {
-        vec3 origin = offsetRayOrigin(hit.position, hit.geometricNormal);
-        if (isVisible(origin, result.shadowDirection, result.shadowDistance)) {
+        if (isVisible(rayOrigin(hit, result.shadowDirection), result.shadowDirection, result.shadowDistance)) {
             radiance += result.direct;
         }
     }

@@ -1,7 +1,8 @@
 // shade(): the one function that every strategy calls for a hit.
 #include "effects/ambient.glsl"
-#include "hit/lights.glsl"
+#include "hit/bindings.glsl"
 #include "hit/material.glsl"
+#include "hit/punctual.glsl"
 #include "hit/random.glsl"
 
 // Light that leaves the hit towards the viewer. `direct` counts only if nothing stands on the shadow ray: who calls
@@ -16,24 +17,21 @@ struct ShadeResult {
 // Dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
 
-float luminance(vec3 color) {
-    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+// Light of one light on a surface, without its shadow.
+vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
+    return reflectedLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
 }
 
 // Direct light by one light, chosen in one pass with probability proportional to the luminance that it would bring
 // without shadows (weighted reservoir sampling, Chao 1982). Unbiased; exact where one light dominates.
-void chooseLight(Hit hit, Surface surface, inout ShadeResult result) {
+void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
     float random = randomUnit(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
     float total = 0.0;
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
     for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
         LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
-        // A light below the surface's plane reaches it only through the surface.
-        if (dot(hit.geometricNormal, light.direction) <= 0.0) {
-            continue;
-        }
-        vec3 contribution = evaluateBsdf(surface, hit.view, light.direction) * light.irradiance;
+        vec3 contribution = unshadowedLight(hit, surface, features, light);
         float weight = luminance(contribution);
         if (weight <= 0.0) {
             continue;
@@ -56,12 +54,12 @@ void chooseLight(Hit hit, Surface surface, inout ShadeResult result) {
 ShadeResult shade(Hit hit, Features features) {
     ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     if (hasLobe(features, GLINT_UNLIT)) {
-        result.radiance = baseColor(hit, GLINT_FRAME.materials.data[hit.material], features).rgb;
+        result.radiance = baseColor(hit, features).rgb;
         return result;
     }
     Surface surface = evaluateSurface(hit, features);
-    result.radiance = surface.emission + ambientDiffuse(surface) + ambientSpecular(surface, hit.view);
-    chooseLight(hit, surface, result);
+    result.radiance = surface.emission + ambientLight(surface, features, hit.view, 1.0, 1.0);
+    chooseLight(hit, surface, features, result);
     return result;
 }
 

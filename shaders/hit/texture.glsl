@@ -1,22 +1,18 @@
 // Material textures at a hit.
 #include "hit/hit.glsl"
 
-// Level of detail of a texture under a ray cone: Akenine-Möller et al., "Texture Level of Detail Strategies for
-// Real-Time Ray Tracing" (Ray Tracing Gems, chapter 20), with the cone's footprint on the surface: texels under it, by
-// the ratio of the triangle's areas in texels and in the world; 0 where either vanishes.
-float coneLod(Hit hit, vec4 uvEdges, vec2 texels) {
-    float uvArea = abs(uvEdges.x * uvEdges.w - uvEdges.y * uvEdges.z) * texels.x * texels.y;
-    vec3 worldCross = cross(hit.edges[0], hit.edges[1]);
-    float worldArea = sqrt(dot(worldCross, worldCross));
-    float texelsPerFootprint = hit.footprint * sqrt(uvArea / worldArea);
-    return texelsPerFootprint > 1.0 && !isinf(texelsPerFootprint) ? log2(texelsPerFootprint) : 0.0;
+#define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
+
+// Whether a slot reads the second UV set.
+bool readsSecondSet(Hit hit, uint slot, Features features) {
+    return hasInput(features, GLINT_TEXCOORD_1) &&
+           (!hasInput(features, GLINT_TEXCOORD_0) || GLINT_MATERIAL(hit).textures[slot].texCoord == 1u);
 }
 
 // The value of one texture slot of the hit's material.
 vec4 sampleSlot(Hit hit, uint slot, Features features) {
-    TextureRecord record = GLINT_FRAME.materials.data[hit.material].textures[slot];
-    bool second = hasInput(features, GLINT_TEXCOORD_1) &&
-                  (!hasInput(features, GLINT_TEXCOORD_0) || record.texCoord == 1u);
+    TextureRecord record = GLINT_MATERIAL(hit).textures[slot];
+    bool second = readsSecondSet(hit, slot, features);
     vec2 uv = second ? hit.texCoords[1] : hit.texCoords[0];
     vec4 uvEdges = second ? hit.uvEdges[1] : hit.uvEdges[0];
     if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
@@ -24,21 +20,21 @@ vec4 sampleSlot(Hit hit, uint slot, Features features) {
         uvEdges = vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy),
                        dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
     }
+    float lod = GLINT_TEXTURE_LOD_CONES != 0
+                    ? coneLod(hit.footprint, hit.edges[0], hit.edges[1], uvEdges, record.texels)
+                    : 0.0;
     return textureLod(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
                                 sceneSamplers[nonuniformEXT(record.samplerIndex)]),
-                      uv, coneLod(hit, uvEdges, record.texels));
+                      uv, lod);
 }
 
-// Tangent and bitangent for the normal texture: from the TANGENT attribute, or from the derivatives of position by
-// UV. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
-void tangentFrame(Hit hit, Features features, out vec3 tangent, out vec3 bitangent) {
+// Tangent and bitangent at the hit: from the TANGENT attribute, or from the derivatives of position by the UV set that
+// `slot` reads. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
+void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out vec3 bitangent) {
     vec3 along = hit.tangent.xyz;
     float handedness = hit.tangent.w;
     if (!hasInput(features, GLINT_TANGENTS)) {
-        bool second = hasInput(features, GLINT_TEXCOORD_1) &&
-                      (!hasInput(features, GLINT_TEXCOORD_0) ||
-                       GLINT_FRAME.materials.data[hit.material].textures[kTextureNormal].texCoord == 1u);
-        vec4 uv = second ? hit.uvEdges[1] : hit.uvEdges[0];
+        vec4 uv = readsSecondSet(hit, slot, features) ? hit.uvEdges[1] : hit.uvEdges[0];
         float determinant = uv.x * uv.w - uv.y * uv.z;
         along = (hit.edges[0] * uv.w - hit.edges[1] * uv.y) * sign(determinant);
         vec3 alongV = (hit.edges[1] * uv.x - hit.edges[0] * uv.z) * sign(determinant);
@@ -53,4 +49,13 @@ void tangentFrame(Hit hit, Features features, out vec3 tangent, out vec3 bitange
         // No direction of U on the surface: any frame will do.
         buildBasis(hit.normal, tangent, bitangent);
     }
+}
+
+// The normal that a normal texture gives.
+vec3 mappedNormal(Hit hit, uint slot, float scale, Features features) {
+    vec3 texel = sampleSlot(hit, slot, features).xyz * 2.0 - 1.0;
+    vec3 tangent;
+    vec3 bitangent;
+    tangentFrame(hit, slot, features, tangent, bitangent);
+    return directionOr(texel.x * scale * tangent + texel.y * scale * bitangent + texel.z * hit.normal, hit.normal);
 }

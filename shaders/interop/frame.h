@@ -75,7 +75,8 @@ GLINT_CONSTANT(kCounterSkippedSky, 1u);    // pixels without a surface
 GLINT_CONSTANT(kCounterSkippedRough, 2u);  // surfaces above the roughness limit
 GLINT_CONSTANT(kCounterSkippedUnlit, 3u);  // unlit surfaces
 GLINT_CONSTANT(kCounterUnknownShader, 4u); // hits whose shader ID no case has
-GLINT_CONSTANT(kCounterCount, 5u);
+GLINT_CONSTANT(kCounterNonFinite, 5u);     // pixels whose sample was no number: taken as black
+GLINT_CONSTANT(kCounterCount, 6u);
 
 // One frame of one sample.
 struct FrameConstants {
@@ -141,7 +142,8 @@ GLINT_CONSTANT(kBindingPosition, 3u);         // rgba32f: ray origin off the sur
 GLINT_CONSTANT(kBindingReflectance, 4u);      // rgba32f: weight of the traced reflection
 GLINT_CONSTANT(kBindingReflection, 5u);       // rgba32f: radiance that the traced ray brings
 GLINT_CONSTANT(kBindingAccumulated, 6u);      // rgba32f: mean over samples so far, linear
-GLINT_CONSTANT(kFrameImageCount, 7u);
+GLINT_CONSTANT(kBindingResidual, 7u);         // rgba32f: what rounding keeps out of that mean
+GLINT_CONSTANT(kFrameImageCount, 8u);
 
 GLINT_INTEROP_END
 #endif

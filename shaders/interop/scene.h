@@ -2,7 +2,7 @@
 #ifndef GLINT_INTEROP_SCENE_H
 #define GLINT_INTEROP_SCENE_H
 
-#include "interop/types.h"
+#include "interop/lights.h"
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint data[]; };
@@ -19,7 +19,21 @@ GLINT_CONSTANT(kTextureMetallicRoughness, 1u);
 GLINT_CONSTANT(kTextureNormal, 2u);
 GLINT_CONSTANT(kTextureOcclusion, 3u);
 GLINT_CONSTANT(kTextureEmissive, 4u);
-GLINT_CONSTANT(kTextureSlotCount, 5u);
+GLINT_CONSTANT(kTextureClearcoat, 5u);
+GLINT_CONSTANT(kTextureClearcoatRoughness, 6u);
+GLINT_CONSTANT(kTextureClearcoatNormal, 7u);
+GLINT_CONSTANT(kTextureSheenColor, 8u);
+GLINT_CONSTANT(kTextureSheenRoughness, 9u);
+GLINT_CONSTANT(kTextureAnisotropy, 10u);
+GLINT_CONSTANT(kTextureSpecular, 11u);
+GLINT_CONSTANT(kTextureSpecularColor, 12u);
+GLINT_CONSTANT(kTextureIridescence, 13u);
+GLINT_CONSTANT(kTextureIridescenceThickness, 14u);
+GLINT_CONSTANT(kTextureTransmission, 15u);
+GLINT_CONSTANT(kTextureThickness, 16u);
+GLINT_CONSTANT(kTextureDiffuseTransmission, 17u);
+GLINT_CONSTANT(kTextureDiffuseTransmissionColor, 18u);
+GLINT_CONSTANT(kTextureSlotCount, 19u);
 
 // GeometryRecord::flags
 GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: test the candidate
@@ -28,11 +42,6 @@ GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass te
 
 // InstanceRecord::flags
 GLINT_CONSTANT(kInstanceMirrored, 1u);  // the determinant of objectToWorld is negative
-
-// LightRecord::type, in the order of KHR_lights_punctual's text
-GLINT_CONSTANT(kLightDirectional, 0u);
-GLINT_CONSTANT(kLightPoint, 1u);
-GLINT_CONSTANT(kLightSpot, 2u);
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex.
 // Addresses are 0 where the primitive lacks the attribute; featureInputs then lacks the bit.
@@ -55,7 +64,7 @@ struct GeometryRecord {
 // One instance of a mesh. Matrices are three rows of four (positions) or three (normals).
 struct InstanceRecord {
     vec4 objectToWorld[3];
-    vec3 normalToWorld[3];  // cofactors of the linear part times the sign of its determinant: finite where singular
+    vec3 normalToWorld[3];  // cofactors of the linear part times a scale, of its determinant's sign: finite where singular
     uint flags;             // kInstance*
 };
 
@@ -79,18 +88,28 @@ struct MaterialRecord {
     float normalScale;
     float occlusionStrength;
     float alphaCutoff;
+    float glossinessFactor;      // KHR_materials_pbrSpecularGlossiness; its specularFactor is specularColorFactor
+    vec3 specularColorFactor;    // KHR_materials_specular
+    float specularFactor;
+    float ior;                   // KHR_materials_ior
+    float clearcoatFactor;       // KHR_materials_clearcoat
+    float clearcoatRoughnessFactor;
+    float clearcoatNormalScale;
+    vec3 sheenColorFactor;       // KHR_materials_sheen
+    float sheenRoughnessFactor;
+    vec2 anisotropyDirection;    // KHR_materials_anisotropy: cosine and sine of the rotation
+    float anisotropyStrength;
+    float iridescenceFactor;     // KHR_materials_iridescence
+    float iridescenceIor;
+    float iridescenceThicknessMinimum;  // nanometres
+    float iridescenceThicknessMaximum;
+    float transmissionFactor;    // KHR_materials_transmission
+    float diffuseTransmissionFactor;  // KHR_materials_diffuse_transmission
+    vec3 diffuseTransmissionColorFactor;
+    float thicknessFactor;       // KHR_materials_volume, metres in object space
+    vec3 absorption;             // per metre: -ln(attenuationColor) / attenuationDistance, at most kMaxAbsorption
+    float dispersion;            // KHR_materials_dispersion: 20 / Abbe number
     TextureRecord textures[kTextureSlotCount];
-};
-
-// A punctual light in world space (KHR_lights_punctual).
-struct LightRecord {
-    vec3 position;   // point and spot
-    uint type;       // kLight*
-    vec3 direction;  // unit, the way the light travels; directional and spot
-    float range;     // metres; 0 means unlimited
-    vec3 intensity;  // colour times intensity: lux (directional) or candela
-    float spotScale;   // 1 / max(0.001, cos(inner) - cos(outer))
-    float spotOffset;  // -cos(outer) * spotScale
 };
 
 GLINT_INTEROP_END

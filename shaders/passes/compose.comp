@@ -1,5 +1,6 @@
 #version 460
 // Adds the reflection to the lit surfaces and takes the sample into the running mean.
+#include "hit/accumulate.glsl"
 #include "hit/images.glsl"
 
 layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
@@ -12,10 +13,16 @@ void main() {
     ivec2 place = ivec2(pixel);
     vec3 radiance = imageLoad(radianceImage, place).rgb +
                     imageLoad(reflectanceImage, place).rgb * imageLoad(reflectionImage, place).rgb;
-    vec3 mean = radiance;
-    if (GLINT_FRAME.sampleIndex > 0u) {
-        vec3 before = imageLoad(accumulatedImage, place).rgb;
-        mean = before + (radiance - before) / float(GLINT_FRAME.sampleIndex + 1u);
+    // One sample that is no number would stay in the mean for good.
+    if (!isFinite(radiance)) {
+        atomicAdd(GLINT_FRAME.counters.data[kCounterNonFinite], 1u);
+        radiance = vec3(0.0);
     }
-    imageStore(accumulatedImage, place, vec4(mean, 1.0));
+    RunningMean mean = RunningMean(radiance, vec3(0.0));
+    if (GLINT_FRAME.sampleIndex > 0u) {
+        RunningMean last = RunningMean(imageLoad(accumulatedImage, place).rgb, imageLoad(residualImage, place).rgb);
+        mean = includeSample(last, radiance, GLINT_FRAME.sampleIndex);
+    }
+    imageStore(accumulatedImage, place, vec4(mean.mean, 1.0));
+    imageStore(residualImage, place, vec4(mean.residual, 0.0));
 }

@@ -1,6 +1,7 @@
 #version 460
 // G-buffer: which triangle each pixel sees. Materials are read by the lighting pass, once a pixel.
 #include "hit/bindings.glsl"
+#include "hit/features.glsl"
 
 layout(location = 0) flat in uint primitive;
 #if GLINT_HAS_MASKED

@@ -2,6 +2,7 @@
 // G-buffer, vertices pulled by address: each triangle has its own three, so that its number needs no geometry shader
 // capability.
 #include "hit/bindings.glsl"
+#include "hit/features.glsl"
 #include "hit/geometry.glsl"
 
 layout(location = 0) flat out uint primitive;

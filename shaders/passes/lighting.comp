@@ -1,6 +1,10 @@
 #version 460
 // Lighting of the primary surfaces: materials, every punctual light with its shadow ray, the sky; and what the effects
 // need of each pixel.
+#define GLINT_MODULE_ALWAYS_LOBES GLINT_ALWAYS_LOBES
+#define GLINT_MODULE_ALWAYS_INPUTS GLINT_ALWAYS_INPUTS
+#define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)
+#define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS)
 #include "effects/reflection.glsl"
 #include "hit/camera.glsl"
 #include "hit/images.glsl"
@@ -24,15 +28,13 @@ Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixe
     return fetchHit(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features);
 }
 
-vec3 directLight(Hit hit, Surface surface, vec3 origin) {
+vec3 directLight(Hit hit, Surface surface, Features features) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
         LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
-        if (dot(hit.geometricNormal, light.direction) <= 0.0) {
-            continue;
-        }
-        vec3 contribution = evaluateBsdf(surface, hit.view, light.direction) * light.irradiance;
-        if (luminance(contribution) > 0.0 && isVisible(origin, light.direction, light.distance)) {
+        vec3 contribution = unshadowedLight(hit, surface, features, light);
+        if (luminance(contribution) > 0.0 &&
+            isVisible(rayOrigin(hit, light.direction), light.direction, light.distance)) {
             sum += contribution;
         }
     }
@@ -54,21 +56,20 @@ void main() {
 
     if (surfaceId.x != kNoSurface) {
         GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
-        Features features = GLINT_SCENE_FEATURES(geometry);
+        Features features = GLINT_PRIMARY_FEATURES(geometry);
         Hit hit = primaryHit(geometry, surfaceId.y, ray, pixel.x + pixel.y * GLINT_FRAME.width, features);
-        vec3 origin = offsetRayOrigin(hit.position, hit.geometricNormal);
+        vec3 origin = rayOrigin(hit, hit.geometricNormal);
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         if (hasLobe(features, GLINT_UNLIT)) {
-            radiance = baseColor(hit, GLINT_FRAME.materials.data[hit.material], features).rgb;
+            radiance = baseColor(hit, features).rgb;
             normalRoughness = vec4(hit.normal, kUnlitSurface);
         } else {
             Surface surface = evaluateSurface(hit, features);
-            float traced = tracedShare(surface.roughness);
-            radiance = surface.emission + ambientDiffuse(surface) +
-                       (1.0 - traced) * ambientSpecular(surface, hit.view) + directLight(hit, surface, origin);
-            normalRoughness = vec4(surface.normal, surface.roughness);
-            reflectance = traced * ggxDirectionalAlbedo(surface.f0, surface.roughness,
-                                                        clampedNDotV(surface, hit.view));
+            TracedLobe lobe = tracedLobe(surface, features);
+            radiance = surface.emission + directLight(hit, surface, features) +
+                       ambientLight(surface, features, hit.view, 1.0 - lobe.base, 1.0 - lobe.coat);
+            normalRoughness = vec4(lobe.normal, lobe.roughness);
+            reflectance = lobe.weight;
         }
     }
     imageStore(radianceImage, place, vec4(radiance, 1.0));

@@ -18,27 +18,39 @@ Double3 widen(const Float3& a) {
     return {a[0], a[1], a[2]};
 }
 
-// How far from the centre of the image the farthest corner of the box is: 1 at the edge. Infinite behind the
-// camera.
-double reach(const CameraView& camera, const Bounds& box) {
+struct Extents {
+    double left = INFINITY;
+    double right = -INFINITY;
+    double bottom = INFINITY;
+    double top = -INFINITY;
+
+    double reach() const {
+        return std::max({-left, right, -bottom, top});
+    }
+};
+
+// The box's corners in the image, whose edges are at -1 and 1. Infinite where one is behind the camera.
+Extents project(const CameraView& camera, const Bounds& box) {
     const Double3 forward = widen(camera.forward);
     const Double3 up = widen(camera.up);
     const Double3 right{forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
                         forward[0] * up[1] - forward[1] * up[0]};
-    double farthest = 0.0;
+    Extents extents;
     for (unsigned number = 0; number < 8; ++number) {
         Double3 offset{};
         for (std::size_t i = 0; i < 3; ++i) {
             offset[i] = (((number >> i) & 1U) != 0 ? box.max[i] : box.min[i]) - camera.position[i];
         }
         const double depth = dot(offset, forward);
-        if (depth <= camera.near * 0.999) {
-            return INFINITY;
+        if (depth <= camera.near) {
+            return {-INFINITY, INFINITY, -INFINITY, INFINITY};
         }
-        farthest = std::max({farthest, std::abs(dot(offset, right)) / depth / camera.halfWidth,
-                             std::abs(dot(offset, up)) / depth / camera.halfHeight});
+        const double x = dot(offset, right) / depth / camera.halfWidth;
+        const double y = dot(offset, up) / depth / camera.halfHeight;
+        extents = {std::min(extents.left, x), std::max(extents.right, x), std::min(extents.bottom, y),
+                   std::max(extents.top, y)};
     }
-    return farthest;
+    return extents;
 }
 
 void expectFrame(const CameraView& camera) {
@@ -50,31 +62,47 @@ void expectFrame(const CameraView& camera) {
     EXPECT_GT(camera.near, 0.0F);
 }
 
-TEST(FramingCamera, ShowsTheWholeBoxAndNotMuchMore) {
-    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
-                            {{100, 200, 300}, {101, 200.1, 330}},
-                            {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}},
-                            {{-5000, 0, -5000}, {5000, 10, 5000}},
-                            {{0, 0, 0}, {0, 4, 0}}};
+TEST(FramingCamera, FillsTheImageWithTheBox) {
+    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},        {{100, 200, 300}, {101, 200.1, 330}},
+                            {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}}, {{-5000, 0, -5000}, {5000, 10, 5000}},
+                            {{0, 0, 0}, {3, 4, 0}},           {{0, 0, 0}, {0, 4, 0}}};
     for (const Bounds& box : boxes) {
         for (const double aspect : {16.0 / 9.0, 1.0, 0.25}) {
             const CameraView camera = framingCamera(box, aspect);
             expectFrame(camera);
             EXPECT_FALSE(camera.orthographic);
             EXPECT_NEAR(camera.halfWidth / camera.halfHeight, aspect, 1e-5);
-            EXPECT_LE(reach(camera, box), 1.0001);
-            EXPECT_GE(reach(camera, box), 0.7);
+            // The margin, from both edges of one direction, and no less from those of the other.
+            constexpr double kInside = 1.0 / 1.05;
+            const Extents seen = project(camera, box);
+            EXPECT_NEAR(seen.reach(), kInside, 2e-3);
+            const bool wide = std::min(-seen.left, seen.right) > kInside - 2e-3;
+            const bool high = std::min(-seen.bottom, seen.top) > kInside - 2e-3;
+            EXPECT_TRUE(wide || high);
         }
     }
+}
+
+TEST(FramingCamera, LooksFromTheFrontAndAtTheFaceOfWhatIsFlat) {
+    const auto towards = [](const Double3& extent) {
+        return widen(framingCamera({{0, 0, 0}, extent}, 1.5).forward);
+    };
+    EXPECT_LT(towards({1, 1, 1})[2], -0.8);
+    EXPECT_LT(towards({1, 1, 1})[1], -0.1);
+    // A tall post is not flat.
+    EXPECT_LT(towards({0.1, 2, 0.1})[2], -0.8);
+    EXPECT_LT(towards({3, 2, 0.1})[2], -0.98);
+    EXPECT_LT(towards({0.1, 2, 3})[0], -0.98);
+    EXPECT_LT(towards({3, 0.1, 2})[1], -0.8);
 }
 
 TEST(FramingCamera, EmptySceneAndSinglePointHaveOne) {
     const CameraView empty = framingCamera(worldBounds({}), 1.5);
     expectFrame(empty);
-    EXPECT_LE(reach(empty, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}), 1.0001);
+    EXPECT_LE(project(empty, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}).reach(), 1.0);
     const CameraView point = framingCamera({{7, 7, 7}, {7, 7, 7}}, 1.5);
     expectFrame(point);
-    EXPECT_LE(reach(point, {{7, 7, 7}, {7, 7, 7}}), 1.0);
+    EXPECT_LE(project(point, {{7, 7, 7}, {7, 7, 7}}).reach(), 1.0);
 }
 
 TEST(WorldBounds, CoverEveryInstance) {

@@ -54,5 +54,56 @@ TEST_F(Explain, MergeAllMakesOneCase) {
     EXPECT_EQ(materials[0].at("keys")[0].at("case"), materials[1].at("keys")[0].at("case"));
 }
 
+TEST_F(Explain, VariantsAreListedAndChosen) {
+    writeTinyScene(path(""), {.variants = true});
+    const nlohmann::json usual = run({"explain", scene_, "--json"}).json();
+    EXPECT_EQ(usual.at("variants"), nlohmann::json({"Day", "Night"}));
+    EXPECT_TRUE(usual.at("variant").is_null());
+    EXPECT_FALSE(usual.at("materials")[0].at("keys").empty());
+    EXPECT_TRUE(usual.at("materials")[2].at("keys").empty());
+    const nlohmann::json day = run({"explain", scene_, "--variant", "Day", "--json"}).json();
+    EXPECT_EQ(day.at("variant"), "Day");
+    EXPECT_TRUE(day.at("materials")[0].at("keys").empty());
+    EXPECT_FALSE(day.at("materials")[2].at("keys").empty());
+    const Outcome text = run({"explain", scene_, "--variant", "Day"});
+    EXPECT_NE(text.out.find("Day, Night"), std::string::npos) << text.out;
+}
+
+TEST_F(Explain, AnUnknownVariantFails) {
+    for (const bool variants : {false, true}) {
+        writeTinyScene(path(""), {.variants = variants});
+        for (const std::vector<std::string>& line : {std::vector<std::string>{"explain", scene_},
+                                                     {"compile", scene_, "-o", "package"},
+                                                     {"render", scene_, "-o", "picture.png"}}) {
+            std::vector<std::string> arguments = line;
+            arguments.insert(arguments.end(), {"--variant", "Nihgt"});
+            const Outcome outcome = run(arguments);
+            EXPECT_EQ(outcome.exit, 1) << line[0];
+            EXPECT_NE(outcome.err.find("[variant-unknown]"), std::string::npos) << outcome.err;
+            EXPECT_EQ(outcome.err.find("did you mean Night?") != std::string::npos, variants) << outcome.err;
+        }
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("package")));
+    EXPECT_FALSE(std::filesystem::exists(path("picture.png")));
+}
+
+TEST_F(Explain, HitLobesTellHitsFromPrimarySurfaces) {
+    writeTinyScene(path(""), {.variants = true});
+    const auto floorKey = [&](const char* lobes) {
+        const nlohmann::json json = run({"explain", scene_, "--hit-lobes", lobes, "--json"}).json();
+        return json.at("materials")[0].at("keys")[0];
+    };
+    const nlohmann::json coated{"clearcoat", "normals"};
+    for (const char* lobes : {"all", "clearcoat", "base,clearcoat"}) {
+        EXPECT_EQ(floorKey(lobes).at("features"), coated) << lobes;
+        EXPECT_EQ(floorKey(lobes).at("onPrimarySurfaces"), nlohmann::json::array({coated})) << lobes;
+    }
+    EXPECT_EQ(floorKey("base").at("features"), nlohmann::json({"normals"}));
+    EXPECT_EQ(floorKey("base").at("onPrimarySurfaces"), nlohmann::json::array({coated}));
+    const Outcome text = run({"explain", scene_, "--hit-lobes", "base", "--material", "Floor"});
+    EXPECT_NE(text.out.find("primary only  clearcoat"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("clearcoat: hits do not keep it (--hit-lobes)"), std::string::npos) << text.out;
+}
+
 }  // namespace
 }  // namespace glint::testing

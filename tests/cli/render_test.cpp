@@ -1,6 +1,7 @@
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,23 @@ TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     EXPECT_EQ(counters.at("rays"), hits);
     EXPECT_GT(counters.at("skippedSky").get<int>(), 0);
     EXPECT_GT(counters.at("skippedUnlit").get<int>(), 0);
+    EXPECT_EQ(counters.at("nonFinite"), 0);
+}
+
+// A light so bright that its inverse square law overflows.
+TEST_F(RenderCommand, SamplesThatAreNoNumberAreWarnedOf) {
+    std::ifstream file(scene_);
+    nlohmann::json gltf = nlohmann::json::parse(file);
+    gltf["extensionsUsed"].push_back("KHR_lights_punctual");
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 3e38}}};
+    gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size());
+    gltf["nodes"].push_back(
+        {{"translation", {0.0, 0.1, 0.0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    std::ofstream(scene_) << gltf;
+    const Outcome outcome = render("a.png", {"--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_GT(outcome.json().at("counters").at("nonFinite").get<int>(), 0);
+    EXPECT_NE(outcome.err.find("were no number and count as black"), std::string::npos) << outcome.err;
 }
 
 TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {

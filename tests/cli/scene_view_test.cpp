@@ -71,11 +71,14 @@ TEST(SceneView, ImagesKeepTheirNumbers) {
     scene.images.resize(2);
     scene.images[1].width = 1;
     scene.images[1].height = 1;
-    scene.images[1].rgba8 = {1, 2, 3, 4};
+    scene.images[1].pixels = {1, 2, 3, 4};
     const SceneViewData data = makeSceneView(scene);
     ASSERT_EQ(data.images.size(), 2U);
-    EXPECT_TRUE(data.images[0].rgba8.empty());
-    EXPECT_EQ(data.images[1].rgba8[3], 4);
+    EXPECT_TRUE(data.images[0].pixels.empty());
+    EXPECT_EQ(data.images[1].pixels[3], 4);
+    EXPECT_EQ(data.images[1].format, ImageView::Format::Rgba8);
+    scene.images[1].format = PixelFormat::Rgba16;
+    EXPECT_EQ(makeSceneView(scene).images[1].format, ImageView::Format::Rgba16);
 }
 
 TEST(SceneView, LightsCarryTheirIntensity) {

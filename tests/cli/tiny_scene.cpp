@@ -104,6 +104,13 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
     if (options.unknownExtension) {
         gltf["extensionsUsed"].push_back("EXT_not_known_to_anyone");
     }
+    if (options.variants) {
+        gltf["extensionsUsed"].push_back("KHR_materials_variants");
+        gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "Day"}}, {{"name", "Night"}}};
+        gltf["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+            {{"material", 2}, {"variants", {0}}}};
+        gltf["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatFactor"] = 1.0;
+    }
     std::filesystem::path path = folder / "scene.gltf";
     writeText(path, gltf.dump());
     return path;

@@ -8,6 +8,7 @@ namespace glint::testing {
 struct TinyScene {
     bool unknownExtension = false;  // in extensionsUsed: a warning
     bool camera = true;
+    bool variants = false;  // "Day" gives the floor "Spare"; "Floor" gets a clearcoat
 };
 
 // A smooth metal floor ("Floor"), an unlit wall ("Wall") and a material that nothing uses ("Spare").

@@ -29,16 +29,17 @@ void expectNoValidationMessages() {
     }
 }
 
-LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan) {
-    const Status loaded = load(scene, plan);
+LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan)
+    : LoadedScene(scene, CompileSettings{.plan = plan}) {}
+
+LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings) {
+    const Status loaded = load(scene, settings);
     if (!loaded) {
         ADD_FAILURE() << toString(loaded.error());
     }
 }
 
-Status LoadedScene::load(const Scene& scene, const PlanOptions& plan) {
-    CompileSettings settings;
-    settings.plan = plan;
+Status LoadedScene::load(const Scene& scene, const CompileSettings& settings) {
     Result<CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {
         return compiled.error();

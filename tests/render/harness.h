@@ -33,6 +33,7 @@ class LoadedScene {
 public:
     // Compiles into a temporary folder of its own. On failure ok() is false and the test has failed.
     LoadedScene(const Scene& scene, const PlanOptions& plan);
+    LoadedScene(const Scene& scene, const CompileSettings& settings);
     ~LoadedScene();
 
     bool ok() const {
@@ -41,12 +42,16 @@ public:
     const CompiledPackage& compiled() const {
         return compiled_;
     }
+    // Only if ok().
+    GpuScene& gpuScene() const {
+        return *gpuScene_;
+    }
     // An image of no size where rendering failed; the test has failed then. `counters` may be null.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
 
 private:
-    Status load(const Scene& scene, const PlanOptions& plan);
+    Status load(const Scene& scene, const CompileSettings& settings);
 
     CompiledPackage compiled_;
     std::unique_ptr<Package> package_;

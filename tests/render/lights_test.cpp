@@ -12,7 +12,13 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-class Lights : public PixelTest {};
+// The formulas below are of light that microfacets reflect once.
+class Lights : public PixelTest {
+protected:
+    void SetUp() override {
+        energyCompensation_ = false;
+    }
+};
 
 INSTANTIATE_TEST_SUITE_P(Strategies, Lights,
                          ::testing::Values(package::kStrategyUber, package::kStrategyVisibility),
@@ -88,6 +94,55 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
     EXPECT_NEAR(litWall(spot, toImage), wallRadiance(2.0F * cone * cone), 1e-4F) << "between the cones";
     spot.direction = {0.0F, std::sin(0.7F), -std::cos(0.7F)};
     EXPECT_NEAR(litWall(spot, toImage), 0.0F, 1e-6F) << "outside";
+}
+
+// What a light can be at worst: finite, and dark where it has no direction or does not reach.
+TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
+    const auto toImage = [&](const Scene& scene, const RenderSetup& setup) {
+        FrameCounters counters;
+        LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+        EXPECT_EQ(counters.nonFinite, 0U);
+        for (const Pixel& pixel : image.pixels) {
+            EXPECT_TRUE(std::isfinite(pixel[0] + pixel[1] + pixel[2]));
+        }
+        return image;
+    };
+    Light point;
+    point.type = LightType::Point;
+    point.intensity = 8.0F;
+    point.position = {0.0F, 0.0F, -1.0F};
+    EXPECT_EQ(litWall(point, toImage), 0.0F) << "at the shaded point, on no side of it";
+    point.position = {0.0F, 0.0F, -0.9995F};
+    EXPECT_NEAR(litWall(point, toImage) / wallRadiance(8e6F), 1.0F, 1e-3F) << "nearer than a millimetre";
+    point.position = {0.0F, 0.0F, 1.0F};
+    for (const float range : {1e-38F, 1e-6F}) {
+        point.range = range;
+        EXPECT_EQ(litWall(point, toImage), 0.0F) << "range " << range;
+    }
+    point.range = 1e30F;
+    EXPECT_NEAR(litWall(point, toImage), wallRadiance(2.0F), 1e-5F) << "endless range";
+    point.range = 0.0F;
+    point.position = {0.0F, 0.0F, 1e20F};
+    EXPECT_NEAR(litWall(point, toImage), 0.0F, 1e-30F) << "farther than a square can tell";
+
+    Light spot = point;
+    spot.type = LightType::Spot;
+    spot.position = {0.0F, 0.0F, 1.0F};
+    spot.direction = {0.0F, 0.0F, -1.0F};
+    spot.innerConeAngle = spot.outerConeAngle = 0.3F;
+    EXPECT_NEAR(litWall(spot, toImage), wallRadiance(2.0F), 1e-5F) << "inside equal cones";
+    spot.direction = {0.0F, std::sin(0.31F), -std::cos(0.31F)};
+    EXPECT_EQ(litWall(spot, toImage), 0.0F) << "outside equal cones";
+    spot.direction = {0.0F, 0.0F, 0.0F};
+    EXPECT_EQ(litWall(spot, toImage), 0.0F) << "spot without a direction";
+    spot.innerConeAngle = 0.0F;
+    spot.outerConeAngle = std::numbers::pi_v<float> / 2.0F;
+    EXPECT_NEAR(litWall(spot, toImage), 0.0F, 1e-6F) << "wide spot without a direction";
+
+    Light sun;
+    sun.intensity = 3.0F;
+    sun.direction = {0.0F, 0.0F, 0.0F};
+    EXPECT_EQ(litWall(sun, toImage), 0.0F) << "sun without a direction";
 }
 
 // A hit takes one light by chance; over many samples it shows the sum of all, which a primary surface shows

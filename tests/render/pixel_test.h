@@ -40,12 +40,15 @@ class PixelTest : public ::testing::TestWithParam<package::Strategy> {
 protected:
     LinearImage render(const Scene& scene, const RenderSetup& setup, AlphaPolicy alpha = AlphaPolicy::Opaque,
                        FrameCounters* counters = nullptr) {
-        PlanOptions plan;
-        plan.keys.alpha = alpha;
-        plan.merge = MergePolicy::None;
-        const LoadedScene loaded(scene, plan);
+        CompileSettings settings;
+        settings.plan.keys.alpha = alpha;
+        settings.plan.merge = MergePolicy::None;
+        settings.energyCompensation = energyCompensation_;
+        const LoadedScene loaded(scene, settings);
         return loaded.ok() ? loaded.render(GetParam(), setup, counters) : LinearImage{};
     }
+
+    bool energyCompensation_ = true;
 };
 
 inline const char* strategyName(const ::testing::TestParamInfo<package::Strategy>& strategy) {

@@ -91,7 +91,7 @@ int addTexture(Scene& scene, int width, int height, std::vector<std::uint8_t> rg
     image.name = "made by hand";
     image.width = width;
     image.height = height;
-    image.rgba8 = std::move(rgba8);
+    image.pixels = std::move(rgba8);
     scene.images.push_back(std::move(image));
     scene.textures.push_back(
         {static_cast<int>(scene.images.size()) - 1, static_cast<int>(scene.samplers.size()) - 1});

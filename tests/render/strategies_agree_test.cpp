@@ -8,7 +8,6 @@
 #include <cctype>
 #include <filesystem>
 #include <initializer_list>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,14 +17,6 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 namespace fs = std::filesystem;
-
-// Scenes that require what the importer can't read, and the extension that its error must name.
-const std::map<std::string, std::string> kUnsupported{
-    {"Avocado", "KHR_draco_mesh_compression"},
-    {"IridescenceSuzanne", "KHR_materials_iridescence"},
-    {"box-textured-separate", "EXT_texture_webp"},
-    {"pirate", "EXT_meshopt_compression"},
-};
 
 const char* name(package::Strategy strategy) {
     return strategy == package::kStrategyUber ? "uber" : "visibility";
@@ -43,13 +34,6 @@ protected:
         ImportOptions options;
         options.decodeImages = true;
         Result<Scene> scene = importScene(path, options);
-        const auto unsupported = kUnsupported.find(path.stem().string());
-        if (unsupported != kUnsupported.end()) {
-            EXPECT_TRUE(!scene && scene.error().message.find(unsupported->second) != std::string::npos)
-                << "expected an error that names " << unsupported->second;
-            skip("requires " + unsupported->second);
-            return std::nullopt;
-        }
         if (!scene) {
             ADD_FAILURE() << toString(scene.error());
             return std::nullopt;

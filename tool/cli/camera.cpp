@@ -1,6 +1,6 @@
 #include "cli/camera.h"
 
-#include "cli/suggest.h"
+#include "base/suggest.h"
 
 #include <algorithm>
 #include <charconv>
@@ -93,6 +93,55 @@ bool isFinite(const Bounds& bounds) {
            std::all_of(bounds.max.begin(), bounds.max.end(), [](double v) { return std::isfinite(v); });
 }
 
+// Some extent, whatever the scene holds.
+Bounds withExtent(const Bounds& bounds) {
+    const Bounds box = bounds.empty() ? Bounds{} : bounds;
+    if (box.min != box.max) {
+        return box;
+    }
+    return {sum(box.min, {-0.5, -0.5, -0.5}), sum(box.min, {0.5, 0.5, 0.5})};
+}
+
+// Where the viewer of a box of this extent stands: in front, on +Z (glTF 2.0, section 3.4), a little above
+// and to the right. What is flat, such as a board or a floor, shows its face: thinner than kFlat of its next
+// larger extent.
+Double3 directionToViewer(const Double3& extent) {
+    constexpr double kFlat = 0.25;
+    const auto thin = [&](std::size_t axis) {
+        return extent[axis] < kFlat * std::min(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
+    };
+    if (thin(0)) {
+        return *normalized({1.0, 0.1, 0.1});
+    }
+    if (thin(1)) {
+        return *normalized({0.1, 1.0, 0.5});
+    }
+    if (thin(2)) {
+        return *normalized({0.06, 0.1, 1.0});
+    }
+    return *normalized({0.4, 0.35, 1.0});
+}
+
+// Where a camera that looks against `backward` sees the box between two planes through itself that open by
+// `slope` along `axis`, both of which touch the box.
+struct Fit {
+    double offset;    // along axis from the box's centre
+    double distance;  // along backward
+};
+
+Fit fit(const Bounds& box, const Double3& axis, const Double3& backward, double slope) {
+    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
+    double low = -kInfinity;
+    double high = -kInfinity;
+    for (unsigned number = 0; number < 8; ++number) {
+        const Double3 point = sum(corner(box, number), scaled(centre, -1.0));
+        // Inside is |point·axis - offset| <= slope (distance - point·backward).
+        low = std::max(low, slope * dot(point, backward) - dot(point, axis));
+        high = std::max(high, slope * dot(point, backward) + dot(point, axis));
+    }
+    return {0.5 * (high - low), 0.5 * (high + low) / slope};
+}
+
 std::string cameraName(const Scene& scene, std::size_t index) {
     const std::string& name = scene.cameras[index].name;
     return name.empty() ? std::to_string(index) : name;
@@ -148,40 +197,34 @@ Bounds worldBounds(const SceneViewData& scene) {
 }
 
 CameraView framingCamera(const Bounds& bounds, double aspect) {
-    constexpr double kHalfHeight = 0.41421356237309503;  // tan(45° / 2)
+    constexpr double kHalfHeight = 0.26794919243112270;  // tan(30° / 2)
     constexpr double kMargin = 1.05;
-    const Double3 backward = *normalized({0.8, 0.55, 1.0});
+    const Bounds box = withExtent(bounds);
+    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
+    const Double3 extent = sum(box.max, scaled(box.min, -1.0));
+    const Double3 backward = directionToViewer(extent);
     const Double3 right = *normalized(cross({0.0, 1.0, 0.0}, backward));
     const Double3 up = cross(backward, right);
 
-    // A box with some extent, whatever the scene holds.
-    Bounds box = bounds.empty() ? Bounds{} : bounds;
-    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
-    const Double3 extent = sum(box.max, scaled(box.min, -1.0));
-    if (*std::max_element(extent.begin(), extent.end()) <= 0.0) {
-        box = {sum(centre, {-0.5, -0.5, -0.5}), sum(centre, {0.5, 0.5, 0.5})};
-    }
-
-    // The nearest distance from which every corner is inside the pyramid of view.
-    double distance = 0.0;
-    double radius = 0.0;
+    const Fit across = fit(box, right, backward, kHalfHeight * aspect / kMargin);
+    const Fit upright = fit(box, up, backward, kHalfHeight / kMargin);
+    double nearest = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
-        const Double3 offset = sum(corner(box, number), scaled(centre, -1.0));
-        const double toward = dot(offset, backward);
-        const double horizontal = std::abs(dot(offset, right)) / (kHalfHeight * aspect);
-        const double vertical = std::abs(dot(offset, up)) / kHalfHeight;
-        distance = std::max(distance, toward + std::max(horizontal, vertical) * kMargin);
-        radius = std::max(radius, std::sqrt(dot(offset, offset)));
+        nearest = std::max(nearest, dot(sum(corner(box, number), scaled(centre, -1.0)), backward));
     }
+    // A box may be no more than a line towards the viewer: then it is looked at from a hundredth of its size.
+    const double clearance = 0.01 * std::hypot(extent[0], extent[1], extent[2]);
+    const double distance = std::max({across.distance, upright.distance, nearest + clearance});
 
     CameraView view;
-    view.position = toFloat(sum(centre, scaled(backward, distance)));
+    view.position = toFloat(sum(sum(centre, scaled(backward, distance)),
+                                sum(scaled(right, across.offset), scaled(up, upright.offset))));
     view.forward = toFloat(scaled(backward, -1.0));
     view.up = toFloat(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
     view.halfWidth = static_cast<float>(kHalfHeight * aspect);
-    // Nothing is nearer than the box; a thousandth of the distance keeps the plane off the camera itself.
-    view.near = static_cast<float>(std::max(distance - radius, distance * 1e-3));
+    // Nothing is nearer than the box; the plane stays off its face, which may be seen head-on.
+    view.near = static_cast<float>(0.99 * (distance - nearest));
     return view;
 }
 

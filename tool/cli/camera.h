@@ -23,9 +23,9 @@ struct Bounds {
 // finite are left out.
 Bounds worldBounds(const SceneViewData& scene);
 
-// Frames `bounds` from a three-quarter view (from +X, +Y, +Z) with a vertical field of view of 45° and a
-// margin of 5 %. An empty or flat box is taken as one of 1 m around its centre or the origin. aspect is width
-// / height.
+// Fills the image with `bounds` but for a margin of 5 %, from the front (+Z), a little above and to the
+// right; what is flat it shows nearly head-on. The vertical field of view is 30°. An empty box, or a point,
+// is taken as one of 1 m around it. aspect is width / height.
 CameraView framingCamera(const Bounds& bounds, double aspect);
 
 // A camera of the scene: its vertical field of view or height stays, its width follows `aspect`.

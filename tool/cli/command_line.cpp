@@ -1,7 +1,7 @@
 #include "cli/command_line.h"
 
+#include "base/suggest.h"
 #include "cli/commands.h"
-#include "cli/suggest.h"
 
 #include <CLI/CLI.hpp>
 

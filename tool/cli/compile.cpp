@@ -27,7 +27,9 @@ struct CompileArguments {
     std::string scene;
     std::string output;
     std::string strategy = "all";
+    std::string variant;
     PlanArguments plan;
+    AccuracyArguments accuracy;
     std::int64_t maxShaders = 0;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
@@ -63,6 +65,7 @@ CompileSettings settingsOf(const CompileArguments& arguments) {
                           : arguments.strategy == "visibility" ? package::kStrategyVisibility
                                                                : settings.strategies;
     settings.plan = arguments.plan.options();
+    arguments.accuracy.apply(settings);
     settings.maxShaders = static_cast<int>(arguments.maxShaders);
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
@@ -120,6 +123,7 @@ Json toJson(const Outcome& outcome) {
             {"spirvBytes", orNull([&] { return package->spirvBytes; })},
             {"packageBytes", orNull([&] { return outcome.packageBytes(); })},
             {"milliseconds", outcome.milliseconds},
+            {"variant", variantToJson(outcome.scene)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scene, outcome.plan)},
             {"warnings", glint::toJson(outcome.scene.warnings)},
@@ -175,7 +179,9 @@ Status writeWhole(const CompiledPackage& package, const std::string& folder) {
 int compile(const Console& console, const CompileArguments& arguments) {
     const Clock::time_point start = Clock::now();
     console.progress("reading " + arguments.scene);
-    const Result<Scene> scene = importScene(arguments.scene);
+    ImportOptions import;
+    import.variant = arguments.variant;
+    const Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         return fail(console, scene.error());
     }
@@ -207,6 +213,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
               "are ordered by shader first; all: both")
         .group("Shaders");
     addPlanOptions(command, arguments.plan);
+    addAccuracyOptions(command, arguments.accuracy);
     addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
                "fail if the scene needs more shaders;\n0: no limit")
         .group("Shaders");
@@ -234,6 +241,7 @@ void addCompile(CLI::App& app, Action& chosen) {
     CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
                                    "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addVariant(command, arguments->variant);
     addOutputOptions(command, *arguments);
     addShaderOptions(command, *arguments);
     addFlag(command, "--werror", arguments->warningsAsErrors,

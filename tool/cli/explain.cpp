@@ -1,8 +1,8 @@
 // glint explain: which key and which case each material gets, and why.
+#include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "cli/suggest.h"
 #include "cli/table.h"
 #include "gltf/import.h"
 
@@ -21,6 +21,7 @@ namespace {
 struct ExplainArguments {
     std::string scene;
     std::string material;
+    std::string variant;
     PlanArguments plan;
     bool json = false;
 };
@@ -75,12 +76,34 @@ const Case& caseOf(const Planned& planned, const Key& key) {
     return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
 }
 
+// The masks of primary surfaces of one material whose hits have this key; only its own where hits keep all
+// lobes.
+std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int material) {
+    std::set<FeatureMask> masks;
+    for (const int index : key.primitives) {
+        const auto primitive = static_cast<std::size_t>(index);
+        if (planned.inputs[primitive].material == material) {
+            masks.insert(planned.plan.primaryMaskOfPrimitive[primitive]);
+        }
+    }
+    return masks;
+}
+
+Json primaryToJson(const Planned& planned, const Key& key, int material) {
+    Json list = Json::array();
+    for (const FeatureMask mask : primaryMasksOf(planned, key, material)) {
+        list.push_back(featuresToJson(mask));
+    }
+    return list;
+}
+
 Json toJson(const Planned& planned, int material) {
     Json keys = Json::array();
     for (const Key* key : keysOf(planned, material)) {
         const Case& shader = caseOf(planned, *key);
         keys.push_back(Json{{"mask", fmt::format("0x{:016x}", key->mask)},
                             {"features", featuresToJson(key->mask)},
+                            {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
                             {"case",
                              {{"id", shader.shaderId},
                               {"name", shader.name},
@@ -112,6 +135,11 @@ std::string toText(const Planned& planned, int material) {
             primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
         rows.push_back({"    features", featureList(key->mask)});
+        for (const FeatureMask mask : primaryMasksOf(planned, *key, material)) {
+            if (mask != key->mask) {
+                rows.push_back({"    primary only", featureList(mask & ~key->mask)});
+            }
+        }
         rows.push_back({"    case", fmt::format("{} {}", shader.shaderId, shader.name)});
         rows.push_back({"    branches on", featureList(shader.sometimes)});
         rows.push_back({"    primitives", primitives.front() + more});
@@ -120,6 +148,15 @@ std::string toText(const Planned& planned, int material) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
     return text + formatFields(rows);
+}
+
+// Empty where the scene has no variants.
+std::string variantsText(const Scene& scene) {
+    if (scene.variants.empty()) {
+        return {};
+    }
+    return formatFields({{"variants", join(scene.variants)},
+                         {"materials of", scene.variant.empty() ? "no variant (--variant)" : scene.variant}});
 }
 
 // Every material of that number, else of that name; all if none is asked for.
@@ -149,7 +186,9 @@ Result<std::vector<int>> chooseMaterials(const Scene& scene, const std::string& 
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<Scene> scene = importScene(arguments.scene);
+    ImportOptions import;
+    import.variant = arguments.variant;
+    const Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;
@@ -171,9 +210,13 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(glint::toText(Json{{"scene", arguments.scene},
                                          {"merge", arguments.plan.merge},
                                          {"alpha", arguments.plan.alpha},
+                                         {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
+                                         {"variant", variantToJson(*scene)},
+                                         {"variants", scene->variants},
                                          {"materials", list}}));
         return kExitDone;
     }
+    console.print(variantsText(*scene));
     for (const int material : *materials) {
         console.print(toText(planned, material));
     }
@@ -193,6 +236,7 @@ void addExplain(CLI::App& app, Action& chosen) {
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
     addText(command, "--material", arguments->material, "NAME|INDEX",
             "only this one; a number counts from 0 (default: all)");
+    addVariant(command, arguments->variant);
     addPlanOptions(command, arguments->plan);
     addFlag(command, "--json", arguments->json, "print as JSON").group("Report");
     command.callback([arguments, &chosen] {

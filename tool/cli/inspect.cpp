@@ -133,6 +133,11 @@ Json toJson(const Contents& contents, const std::string& folder) {
             {"strategies", strategies(package)},
             {"merge", contents.manifest.merge},
             {"alpha", package.alphaTested() ? "tested" : "opaque"},
+            {"variant", contents.manifest.variant.empty() ? Json(nullptr) : Json(contents.manifest.variant)},
+            {"settings",
+             {{"hitLobes", contents.manifest.hitLobes},
+              {"energyCompensation", contents.manifest.energyCompensation},
+              {"textureLod", contents.manifest.textureLod}}},
             {"counts",
              {{"materials", package.materials().size()},
               {"primitives", package.primitives().size()},
@@ -177,6 +182,10 @@ std::string moduleTable(const Contents& contents) {
     return formatTable(rows);
 }
 
+std::string hitLobesText(const Manifest& manifest) {
+    return manifest.hitLobes.size() == featureNames(kLobeMask).size() ? "all" : join(manifest.hitLobes);
+}
+
 std::string toText(const Contents& contents, const std::string& folder) {
     std::size_t files = 0;
     const std::uint64_t bytes = spirvBytes(contents, files);
@@ -187,6 +196,10 @@ std::string toText(const Contents& contents, const std::string& folder) {
          {"strategies", join(strategies(package))},
          {"merge", contents.manifest.merge},
          {"alpha", package.alphaTested() ? "tested" : "opaque"},
+         {"variant", contents.manifest.variant.empty() ? "-" : contents.manifest.variant},
+         {"hit lobes", hitLobesText(contents.manifest)},
+         {"energy compensation", contents.manifest.energyCompensation ? "on" : "off"},
+         {"texture LOD", contents.manifest.textureLod},
          {"materials", fmt::format("{}", package.materials().size())},
          {"primitives", fmt::format("{}", package.primitives().size())},
          {"textures", fmt::format("{}", package.textures().size())},

@@ -21,6 +21,12 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         Manifest manifest;
         manifest.toolVersion = json.at("toolVersion").get<std::string>();
         manifest.merge = json.at("merge").get<std::string>();
+        const auto& variant = json.at("variant");
+        manifest.variant = variant.is_null() ? "" : variant.get<std::string>();
+        const auto& settings = json.at("settings");
+        manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
+        manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
+        manifest.textureLod = settings.at("textureLod").get<std::string>();
         for (const auto& shader : json.at("shaders")) {
             for (const auto& material : shader.at("materials")) {
                 const auto name = material.at("name").get<std::string>();

@@ -7,12 +7,17 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace glint {
 
 struct Manifest {
     std::string toolVersion;
     std::string merge;
+    std::string variant;  // empty: none
+    std::vector<std::string> hitLobes;
+    bool energyCompensation = true;
+    std::string textureLod;
     std::map<std::uint32_t, std::string>
         materialNames;  // of the materials that have one and that shaders list
 };

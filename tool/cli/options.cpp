@@ -1,6 +1,6 @@
 #include "cli/options.h"
 
-#include "cli/suggest.h"
+#include "base/suggest.h"
 
 #include <fmt/format.h>
 
@@ -39,6 +39,49 @@ CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& ch
         return fmt::format("{} is none of {}{}", quoted(text), fmt::join(choices, ", "),
                            suggestion(text, choices));
     });
+}
+
+constexpr FeatureMask kBaseLobes =
+    bit(Feature::Unlit) | bit(Feature::SpecularGlossiness) | bit(Feature::Ior) | bit(Feature::Specular);
+
+// The lobes that one word of --hit-lobes stands for. Checked before: it is one of hitLobeChoices().
+FeatureMask lobesNamed(std::string_view word) {
+    // Hits can't do without the base models.
+    FeatureMask mask = bit(Feature::Unlit) | bit(Feature::SpecularGlossiness);
+    if (word == "all") {
+        return kLobeMask;
+    }
+    if (word == "base") {
+        return kBaseLobes;
+    }
+    for (const FeatureInfo& info : featureTable()) {
+        if (info.name == word) {
+            mask |= bit(info.feature);
+        }
+    }
+    return mask;
+}
+
+std::vector<std::string> hitLobeChoices() {
+    std::vector<std::string> choices{"all", "base"};
+    for (const std::string_view name : featureNames(kLobeMask)) {
+        choices.emplace_back(name);
+    }
+    return choices;
+}
+
+// Those that are not of the base, in lines that fit the help.
+std::string furtherLobes() {
+    constexpr std::size_t kColumns = 52;
+    std::string text;
+    std::size_t column = 0;
+    for (const std::string_view name : featureNames(kLobeMask & ~kBaseLobes)) {
+        const bool breaks = column + name.size() + 2 > kColumns;
+        text += text.empty() ? "" : breaks ? ",\n" : ", ";
+        column = breaks ? name.size() : column + name.size() + 2;
+        text += name;
+    }
+    return text;
 }
 
 }  // namespace
@@ -126,19 +169,53 @@ PlanOptions PlanArguments::options() const {
                  : merge == "all" ? MergePolicy::All
                                   : MergePolicy::Family;
     plan.keys.alpha = alpha == "tested" ? AlphaPolicy::Tested : AlphaPolicy::Opaque;
+    plan.keys.keptLobes = 0;
+    for (const std::string& name : hitLobes) {
+        plan.keys.keptLobes |= lobesNamed(name);
+    }
     return plan;
 }
 
-PlanFlags addPlanOptions(CLI::App& command, PlanArguments& arguments) {
+std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments) {
     CLI::Option& merge = addChoice(command, "--merge", arguments.merge, {"none", "family", "all"},
                                    "which permutations share a shader:\n"
                                    "none: every permutation its own; family: those with the\n"
                                    "same lobes; all: one shader");
     CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"opaque", "tested"},
                                    "alpha masks of hits; opaque: ignored;\ntested: each candidate is tested");
-    merge.group("Shaders");
-    alpha.group("Shaders");
-    return {&merge, &alpha};
+    CLI::Option& lobes = addChoices(command, "--hit-lobes", arguments.hitLobes, hitLobeChoices(),
+                                    "which lobes of materials hits keep, separated by\n"
+                                    "commas; primary surfaces keep all; base: unlit,\n"
+                                    "specularGlossiness, ior, specular; others:\n" +
+                                        furtherLobes());
+    lobes.type_name("all|base|LIST");
+    for (CLI::Option* option : {&merge, &alpha, &lobes}) {
+        option->group("Shaders");
+    }
+    return {&merge, &alpha, &lobes};
+}
+
+void AccuracyArguments::apply(CompileSettings& settings) const {
+    settings.energyCompensation = energyCompensation == "on";
+    settings.textureLod = textureLod == "mip0" ? TextureLod::Mip0 : TextureLod::Cones;
+}
+
+std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments) {
+    CLI::Option& energy =
+        addChoice(command, "--energy-compensation", arguments.energyCompensation, {"on", "off"},
+                  "give back what rough surfaces lose without light that\n"
+                  "bounces between microfacets more than once");
+    CLI::Option& lod = addChoice(command, "--texture-lod", arguments.textureLod, {"cones", "mip0"},
+                                 "which level of a texture is read; cones: by the\n"
+                                 "footprint of the ray; mip0: the finest");
+    energy.group("Shaders");
+    lod.group("Shaders");
+    return {&energy, &lod};
+}
+
+CLI::Option& addVariant(CLI::App& command, std::string& variant) {
+    return addText(command, "--variant", variant, "NAME",
+                   "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
 }
 
 bool parseReal(const std::string& text, double min, double max, double& value) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/console.h"
+#include "emit/compile.h"
 #include "plan/plan.h"
 
 #include <CLI/CLI.hpp>
@@ -45,13 +46,22 @@ CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, c
 struct PlanArguments {
     std::string merge = "family";
     std::string alpha = "opaque";
+    std::vector<std::string> hitLobes{"all"};
     PlanOptions options() const;
 };
-struct PlanFlags {
-    CLI::Option* merge;
-    CLI::Option* alpha;
+// Returns the options, for commands that must know which are given.
+std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments);
+
+// How exact shaders are: the same options for every command that compiles.
+struct AccuracyArguments {
+    std::string energyCompensation = "on";
+    std::string textureLod = "cones";
+    void apply(CompileSettings& settings) const;
 };
-PlanFlags addPlanOptions(CLI::App& command, PlanArguments& arguments);
+std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments);
+
+// --variant NAME: of KHR_materials_variants.
+CLI::Option& addVariant(CLI::App& command, std::string& variant);
 
 // A number within [min, max], the whole of `text`; NaN is outside of every range.
 bool parseReal(const std::string& text, double min, double max, double& value);

@@ -32,7 +32,9 @@ struct RenderArguments {
     std::string scene;
     std::string output;
     std::string strategy = "visibility";
+    std::string variant;
     PlanArguments plan;
+    AccuracyArguments accuracy;
     std::string package;
     std::string size = "960x540";
     std::int64_t samples = 1;
@@ -86,7 +88,11 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const Scene& sce
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
-    Result<Package> package = compileTemporary(scene, strategyOf(arguments), arguments.plan.options());
+    CompileSettings settings;
+    settings.strategies = strategyOf(arguments);
+    settings.plan = arguments.plan.options();
+    arguments.accuracy.apply(settings);
+    Result<Package> package = compileTemporary(scene, settings);
     report.compileMs = millisecondsSince(start);
     report.merge = arguments.plan.merge;
     return package;
@@ -152,6 +158,16 @@ Status checkValidation(const Console& console, const Context& context) {
                      "this is a defect of Glint or of the driver: please report it");
 }
 
+// A number that is none says more of the scene's own numbers than of the shaders.
+void warnOfNonFinite(const Console& console, const RenderReport& report) {
+    if (report.counters.nonFinite > 0) {
+        console.report(makeWarning(
+            "non-finite", report.scene,
+            fmt::format("{} samples of pixels were no number and count as black", report.counters.nonFinite),
+            "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
+    }
+}
+
 Status writeResults(const RenderArguments& arguments, const LinearImage& image, RenderReport& report) {
     report.exposure = automaticExposure(image);
     if (arguments.exposure != "auto") {
@@ -193,6 +209,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     if (!image) {
         return image.error();
     }
+    warnOfNonFinite(console, report);
     return valid ? writeResults(arguments, *image, report) : valid;
 }
 
@@ -216,6 +233,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     console.progress("reading " + arguments.scene);
     ImportOptions import;
     import.decodeImages = true;
+    import.variant = arguments.variant;
     const Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());
@@ -289,6 +307,7 @@ void addRender(CLI::App& app, Action& chosen) {
         addCommand(app, "render", "Render a scene with its compiled shaders",
                    "glint render scene.gltf -o scene.png --size 1280x720 --spp 16 --strategy uber");
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addVariant(command, arguments->variant);
     addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
                    "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
                    "linear, 32-bit float")
@@ -296,13 +315,17 @@ void addRender(CLI::App& app, Action& chosen) {
     addPictureOptions(command, *arguments);
     addChoice(command, "--strategy", arguments->strategy, {"uber", "visibility"}, "how hits are shaded")
         .group("Shaders");
-    const PlanFlags plan = addPlanOptions(command, arguments->plan);
+    std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);
+    for (CLI::Option* option : addAccuracyOptions(command, arguments->accuracy)) {
+        decided.push_back(option);
+    }
     addText(command, "--package", arguments->package, "DIR",
-            "use this package of the scene instead of compiling it\n(excludes --merge and --alpha)")
+            "use this package of the scene instead of compiling it\n"
+            "(excludes --merge, --alpha, --hit-lobes,\n--energy-compensation and --texture-lod)")
         .group("Shaders");
     addDeviceOptions(command, *arguments);
-    command.callback([arguments, plan, &chosen] {
-        for (const CLI::Option* option : {plan.merge, plan.alpha}) {
+    command.callback([arguments, decided, &chosen] {
+        for (const CLI::Option* option : decided) {
             if (option->count() > 0 && !arguments->package.empty()) {
                 throw CLI::ExcludesError(option->get_name(), "--package");
             }

@@ -2,7 +2,6 @@
 
 #include "cli/held_signals.h"
 #include "cli/temporary_folder.h"
-#include "emit/compile.h"
 #include "gltf/import.h"
 
 #include <fmt/format.h>
@@ -12,8 +11,9 @@ namespace glint {
 namespace {
 
 Diagnostic mismatch(const std::filesystem::path& folder, const std::string& message) {
-    return makeError("package-mismatch", folder.string(), message,
-                     "compile the package again, or leave out --package");
+    return makeError(
+        "package-mismatch", folder.string(), message,
+        "compile the package again, use the --variant that it was compiled with, or leave out --package");
 }
 
 FeatureMask maskOf(const package::PrimitiveEntry& entry) {
@@ -54,10 +54,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
     return okStatus();
 }
 
-Result<Package> compileTemporary(const Scene& scene, package::Strategy strategy, const PlanOptions& plan) {
-    CompileSettings settings;
-    settings.strategies = strategy;
-    settings.plan = plan;
+Result<Package> compileTemporary(const Scene& scene, CompileSettings settings) {
     settings.emitHeader = false;
     const Result<CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {

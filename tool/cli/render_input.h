@@ -1,7 +1,7 @@
 // What glint render works on: a scene with its pixels, and the package that shades it.
 #pragma once
 
-#include "cli/options.h"
+#include "emit/compile.h"
 #include "gltf/scene.h"
 
 #include <glint/package.h>
@@ -17,7 +17,8 @@ namespace glint {
 Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
                     const Scene& scene);
 
-// Compiles `scene` for one strategy into a temporary folder, which is gone on return.
-Result<Package> compileTemporary(const Scene& scene, package::Strategy strategy, const PlanOptions& plan);
+// Compiles `scene` into a temporary folder, which is gone on return; leaves out what the runtime does not
+// read.
+Result<Package> compileTemporary(const Scene& scene, CompileSettings settings);
 
 }  // namespace glint

@@ -59,6 +59,7 @@ Json toJson(const RenderReport& report) {
               {"skippedRough", counters.skippedRough},
               {"skippedUnlit", counters.skippedUnlit},
               {"unknownShader", counters.unknownShader},
+              {"nonFinite", counters.nonFinite},
               {"buckets", counters.bucketCounts}}}};
 }
 
@@ -84,6 +85,9 @@ std::string toText(const RenderReport& report) {
                                         counters.skippedSky, counters.skippedRough, counters.skippedUnlit)});
     if (counters.unknownShader > 0) {
         rows.push_back({"unknown shader", fmt::format("{} hits", counters.unknownShader)});
+    }
+    if (counters.nonFinite > 0) {
+        rows.push_back({"no number", fmt::format("{} samples, taken as black", counters.nonFinite)});
     }
     std::vector<std::vector<std::string>> passes{{"pass of the last sample", "ms"}};
     for (const PassTiming& pass : report.passes) {

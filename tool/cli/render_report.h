@@ -32,7 +32,7 @@ struct RenderReport {
     double pipelineCreationMs = 0.0;
     double renderMs = 0.0;           // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;  // of the last sample
-    FrameCounters counters;          // of the last sample
+    FrameCounters counters;          // of the last sample; nonFinite: of all
 };
 
 Json toJson(const RenderReport& report);

@@ -37,6 +37,10 @@ Json featuresToJson(FeatureMask mask) {
     return list;
 }
 
+Json variantToJson(const Scene& scene) {
+    return scene.variant.empty() ? Json(nullptr) : Json(scene.variant);
+}
+
 Json materialsToJson(const Scene& scene, std::span<const int> materials) {
     Json list = Json::array();
     for (const int material : materials) {

@@ -25,6 +25,8 @@ std::string toText(const Json& json);
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
 Json featuresToJson(FeatureMask mask);
+// The name, or null.
+Json variantToJson(const Scene& scene);
 // [{"index", "name"}]
 Json materialsToJson(const Scene& scene, std::span<const int> materials);
 // [{"feature", "reason", "materials"}]

@@ -95,7 +95,8 @@ SceneViewData makeSceneView(const Scene& scene) {
     }
     for (const Image& image : scene.images) {
         data.images.push_back(
-            {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.rgba8});
+            {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
+             image.format == PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8});
     }
     for (const Light& light : scene.lights) {
         data.lights.push_back(toView(light));

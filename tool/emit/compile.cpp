@@ -59,7 +59,7 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
     }
 
     // Plan to GLSL to SPIR-V.
-    const SourceSet sources = makeSourceSet(scene, package.plan, settings.plan.keys.alpha);
+    const SourceSet sources = makeSourceSet(scene, package.plan, settings);
     Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, package.plan, sources, settings);
     if (!modules) {
         return modules.error();
@@ -89,6 +89,10 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
 }
 
 }  // namespace
+
+std::string_view toString(TextureLod lod) {
+    return lod == TextureLod::Cones ? "cones" : "mip0";
+}
 
 Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {
     try {

@@ -12,19 +12,30 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
 
+// Which level of a texture hits read.
+enum class TextureLod : std::uint8_t {
+    Cones,  // by the width of a ray cone
+    Mip0    // the finest
+};
+
 struct CompileSettings {
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
     PlanOptions plan;
+    bool energyCompensation = true;  // of light that bounces between microfacets more than once
+    TextureLod textureLod = TextureLod::Cones;
     int maxShaders = 0;      // cases; 0: no limit
     int jobs = 0;            // threads; 0: one a core
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // the flattened sources, in glsl/
     bool debugInfo = false;  // keep names in the SPIR-V
 };
+
+std::string_view toString(TextureLod lod);
 
 // One SPIR-V module of the package. Modules with equal bytes share `file`.
 struct CompiledModule {

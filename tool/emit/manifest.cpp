@@ -62,6 +62,12 @@ Json features() {
     return list;
 }
 
+Json settingsOf(const CompileSettings& settings) {
+    return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
+            {"energyCompensation", settings.energyCompensation},
+            {"textureLod", toString(settings.textureLod)}};
+}
+
 Json materialList(const Scene& scene, const std::vector<int>& materials) {
     Json list = Json::array();
     for (const int material : materials) {
@@ -182,6 +188,8 @@ std::string makeManifest(const Scene& scene, const CompiledPackage& package,
     manifest["strategies"] = strategyNames(settings.strategies);
     manifest["merge"] = toString(settings.plan.merge);
     manifest["alpha"] = toString(settings.plan.keys.alpha);
+    manifest["settings"] = settingsOf(settings);
+    manifest["variant"] = scene.variant.empty() ? Json(nullptr) : Json(scene.variant);
     manifest["counts"] = counts(scene, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
     manifest["effects"] = effects();

@@ -13,19 +13,31 @@ namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
 
-std::string sceneDefines(const Scene& scene, const Plan& plan, AlphaPolicy alpha) {
-    const auto low = [](FeatureMask mask) { return mask & kLobeMask; };
-    const auto high = [](FeatureMask mask) { return mask >> 32U; };
+void defineFeatures(std::string& text, std::string_view prefix, FeatureMask always, FeatureMask sometimes) {
+    const auto define = [&](std::string_view when, FeatureMask mask) {
+        text += fmt::format("#define {}_{}_LOBES {:#x}u\n", prefix, when, mask & kLobeMask);
+        text += fmt::format("#define {}_{}_INPUTS {:#x}u\n", prefix, when, mask >> 32U);
+    };
+    define("ALWAYS", always);
+    define("SOMETIMES", sometimes);
+}
+
+std::string sceneDefines(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
     const bool hasMasked = std::ranges::any_of(
         scene.materials, [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
-    std::string text = "// The scene as a whole: features of every key, and of some.\n";
-    text += fmt::format("#define GLINT_ALWAYS_LOBES {:#x}u\n", low(plan.always));
-    text += fmt::format("#define GLINT_ALWAYS_INPUTS {:#x}u\n", high(plan.always));
-    text += fmt::format("#define GLINT_SOMETIMES_LOBES {:#x}u\n", low(plan.sometimes));
-    text += fmt::format("#define GLINT_SOMETIMES_INPUTS {:#x}u\n", high(plan.sometimes));
-    text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", alpha == AlphaPolicy::Tested ? 1 : 0);
+    const auto flag = [](bool value) { return value ? 1 : 0; };
+    std::string text = "// The scene as a whole: features of every primary surface, and of some.\n";
+    defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
+    text += "// The same of hits, which may keep fewer lobes.\n";
+    defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
+    text += "// Settings\n";
+    text +=
+        fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(settings.plan.keys.alpha == AlphaPolicy::Tested));
+    text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
+    text +=
+        fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
-    text += fmt::format("#define GLINT_HAS_MASKED {}\n", hasMasked ? 1 : 0);
+    text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
     return text;
 }
 
@@ -53,13 +65,13 @@ SourceLookup SourceSet::lookup() const {
     return [this](std::string_view name) { return find(name); };
 }
 
-SourceSet makeSourceSet(const Scene& scene, const Plan& plan, AlphaPolicy alpha) {
+SourceSet makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
     SourceSet sources;
     for (const EmbeddedFile& file : embeddedFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
     sources.add("generated/features.glsl", featureDefines());
-    sources.add("generated/scene.glsl", sceneDefines(scene, plan, alpha));
+    sources.add("generated/scene.glsl", sceneDefines(scene, plan, settings));
     return sources;
 }
 

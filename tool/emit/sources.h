@@ -25,7 +25,7 @@ private:
 };
 
 // Embedded files, "generated/features.glsl" and "generated/scene.glsl".
-SourceSet makeSourceSet(const Scene& scene, const Plan& plan, AlphaPolicy alpha);
+SourceSet makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings);
 
 // C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();

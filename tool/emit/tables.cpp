@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <string>
@@ -74,39 +73,6 @@ private:
     Bytes content_;
 };
 
-bool isColor(TextureSlot slot) {
-    return slot == TextureSlot::BaseColor || slot == TextureSlot::Emissive;
-}
-
-// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
-// points down; the extension's GLSL listing turns the other way, its text and test models this one
-// (KhronosGroup/glTF issue 1563).
-void setTransform(const TextureTransform& transform, gpu::TextureRecord& record) {
-    const double sine = std::sin(static_cast<double>(transform.rotation));
-    const double cosine = std::cos(static_cast<double>(transform.rotation));
-    const double scaleU = transform.scale[0];
-    const double scaleV = transform.scale[1];
-    record.rowU = {static_cast<float>(cosine * scaleU), static_cast<float>(sine * scaleV),
-                   transform.offset[0]};
-    record.rowV = {static_cast<float>(-sine * scaleU), static_cast<float>(cosine * scaleV),
-                   transform.offset[1]};
-}
-
-gpu::MaterialRecord makeRecord(const Material& material) {
-    gpu::MaterialRecord record{};
-    const auto& base = material.baseColorFactor;
-    const auto& emissive = material.emissiveFactor;
-    record.baseColorFactor = {base[0], base[1], base[2], base[3]};
-    record.emissiveFactor = {emissive[0], emissive[1], emissive[2]};
-    record.emissiveStrength = material.emissiveStrength;
-    record.metallicFactor = material.metallicFactor;
-    record.roughnessFactor = material.roughnessFactor;
-    record.normalScale = material.normalScale;
-    record.occlusionStrength = material.occlusionStrength;
-    record.alphaCutoff = material.alphaCutoff;
-    return record;
-}
-
 std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPolicy alpha) {
     const bool tested = alpha == AlphaPolicy::Tested && (key & bit(Feature::AlphaMask)) != 0;
     return (tested ? gpu::kGeometryAlphaTested : 0U) |
@@ -126,8 +92,9 @@ std::vector<PrimitiveEntry> makePrimitives(const Scene& scene, std::span<const P
         entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
         entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
         entry.materialIndex = static_cast<std::uint32_t>(inputs.material);
-        entry.featureLobes = static_cast<std::uint32_t>(key.mask & kLobeMask);
-        entry.featureInputs = static_cast<std::uint32_t>(key.mask >> 32U);
+        const FeatureMask primary = plan.primaryMaskOfPrimitive[i];
+        entry.featureLobes = static_cast<std::uint32_t>(primary & kLobeMask);
+        entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
         entry.geometryFlags = geometryFlags(material, key.mask, alpha);
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
         entries.push_back(entry);
@@ -182,34 +149,6 @@ Status checkScene(const Scene& scene) {
         }
     }
     return okStatus();
-}
-
-MaterialTables makeMaterialTables(const Scene& scene) {
-    MaterialTables tables;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
-    for (const Material& material : scene.materials) {
-        gpu::MaterialRecord record = makeRecord(material);
-        for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-            const TextureInfo& info = material.textures[slot];
-            if (info.texture < 0) {
-                continue;
-            }
-            const Texture& texture = scene.textures[info.texture];
-            const TextureEntry entry{static_cast<std::uint32_t>(texture.image),
-                                     isColor(static_cast<TextureSlot>(slot)) ? 1U : 0U};
-            const auto [place, isNew] = indexOf.try_emplace(
-                {entry.image, entry.srgb}, static_cast<std::uint32_t>(tables.textures.size()));
-            if (isNew) {
-                tables.textures.push_back(entry);
-            }
-            record.textures[slot].textureIndex = place->second;
-            record.textures[slot].samplerIndex = static_cast<std::uint32_t>(texture.sampler);
-            record.textures[slot].texCoord = static_cast<std::uint32_t>(info.texCoord);
-            setTransform(info.transform, record.textures[slot]);
-        }
-        tables.materials.push_back(record);
-    }
-    return tables;
 }
 
 Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives, const Plan& plan,

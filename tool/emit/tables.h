@@ -15,7 +15,7 @@ struct MaterialTables {
     std::vector<package::TextureEntry> textures;  // in order of first use
 };
 
-// Base colour and emissive textures are sRGB, the others linear. Requires a scene that checkScene() accepts.
+// Textures of colours are sRGB, the others linear. Requires a scene that checkScene() accepts.
 MaterialTables makeMaterialTables(const Scene& scene);
 
 // Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.

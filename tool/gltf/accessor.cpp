@@ -182,11 +182,8 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 // All elements, tightly packed.
 Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
-    if (!document.chargeVertices(accessor.count)) {
-        return document.error("vertex-limit", pointerOf(index),
-                              fmt::format("with its {} elements the scene passes the limit of {}",
-                                          accessor.count, document.options().maxVertices),
-                              "split the scene, or raise ImportOptions::maxVertices");
+    if (Status status = document.chargeVertices(accessor.count, pointerOf(index)); !status) {
+        return status.error();
     }
     Bytes elements;
     if (Status status = gatherBase(document, index, elementSize, elements); !status) {
@@ -214,9 +211,8 @@ void appendIntegers(const Bytes& bytes, bool normalized, std::vector<float>& val
 
 }  // namespace
 
-Result<FloatElements> readFloats(Document& document, int index, Integers integers) {
+Result<ElementFormat> floatFormat(const Document& document, int index) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
-    const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
     const bool isVector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_VEC2 ||
                           accessor.type == TINYGLTF_TYPE_VEC3 || accessor.type == TINYGLTF_TYPE_VEC4;
     if (!isVector) {
@@ -227,32 +223,52 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
         return document.error("accessor-component-type", pointerOf(index) + "/componentType",
                               "a vertex attribute can't have 32-bit integers", "export the scene again");
     }
-    const auto componentSize = static_cast<std::size_t>(
-        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
-    const Result<Bytes> bytes = gather(document, index, componentSize * static_cast<std::size_t>(components));
-    if (!bytes) {
-        return bytes.error();
-    }
-    FloatElements result{static_cast<std::size_t>(components), accessor.count, {}};
+    return ElementFormat{
+        accessor.componentType,
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type))),
+        static_cast<std::size_t>(
+            tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)))};
+}
+
+FloatElements toFloats(const Document& document, int index, Integers integers, const Bytes& bytes) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    FloatElements result;
+    result.components =
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
     const bool normalized = accessor.normalized || integers == Integers::Normalized;
     switch (accessor.componentType) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-            appendIntegers<std::int8_t>(*bytes, normalized, result.values);
+            appendIntegers<std::int8_t>(bytes, normalized, result.values);
             break;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            appendIntegers<std::uint8_t>(*bytes, normalized, result.values);
+            appendIntegers<std::uint8_t>(bytes, normalized, result.values);
             break;
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-            appendIntegers<std::int16_t>(*bytes, normalized, result.values);
+            appendIntegers<std::int16_t>(bytes, normalized, result.values);
             break;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            appendIntegers<std::uint16_t>(*bytes, normalized, result.values);
+            appendIntegers<std::uint16_t>(bytes, normalized, result.values);
             break;
         default:
-            result.values.resize(bytes->size() / sizeof(float));
-            std::memcpy(result.values.data(), bytes->data(), result.values.size() * sizeof(float));
+            result.values.resize(bytes.size() / sizeof(float));
+            if (!result.values.empty()) {
+                std::memcpy(result.values.data(), bytes.data(), result.values.size() * sizeof(float));
+            }
     }
+    result.count = result.values.size() / result.components;
     return result;
+}
+
+Result<FloatElements> readFloats(Document& document, int index, Integers integers) {
+    const Result<ElementFormat> format = floatFormat(document, index);
+    if (!format) {
+        return format.error();
+    }
+    const Result<Bytes> bytes = gather(document, index, format->components * format->componentSize);
+    if (!bytes) {
+        return bytes.error();
+    }
+    return toFloats(document, index, integers, *bytes);
 }
 
 Result<IndexElements> readIndices(Document& document, int index) {

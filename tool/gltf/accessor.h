@@ -20,7 +20,21 @@ struct FloatElements {
 // How integers that are not marked as normalised become floats.
 enum class Integers : std::uint8_t { AsValues, Normalized };
 
-// Reads a vector or scalar accessor of any component type but 32-bit integers. Normalised integers map to
+// What the elements of an accessor look like.
+struct ElementFormat {
+    int componentType = 0;  // glTF's number
+    std::size_t components = 0;
+    std::size_t componentSize = 0;  // bytes
+};
+
+// The format of a vector or scalar accessor of any component type but 32-bit integers; an error for others.
+Result<ElementFormat> floatFormat(const Document& document, int accessor);
+
+// Converts elements of that accessor's format, packed tightly.
+FloatElements toFloats(const Document& document, int accessor, Integers integers,
+                       const std::vector<std::uint8_t>& bytes);
+
+// Reads an accessor that floatFormat() takes. Normalised integers map to
 // [0, 1] or [-1, 1]; floats come as stored, NaN and infinities too.
 Result<FloatElements> readFloats(Document& document, int accessor, Integers integers = Integers::AsValues);
 

@@ -1,7 +1,9 @@
 #include "gltf/document.h"
 
+#include "gltf/compression.h"
 #include "gltf/container.h"
 #include "gltf/extensions.h"
+#include "gltf/meshopt.h"
 #include "gltf/uri.h"
 #include "gltf/validate.h"
 
@@ -32,6 +34,7 @@ Document::Document(const std::filesystem::path& path, const ImportOptions& optio
       options_(options),
       source_(path, options.maxFileBytes),
       verticesLeft_(options.maxVertices),
+      unpackedBytesLeft_(options.maxFileBytes),
       imageBytesLeft_(kMaxImageBytes) {}
 
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
@@ -65,11 +68,15 @@ Status Document::parse() {
     if (Status status = checkExtensions(*this); !status) {
         return status;
     }
-    if (const auto failure = checkDocument(json_)) {
+    auto failure = checkDocument(json_);
+    if (!failure) {
+        failure = checkCompression(json_);
+    }
+    if (failure) {
         return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
     }
     buffers_.resize(arraySize(json_, "/buffers"));
-
+    unpackedViews_.resize(arraySize(json_, "/bufferViews"));
     return parseModel();
 }
 
@@ -132,25 +139,45 @@ Status Document::checkVersion() const {
 Result<ByteView> Document::bufferView(int index) {
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
     const std::string pointer = fmt::format("/bufferViews/{}", index);
-    const Json& json = json_["bufferViews"][static_cast<std::size_t>(index)];
-    if (const char* extension = compressionOf(json)) {
-        const Json& buffer = json_["buffers"][static_cast<std::size_t>(view.buffer)];
-        const bool isBinaryChunk = view.buffer == 0 && binary_.has_value();
-        if (!buffer.contains("uri") && !isBinaryChunk) {
-            return unsupportedExtension(*this, extension, pointer);
-        }
+    if (const Json* extension = findMeshopt(json_["bufferViews"][static_cast<std::size_t>(index)])) {
+        return unpackedView(index, *extension, pointer);
     }
-    const Result<ByteView> bytes = buffer(view.buffer);
+    return bufferRange(view.buffer, view.byteOffset, view.byteLength, pointer);
+}
+
+Result<ByteView> Document::unpackedView(int index, const Json& extension, const std::string& pointer) {
+    std::optional<Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
+    if (!unpacked) {
+        const Json* offset = find(extension, "byteOffset");
+        const Result<ByteView> packed =
+            bufferRange(extension["buffer"].get<int>(), offset == nullptr ? 0 : offset->get<std::uint64_t>(),
+                        extension["byteLength"].get<std::uint64_t>(), pointer);
+        if (!packed) {
+            return packed.error();
+        }
+        Result<Bytes> bytes = unpackMeshopt(*this, extension, pointer, *packed,
+                                            model_.bufferViews[static_cast<std::size_t>(index)].byteLength);
+        if (!bytes) {
+            return bytes.error();
+        }
+        unpacked = std::move(*bytes);
+    }
+    return ByteView(*unpacked);
+}
+
+Result<ByteView> Document::bufferRange(int index, std::uint64_t offset, std::uint64_t length,
+                                       const std::string& pointer) {
+    const Result<ByteView> bytes = buffer(index);
     if (!bytes) {
         return bytes.error();
     }
-    if (view.byteOffset > bytes->size() || view.byteLength > bytes->size() - view.byteOffset) {
+    if (offset > bytes->size() || length > bytes->size() - offset) {
         return error("buffer-view-range", pointer,
-                     fmt::format("bytes {} to {} go beyond the {} bytes of /buffers/{}", view.byteOffset,
-                                 view.byteOffset + view.byteLength, bytes->size(), view.buffer),
+                     fmt::format("bytes {} to {} go beyond the {} bytes of /buffers/{}", offset,
+                                 offset + length, bytes->size(), index),
                      "the file is damaged: export it again");
     }
-    return bytes->subspan(view.byteOffset, view.byteLength);
+    return bytes->subspan(offset, length);
 }
 
 Result<ByteView> Document::buffer(int index) {
@@ -182,8 +209,12 @@ Result<ByteView> Document::buffer(int index) {
 Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointer) {
     const Json* uri = find(buffer, "uri");
     if (uri == nullptr) {
-        if (const char* extension = compressionOf(buffer)) {
-            return unsupportedExtension(*this, extension, pointer);
+        if (findMeshopt(buffer) != nullptr) {
+            return error(
+                "buffer-data", pointer,
+                "is a fallback that holds no data, but a buffer view without compressed data is read "
+                "from it",
+                "export the scene again");
         }
         return error("buffer-data", pointer, "has neither a \"uri\" nor the binary chunk of a GLB",
                      "export the scene again");
@@ -203,11 +234,22 @@ Result<Bytes> Document::readFile(std::string_view uri, const std::string& pointe
     return source_.readRelative(uri, where(pointer + "/uri"));
 }
 
-bool Document::chargeVertices(std::uint64_t count) {
+Status Document::chargeVertices(std::uint64_t count, std::string_view pointer) {
     if (count > verticesLeft_) {
-        return false;
+        return error(
+            "vertex-limit", pointer,
+            fmt::format("with its {} elements the scene passes the limit of {}", count, options_.maxVertices),
+            "split the scene, or raise ImportOptions::maxVertices");
     }
     verticesLeft_ -= count;
+    return okStatus();
+}
+
+bool Document::chargeUnpackedBytes(std::uint64_t bytes) {
+    if (bytes > unpackedBytesLeft_) {
+        return false;
+    }
+    unpackedBytesLeft_ -= bytes;
     return true;
 }
 

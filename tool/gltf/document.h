@@ -40,12 +40,16 @@ public:
         return options_;
     }
 
-    // The bytes of a buffer view. Opens its buffer on first use.
+    // The bytes of a buffer view, unpacked where they are compressed. Opens its buffer on first use.
     Result<ByteView> bufferView(int index);
     // Reads the file that a relative URI names.
     Result<Bytes> readFile(std::string_view uri, const std::string& pointer);
-    // Takes `count` elements off the budget of ImportOptions::maxVertices; false where that is exhausted.
-    bool chargeVertices(std::uint64_t count);
+    // Takes `count` elements off the budget of ImportOptions::maxVertices; "vertex-limit" at `pointer` where
+    // that is exhausted.
+    Status chargeVertices(std::uint64_t count, std::string_view pointer);
+    // Takes bytes off the budget of unpacked buffer views, ImportOptions::maxFileBytes; false where that is
+    // exhausted.
+    bool chargeUnpackedBytes(std::uint64_t bytes);
     // Takes bytes off the budget of decoded images; false where that is exhausted.
     bool chargeImageBytes(std::uint64_t bytes);
 
@@ -70,6 +74,9 @@ private:
     Status parseModel();
     bool mirrorsJson() const;
     Result<ByteView> buffer(int index);
+    Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,
+                                 const std::string& pointer);
+    Result<ByteView> unpackedView(int index, const Json& extension, const std::string& pointer);
     Result<Bytes> loadBuffer(const Json& buffer, const std::string& pointer);
 
     std::string name_;
@@ -80,8 +87,10 @@ private:
     Json json_;
     tinygltf::Model model_;
     std::vector<std::optional<Bytes>> buffers_;
+    std::vector<std::optional<Bytes>> unpackedViews_;
     std::vector<Diagnostic> warnings_;
     std::uint64_t verticesLeft_;
+    std::uint64_t unpackedBytesLeft_;
     std::uint64_t imageBytesLeft_;
 };
 

@@ -1,6 +1,7 @@
 #include "gltf/extensions.h"
 
 #include "gltf/document.h"
+#include "gltf/schema.h"
 
 #include <fmt/format.h>
 
@@ -12,20 +13,34 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kSupported{"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                     "KHR_materials_unlit", "KHR_mesh_quantization",
-                                                     "KHR_texture_transform"};
-
-constexpr std::array kCompressions{"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                   "KHR_meshopt_compression"};
+// KHR_texture_basisu is here whether this build decodes it or not: textures.cpp says what becomes of each
+// texture.
+constexpr auto kSupported = std::to_array<std::string_view>({"EXT_meshopt_compression",
+                                                             "EXT_texture_webp",
+                                                             "KHR_draco_mesh_compression",
+                                                             "KHR_lights_punctual",
+                                                             "KHR_materials_anisotropy",
+                                                             "KHR_materials_clearcoat",
+                                                             "KHR_materials_diffuse_transmission",
+                                                             "KHR_materials_dispersion",
+                                                             "KHR_materials_emissive_strength",
+                                                             "KHR_materials_ior",
+                                                             "KHR_materials_iridescence",
+                                                             "KHR_materials_pbrSpecularGlossiness",
+                                                             "KHR_materials_sheen",
+                                                             "KHR_materials_specular",
+                                                             "KHR_materials_transmission",
+                                                             "KHR_materials_unlit",
+                                                             "KHR_materials_variants",
+                                                             "KHR_materials_volume",
+                                                             "KHR_mesh_quantization",
+                                                             "KHR_meshopt_compression",
+                                                             "KHR_texture_basisu",
+                                                             "KHR_texture_transform"});
 
 std::string hintFor(std::string_view name) {
-    if (std::find(kCompressions.begin(), kCompressions.end(), name) != kCompressions.end()) {
-        return "store the geometry uncompressed: export the scene without mesh compression";
-    }
-    if (name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name == "MSFT_texture_dds" ||
-        name == "EXT_texture_avif") {
-        return "store the textures as PNG or JPEG";
+    if (name == "MSFT_texture_dds" || name == "EXT_texture_avif") {
+        return "store the textures as PNG, JPEG or WebP";
     }
     if (name.starts_with("KHR_materials_")) {
         return fmt::format("move {} from extensionsRequired to extensionsUsed to render without it", name);
@@ -37,6 +52,11 @@ std::string hintFor(std::string_view name) {
 
 bool isSupportedExtension(std::string_view name) {
     return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+}
+
+bool requiresExtension(const Document& document, std::string_view name) {
+    const Json& required = arrayMember(document.json(), "extensionsRequired");
+    return std::find(required.begin(), required.end(), name) != required.end();
 }
 
 Diagnostic unsupportedExtension(const Document& document, std::string_view name, std::string_view pointer) {
@@ -72,15 +92,6 @@ Status checkExtensions(Document& document) {
         }
     }
     return okStatus();
-}
-
-const char* compressionOf(const Json& object) {
-    for (const char* name : kCompressions) {
-        if (findExtension(object, name) != nullptr) {
-            return name;
-        }
-    }
-    return nullptr;
 }
 
 }  // namespace glint::gltf

@@ -1,8 +1,6 @@
 // Which glTF extensions Glint reads, and what it says of the others.
 #pragma once
 
-#include "gltf/schema.h"
-
 #include <glint/result.h>
 
 #include <string>
@@ -17,10 +15,10 @@ Status checkExtensions(Document& document);
 
 bool isSupportedExtension(std::string_view name);
 
+// Whether the checked document lists the extension as required.
+bool requiresExtension(const Document& document, std::string_view name);
+
 // "extension-unsupported" at `pointer`.
 Diagnostic unsupportedExtension(const Document& document, std::string_view name, std::string_view pointer);
-
-// The extension that compresses a buffer, buffer view or primitive; null for none.
-const char* compressionOf(const Json& object);
 
 }  // namespace glint::gltf

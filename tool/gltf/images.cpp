@@ -1,40 +1,24 @@
 #include "gltf/images.h"
 
+#include "gltf/basisu.h"
+#include "gltf/codecs.h"
 #include "gltf/uri.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_JPEG
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#include <stb/stb_image.h>
 
 namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kPngOrJpeg = "store the image as PNG or JPEG";
-
-// Deflate reaches 1032 : 1 at best, and a pixel of a PNG has one bit at least.
-constexpr std::uint64_t kMaxPixelsPerPngByte = 1032ULL * 8;
-
-struct StbFree {
-    void operator()(stbi_uc* pixels) const {
-        stbi_image_free(pixels);
-    }
-};
+constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
 
 const Json& imageJson(const Document& document, int image) {
     return document.json()["images"][static_cast<std::size_t>(image)];
@@ -53,18 +37,6 @@ std::string lowerCase(std::string text) {
 std::string textMember(const Json& object, std::string_view name) {
     const Json* member = find(object, name);
     return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
-}
-
-// The name of what the bytes hold, where it is a format that Glint knows and does not read.
-std::string_view knownFormat(ByteView bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.starts_with("\xABKTX")) {
-        return "KTX";
-    }
-    if (text.starts_with("RIFF") && text.substr(8).starts_with("WEBP")) {
-        return "WebP";
-    }
-    return text.starts_with("DDS ") ? "DDS" : "";
 }
 
 std::string nameOf(const Json& json, int image) {
@@ -104,72 +76,64 @@ Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
     return ByteView(storage);
 }
 
-Status checkSize(Document& document, int image, int width, int height, ByteView bytes) {
+Status checkSize(Document& document, const Image& image) {
     const int limit = document.options().maxImageSize;
-    if (width <= 0 || height <= 0 || width > limit || height > limit) {
+    if (image.width <= 0 || image.height <= 0 || image.width > limit || image.height > limit) {
         return document.error(
-            "image-size", pointerOf(image),
-            fmt::format("is {} x {} pixels; the limit is {} either way", width, height, limit),
+            "image-size", image.pointer,
+            fmt::format("is {} x {} pixels; the limit is {} either way", image.width, image.height, limit),
             "scale the image down");
     }
-    const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    const bool isPng = bytes[0] == 0x89;
-    if (isPng && pixels / kMaxPixelsPerPngByte > bytes.size()) {
-        return document.error(
-            "image-decode", pointerOf(image),
-            fmt::format("says it has {} x {} pixels, but has only {} bytes", width, height, bytes.size()),
-            "the image is damaged: export it again");
-    }
-    if (!document.chargeImageBytes(4 * pixels)) {
-        return document.error("image-size", pointerOf(image), "the scene's images ask for too much memory",
+    const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    if (!document.chargeImageBytes(bytesPerPixel(image.format) * pixels)) {
+        return document.error("image-size", image.pointer, "the scene's images ask for too much memory",
                               "scale the images down");
     }
     return okStatus();
 }
 
-Status decode(Document& document, int index, ByteView bytes, Image& image) {
-    const auto fail = [&](std::string message) {
-        return document.error("image-decode", pointerOf(index), std::move(message), kPngOrJpeg);
+Status decode(Document& document, ByteView bytes, Image& image) {
+    const auto fail = [&](std::string message, const char* hint) {
+        return document.error("image-decode", image.pointer, std::move(message), hint);
     };
-    if (const std::string_view format = knownFormat(bytes); !format.empty()) {
-        return fail(fmt::format("is a {} image, which Glint does not read", format));
+    const Codec* codec = findCodec(bytes);
+    if (codec == nullptr) {
+        const std::string_view format = foreignFormat(bytes);
+        return fail(bytes.empty()    ? "is empty"
+                    : format.empty() ? "is neither PNG nor JPEG, WebP or KTX2"
+                                     : fmt::format("is a {} image, which Glint does not read", format),
+                    kStore);
     }
-    if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-        return fail(bytes.empty() ? "is empty" : "is larger than 2 GiB");
+    const char* hint = codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore;
+    const auto failDecoding = [&](const std::string& problem) {
+        return fail(fmt::format("is a {} image that can't be decoded: {}", codec->name, problem), hint);
+    };
+    std::string problem;
+    if (!codec->readHeader(bytes, image, problem)) {
+        return failDecoding(problem);
     }
-    const int size = static_cast<int>(bytes.size());
-    int components = 0;
-    if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &components) == 0) {
-        return fail(fmt::format("is neither PNG nor JPEG ({})", stbi_failure_reason()));
-    }
-    if (Status status = checkSize(document, index, image.width, image.height, bytes); !status) {
+    if (Status status = checkSize(document, image); !status) {
         return status;
     }
-    const std::unique_ptr<stbi_uc, StbFree> pixels(
-        stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &components, STBI_rgb_alpha));
-    if (!pixels) {
-        return fail(fmt::format("can't be decoded ({})", stbi_failure_reason()));
-    }
-    const auto count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
-    image.rgba8.assign(pixels.get(), pixels.get() + count);
-    return okStatus();
+    return codec->decode(bytes, image, problem) ? okStatus() : failDecoding(problem);
 }
 
 }  // namespace
 
-bool isDecodableImage(const Document& document, int image) {
+Decodable decodability(const Document& document, int image) {
     const Json& json = imageJson(document, image);
     std::string type = lowerCase(textMember(json, "mimeType"));
     const std::string uri = lowerCase(textMember(json, "uri"));
     if (type.empty() && isDataUri(uri)) {
         type = uri.substr(5, uri.find_first_of(";,") - 5);
     }
-    if (type == "image/ktx2" || type == "image/webp" || type == "image/vnd-ms.dds" || type == "image/avif") {
-        return false;
+    const auto endsWith = [&](std::string_view end) { return !isDataUri(uri) && uri.ends_with(end); };
+    if (type == "image/ktx2" || endsWith(".ktx2")) {
+        return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;
     }
-    constexpr std::array<std::string_view, 5> kExtensions{".ktx2", ".ktx", ".webp", ".dds", ".avif"};
-    return isDataUri(uri) || std::none_of(kExtensions.begin(), kExtensions.end(),
-                                          [&](std::string_view end) { return uri.ends_with(end); });
+    const bool isForeign = type == "image/vnd-ms.dds" || type == "image/avif" || endsWith(".ktx") ||
+                           endsWith(".dds") || endsWith(".avif");
+    return isForeign ? Decodable::No : Decodable::Yes;
 }
 
 Result<Image> importImage(Document& document, int index) {
@@ -193,7 +157,7 @@ Result<Image> importImage(Document& document, int index) {
     if (!bytes) {
         return bytes.error();
     }
-    if (Status status = decode(document, index, *bytes, image); !status) {
+    if (Status status = decode(document, *bytes, image); !status) {
         return status.error();
     }
     return image;

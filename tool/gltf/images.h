@@ -6,12 +6,20 @@
 
 #include <glint/result.h>
 
+#include <cstdint>
+
 namespace glint::gltf {
 
-// Whether Glint can decode the image, by its type and its file's name; opens nothing.
-bool isDecodableImage(const Document& document, int image);
+enum class Decodable : std::uint8_t {
+    Yes,
+    No,
+    NeedsBasisu,  // a KTX2 image, in a build without hasBasisu()
+};
 
-// The image's name, and its pixels where ImportOptions::decodeImages. 16 bits become 8.
+// Whether Glint can decode the image, by its type and its file's name; opens nothing.
+Decodable decodability(const Document& document, int image);
+
+// The image's name, and its pixels where ImportOptions::decodeImages.
 // Errors: "image-data" (no or two sources), "image-decode", "image-size", those of reading.
 Result<Image> importImage(Document& document, int image);
 

@@ -4,6 +4,7 @@
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
 #include "gltf/nodes.h"
+#include "gltf/variants.h"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,14 @@ void warnOfMotion(Document& document) {
     }
 }
 
+bool usesMaterial(const Scene& scene, std::size_t material) {
+    return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+        return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
+            return static_cast<std::size_t>(primitive.material) == material;
+        });
+    });
+}
+
 Status fillScene(Document& document, Scene& scene) {
     warnOfMotion(document);
     if (Status status = importMaterials(document, scene); !status) {
@@ -58,11 +67,13 @@ Status fillScene(Document& document, Scene& scene) {
             placed[static_cast<std::size_t>(node.mesh)] = true;
         }
     }
-    const Result<bool> needsDefault = importMeshes(document, placed, scene);
-    if (!needsDefault) {
-        return needsDefault.error();
+    if (const Result<bool> imported = importMeshes(document, placed, scene); !imported) {
+        return imported.error();
     }
-    if (*needsDefault) {
+    if (Status status = applyVariant(document, scene); !status) {
+        return status;
+    }
+    if (usesMaterial(scene, scene.materials.size())) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.emplace_back().name = "default";
     }

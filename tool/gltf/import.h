@@ -13,16 +13,18 @@
 namespace glint {
 
 struct ImportOptions {
-    // Decode images to RGBA8. The compiler needs none of them; the renderer needs all.
+    // Decode images. The compiler needs none of them; the renderer needs all.
     bool decodeImages = false;
     // Limits that keep hostile files from asking for the machine's memory.
     std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
     std::uint64_t maxFileBytes = 1ULL << 32;
     int maxImageSize = 16384;  // pixels, either way
+    // KHR_materials_variants: the name of the variant whose materials are used; empty: the default materials.
+    std::string variant{};
 };
 
 // Reads `path` (.gltf or .glb), its buffers and its images. Files outside the scene's folder are refused.
-// On success, Scene::warnings holds what was skipped. The error names the file and, where there is one, the
+// On success, Scene::warnings holds what was skipped. Error "variant-unknown" where the file lacks the variant. The error names the file and, where there is one, the
 // JSON pointer of the culprit.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 

@@ -1,12 +1,11 @@
 #include "gltf/materials.h"
 
-#include "gltf/extensions.h"
+#include "gltf/material_extensions.h"
+#include "gltf/object_reader.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,99 +13,63 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<float>::max();
+// Where each slot's texture stands; the extension's name stands for its object, "" for the material itself.
+constexpr struct {
+    const char* owner;
+    const char* member;
+    TextureSlot slot;
+} kTextures[] = {
+    {"pbrMetallicRoughness", "baseColorTexture", TextureSlot::BaseColor},
+    {"pbrMetallicRoughness", "metallicRoughnessTexture", TextureSlot::MetallicRoughness},
+    {"KHR_materials_pbrSpecularGlossiness", "diffuseTexture", TextureSlot::BaseColor},
+    {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture", TextureSlot::MetallicRoughness},
+    {"", "normalTexture", TextureSlot::Normal},
+    {"", "occlusionTexture", TextureSlot::Occlusion},
+    {"", "emissiveTexture", TextureSlot::Emissive},
+    {"KHR_materials_clearcoat", "clearcoatTexture", TextureSlot::Clearcoat},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", TextureSlot::ClearcoatRoughness},
+    {"KHR_materials_clearcoat", "clearcoatNormalTexture", TextureSlot::ClearcoatNormal},
+    {"KHR_materials_sheen", "sheenColorTexture", TextureSlot::SheenColor},
+    {"KHR_materials_sheen", "sheenRoughnessTexture", TextureSlot::SheenRoughness},
+    {"KHR_materials_anisotropy", "anisotropyTexture", TextureSlot::Anisotropy},
+    {"KHR_materials_specular", "specularTexture", TextureSlot::Specular},
+    {"KHR_materials_specular", "specularColorTexture", TextureSlot::SpecularColor},
+    {"KHR_materials_iridescence", "iridescenceTexture", TextureSlot::Iridescence},
+    {"KHR_materials_iridescence", "iridescenceThicknessTexture", TextureSlot::IridescenceThickness},
+    {"KHR_materials_transmission", "transmissionTexture", TextureSlot::Transmission},
+    {"KHR_materials_volume", "thicknessTexture", TextureSlot::Thickness},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", TextureSlot::DiffuseTransmission},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture",
+     TextureSlot::DiffuseTransmissionColor},
+};
 
-float clampFactor(Document& document, const std::string& pointer, double value, double low, double high) {
-    const double clamped = std::clamp(value, low, high);
-    if (clamped != value) {
-        document.warn(
-            "material-range", pointer, fmt::format("is {}; {} is used", value, clamped),
-            high == kNoLimit ? fmt::format("use {} or more", low) : fmt::format("use {} to {}", low, high));
-    }
-    return static_cast<float>(clamped);
-}
-
-template <std::size_t N>
-void clampFactors(Document& document, const std::string& pointer, const std::vector<double>& values,
-                  std::array<float, N>& factors) {
-    for (std::size_t i = 0; i < N && i < values.size(); ++i) {
-        factors[i] = clampFactor(document, fmt::format("{}/{}", pointer, i), values[i], 0.0, 1.0);
-    }
-}
-
-float numberAt(const Json& object, std::string_view name, float fallback) {
-    const Json* member = find(object, name);
-    return member == nullptr ? fallback : static_cast<float>(member->get<double>());
-}
-
-std::array<float, 2> pairAt(const Json& object, std::string_view name, std::array<float, 2> fallback) {
-    const Json* member = find(object, name);
-    return member == nullptr ? fallback
-                             : std::array{static_cast<float>((*member)[0].get<double>()),
-                                          static_cast<float>((*member)[1].get<double>())};
-}
-
-// Reads the texture info at `owner[member]` into a slot.
-Status readTextureInfo(Document& document, TextureTable& textures, const Json& owner, std::string_view member,
-                       const std::string& ownerPointer, TextureInfo& info) {
-    const Json* json = find(owner, member);
-    if (json == nullptr) {
-        return okStatus();
-    }
-    const std::string pointer = fmt::format("{}/{}", ownerPointer, member);
-    const Json* texCoord = find(*json, "texCoord");
-    TextureInfo read;
-    if (const Json* transform = findExtension(*json, "KHR_texture_transform")) {
-        read.hasTransform = true;
-        read.transform.offset = pairAt(*transform, "offset", read.transform.offset);
-        read.transform.scale = pairAt(*transform, "scale", read.transform.scale);
-        read.transform.rotation = numberAt(*transform, "rotation", 0.0F);
-        if (const Json* override = find(*transform, "texCoord")) {
-            texCoord = override;
-        }
-    }
-    read.texCoord = texCoord == nullptr ? 0 : texCoord->get<int>();
-    if (read.texCoord > 1) {
-        document.warn("texture-uv-set", pointer,
-                      fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
-                                  read.texCoord),
-                      "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
-        return okStatus();
-    }
-    const Result<int> texture = textures.use((*json)["index"].get<int>());
-    if (!texture) {
-        return texture.error();
-    }
-    if (*texture >= 0) {
-        read.texture = *texture;
-        info = read;
-    }
-    return okStatus();
+// Of the two base models, the one whose textures the material does not read.
+const char* ignoredModel(const Material& material) {
+    return material.specularGlossiness.given && !material.unlit ? "pbrMetallicRoughness"
+                                                                : "KHR_materials_pbrSpecularGlossiness";
 }
 
 Status readTextures(Document& document, TextureTable& textures, const Json& json, const std::string& pointer,
                     Material& material) {
-    const Json empty = Json::object();
-    const Json* found = find(json, "pbrMetallicRoughness");
-    const Json& core = found == nullptr ? empty : *found;
-    const std::string corePointer = pointer + "/pbrMetallicRoughness";
-    const auto read = [&](const Json& owner, const char* member, const std::string& ownerPointer,
-                          TextureSlot slot) {
-        return readTextureInfo(document, textures, owner, member, ownerPointer, material.texture(slot));
-    };
-    if (Status s = read(core, "baseColorTexture", corePointer, TextureSlot::BaseColor); !s) {
-        return s;
+    const std::string_view ignored = ignoredModel(material);
+    for (const auto& [owner, member, slot] : kTextures) {
+        const std::string_view name = owner;
+        const bool isExtension = name.starts_with("KHR_");
+        const Json* object = name.empty()  ? &json
+                             : isExtension ? findExtension(json, name)
+                                           : find(json, name);
+        if (object == nullptr || name == ignored) {
+            continue;
+        }
+        const std::string place = name.empty()  ? pointer
+                                  : isExtension ? fmt::format("{}/extensions/{}", pointer, name)
+                                                : fmt::format("{}/{}", pointer, name);
+        const ObjectReader reader(document, *object, place);
+        if (Status status = reader.texture(member, textures, material.texture(slot)); !status) {
+            return status;
+        }
     }
-    if (Status s = read(core, "metallicRoughnessTexture", corePointer, TextureSlot::MetallicRoughness); !s) {
-        return s;
-    }
-    if (Status s = read(json, "normalTexture", pointer, TextureSlot::Normal); !s) {
-        return s;
-    }
-    if (Status s = read(json, "occlusionTexture", pointer, TextureSlot::Occlusion); !s) {
-        return s;
-    }
-    return read(json, "emissiveTexture", pointer, TextureSlot::Emissive);
+    return okStatus();
 }
 
 AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::string& pointer) {
@@ -124,41 +87,24 @@ AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::
     return AlphaMode::Opaque;
 }
 
-void readFactors(Document& document, const tinygltf::Material& source, const std::string& pointer,
-                 Material& material) {
-    const tinygltf::PbrMetallicRoughness& core = source.pbrMetallicRoughness;
-    const std::string corePointer = pointer + "/pbrMetallicRoughness";
-    const auto clampUnit = [&](const std::string& where, double value) {
-        return clampFactor(document, where, value, 0.0, 1.0);
-    };
-    clampFactors(document, corePointer + "/baseColorFactor", core.baseColorFactor, material.baseColorFactor);
-    clampFactors(document, pointer + "/emissiveFactor", source.emissiveFactor, material.emissiveFactor);
-    material.metallicFactor = clampUnit(corePointer + "/metallicFactor", core.metallicFactor);
-    material.roughnessFactor = clampUnit(corePointer + "/roughnessFactor", core.roughnessFactor);
-    material.normalScale = static_cast<float>(source.normalTexture.scale);
-    material.occlusionStrength =
-        clampUnit(pointer + "/occlusionTexture/strength", source.occlusionTexture.strength);
+void readFactors(Document& document, const Json& json, const std::string& pointer, Material& material) {
+    const ObjectReader reader(document, json, pointer);
+    reader.numbers("emissiveFactor", material.emissiveFactor, kUnit);
     // Above 1 is legal, and means that nothing is opaque.
-    material.alphaCutoff = clampFactor(document, pointer + "/alphaCutoff", source.alphaCutoff, 0.0, kNoLimit);
-    material.alphaMode = readAlphaMode(document, source.alphaMode, pointer);
-    material.doubleSided = source.doubleSided;
-}
-
-void readExtensions(Document& document, const Json& json, const std::string& pointer, Material& material) {
-    material.unlit = findExtension(json, "KHR_materials_unlit") != nullptr;
-    if (const Json* emission = findExtension(json, "KHR_materials_emissive_strength")) {
-        material.hasEmissiveStrength = true;
-        material.emissiveStrength =
-            clampFactor(document, pointer + "/extensions/KHR_materials_emissive_strength/emissiveStrength",
-                        static_cast<double>(numberAt(*emission, "emissiveStrength", 1.0F)), 0.0, kNoLimit);
+    material.alphaCutoff = reader.number("alphaCutoff", 0.5, kNotNegative);
+    if (const Json* core = find(json, "pbrMetallicRoughness")) {
+        const ObjectReader coreReader(document, *core, reader.pointerTo("pbrMetallicRoughness"));
+        coreReader.numbers("baseColorFactor", material.baseColorFactor, kUnit);
+        material.metallicFactor = coreReader.number("metallicFactor", 1.0, kUnit);
+        material.roughnessFactor = coreReader.number("roughnessFactor", 1.0, kUnit);
     }
-    const Json* extensions = find(json, "extensions");
-    if (extensions != nullptr) {
-        for (const auto& [name, ignored] : extensions->items()) {
-            if (!isSupportedExtension(name)) {
-                material.unsupportedExtensions.push_back(name);
-            }
-        }
+    if (const Json* normal = find(json, "normalTexture")) {
+        const ObjectReader normalReader(document, *normal, reader.pointerTo("normalTexture"));
+        material.normalScale = static_cast<float>(normalReader.number("scale", 1.0));
+    }
+    if (const Json* occlusion = find(json, "occlusionTexture")) {
+        const ObjectReader occlusionReader(document, *occlusion, reader.pointerTo("occlusionTexture"));
+        material.occlusionStrength = occlusionReader.number("strength", 1.0, kUnit);
     }
 }
 
@@ -172,8 +118,11 @@ Status importMaterials(Document& document, Scene& scene) {
         const std::string pointer = fmt::format("/materials/{}", i);
         Material material;
         material.name = document.model().materials[i].name;
-        readFactors(document, document.model().materials[i], pointer, material);
-        readExtensions(document, json, pointer, material);
+        const tinygltf::Material& source = document.model().materials[i];
+        material.alphaMode = readAlphaMode(document, source.alphaMode, pointer);
+        material.doubleSided = source.doubleSided;
+        readFactors(document, json, pointer, material);
+        readMaterialExtensions(document, json, pointer, material);
         if (Status status = readTextures(document, textures, json, pointer, material); !status) {
             return status;
         }

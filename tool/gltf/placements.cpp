@@ -48,10 +48,36 @@ void readSpot(Document& document, const Json& json, const std::string& pointer, 
     const double outer =
         clampLight(document, pointer + "/spot/outerConeAngle",
                    numberOr(angles, "outerConeAngle", std::numbers::pi / 4), 0.0, kRightAngle);
-    const double inner = clampLight(document, pointer + "/spot/innerConeAngle",
-                                    numberOr(angles, "innerConeAngle", 0.0), 0.0, outer);
+    const double given = numberOr(angles, "innerConeAngle", 0.0);
+    const double inner = clampLight(document, pointer + "/spot/innerConeAngle", given, 0.0, outer);
     light.outerConeAngle = static_cast<float>(outer);
     light.innerConeAngle = static_cast<float>(inner);
+    if (given == outer) {
+        document.warn("light-range", pointer + "/spot",
+                      "the inner angle is no smaller than the outer one: the cone has a sharp edge",
+                      "make innerConeAngle smaller than outerConeAngle");
+    }
+}
+
+// Metres; 0 where the file gives none, or none that is above 0: unlimited.
+float readRange(Document& document, const Json& json, const std::string& pointer) {
+    const Json* range = find(json, "range");
+    const double metres = range == nullptr ? 0.0 : range->get<double>();
+    if (range != nullptr && metres <= 0.0) {
+        document.warn("light-range", pointer, fmt::format("is {}; the light's range is unlimited", metres),
+                      "use more than 0, or leave it out");
+    }
+    return static_cast<float>(std::max(metres, 0.0));
+}
+
+// Above 1 stays: a clamped channel would turn the hue.
+float readChannel(Document& document, const std::string& pointer, double value) {
+    if (value > 1.0) {
+        document.warn("light-range", pointer, fmt::format("is {}, above 1; it is used as it is", value),
+                      "scale the colour down and the intensity up");
+        return static_cast<float>(value);
+    }
+    return static_cast<float>(clampLight(document, pointer, value, 0.0, 1.0));
 }
 
 }  // namespace
@@ -120,12 +146,11 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
     constexpr double kLargest = std::numeric_limits<float>::max();
     light.intensity = static_cast<float>(
         clampLight(document, pointer + "/intensity", numberOr(json, "intensity", 1.0), 0.0, kLargest));
-    light.range = static_cast<float>(
-        clampLight(document, pointer + "/range", numberOr(json, "range", 0.0), 0.0, kLargest));
+    light.range = readRange(document, json, pointer + "/range");
     if (const Json* color = find(json, "color")) {
         for (std::size_t i = 0; i < 3; ++i) {
-            light.color[i] = static_cast<float>(clampLight(document, fmt::format("{}/color/{}", pointer, i),
-                                                           (*color)[i].get<double>(), 0.0, kLargest));
+            light.color[i] =
+                readChannel(document, fmt::format("{}/color/{}", pointer, i), (*color)[i].get<double>());
         }
     }
     light.position = {static_cast<float>(world[12]), static_cast<float>(world[13]),

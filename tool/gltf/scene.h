@@ -6,6 +6,7 @@
 #include <glint/result.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -88,14 +89,24 @@ struct Sampler {
     bool operator==(const Sampler&) const = default;
 };
 
+enum class PixelFormat : std::uint8_t {
+    Rgba8,
+    Rgba16  // native byte order
+};
+
+constexpr std::size_t bytesPerPixel(PixelFormat format) {
+    return format == PixelFormat::Rgba16 ? 8 : 4;
+}
+
 // Pixels are empty unless ImportOptions::decodeImages.
 struct Image {
     std::string name;     // glTF name, else the file's name, else "image N"
     std::string pointer;  // JSON pointer
     int width = 0;
     int height = 0;
-    std::vector<std::uint8_t>
-        rgba8;  // 4 * width * height bytes, first row on top, as stored (not linearised)
+    PixelFormat format = PixelFormat::Rgba8;  // Rgba16 where the file has 16 bits
+    // bytesPerPixel(format) * width * height bytes, first row on top, as stored (not linearised).
+    std::vector<std::uint8_t> pixels;
 };
 
 struct Texture {
@@ -122,6 +133,8 @@ struct Scene {
     std::vector<Sampler> samplers;
     std::vector<Image> images;
     std::vector<SourceFile> files;
+    std::vector<std::string> variants;  // names that KHR_materials_variants gives, in the file's order
+    std::string variant;                // the one whose materials the primitives have; empty: the default ones
     std::vector<Diagnostic> warnings;
 };
 

@@ -1,5 +1,8 @@
 #include "gltf/textures.h"
 
+#include "gltf/basisu.h"
+#include "gltf/compression.h"
+#include "gltf/extensions.h"
 #include "gltf/images.h"
 
 #include <fmt/format.h>
@@ -107,30 +110,62 @@ Result<int> TextureTable::use(int texture) {
     return *known;
 }
 
+// The file's image that the texture shows; -1 and a warning where it has none that Glint can decode.
+Result<int> TextureTable::chooseImage(int texture) {
+    constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
+    constexpr const char* kEffect = "materials render without it";
+    const Json& json = document_.json()["textures"][static_cast<std::size_t>(texture)];
+    const std::string pointer = fmt::format("/textures/{}", texture);
+    const int plain = document_.model().textures[static_cast<std::size_t>(texture)].source;
+    // Later ones are what a reader without the extensions would take.
+    int basisu = -1;
+    for (const int image :
+         {extensionSource(json, "EXT_texture_webp"), extensionSource(json, "KHR_texture_basisu"), plain}) {
+        const Decodable decodable = image < 0 ? Decodable::No : decodability(document_, image);
+        if (decodable == Decodable::Yes) {
+            if (basisu >= 0) {
+                document_.warn("texture-basisu", pointer,
+                               fmt::format("/images/{} is KTX2, which this build of Glint does not decode; "
+                                           "/images/{} is used",
+                                           basisu, image),
+                               kBasisuHint);
+            }
+            return image;
+        }
+        basisu = decodable == Decodable::NeedsBasisu ? image : basisu;
+    }
+    if (basisu >= 0) {
+        std::string message =
+            fmt::format("/images/{} is KTX2, which this build of Glint does not decode", basisu);
+        if (requiresExtension(document_, "KHR_texture_basisu")) {
+            return document_.error("texture-basisu", pointer, std::move(message), kBasisuHint);
+        }
+        document_.warn("texture-basisu", pointer, fmt::format("{}; {}", message, kEffect), kBasisuHint);
+        return -1;
+    }
+    if (plain >= 0) {
+        document_.warn("texture-source", pointer,
+                       fmt::format("/images/{} has a format that Glint does not read; {}", plain, kEffect),
+                       kStore);
+        return -1;
+    }
+    const Json* extensions = find(json, "extensions");
+    document_.warn("texture-source", pointer,
+                   extensions != nullptr && !extensions->empty()
+                       ? fmt::format("has a source only through {}, which Glint does not support; {}",
+                                     extensions->begin().key(), kEffect)
+                       : fmt::format("has no source; {}", kEffect),
+                   kStore);
+    return -1;
+}
+
 Result<int> TextureTable::append(int texture) {
     const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(texture)];
-    const std::string pointer = fmt::format("/textures/{}", texture);
-    const char* effect = "materials render without it";
-    if (source.source < 0) {
-        const Json* extensions =
-            find(document_.json()["textures"][static_cast<std::size_t>(texture)], "extensions");
-        const bool extended = extensions != nullptr && !extensions->empty();
-        document_.warn("texture-source", pointer,
-                       extended
-                           ? fmt::format("has a source only through {}, which Glint does not support; {}",
-                                         extensions->begin().key(), effect)
-                           : fmt::format("has no source; {}", effect),
-                       "store the image as PNG or JPEG");
-        return -1;
+    const Result<int> chosen = chooseImage(texture);
+    if (!chosen || *chosen < 0) {
+        return chosen;
     }
-    if (!isDecodableImage(document_, source.source)) {
-        document_.warn(
-            "texture-source", pointer,
-            fmt::format("/images/{} has a format that Glint does not read; {}", source.source, effect),
-            "store the image as PNG or JPEG");
-        return -1;
-    }
-    Result<int> image = useImage(source.source);
+    Result<int> image = useImage(*chosen);
     if (!image) {
         return image;
     }

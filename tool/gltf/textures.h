@@ -19,11 +19,13 @@ public:
     TextureTable(Document& document, Scene& scene);
 
     // Index into scene.textures of the file's texture, appended on first use; -1 and a warning where its
-    // source is missing or of a kind that Glint can't decode.
+    // source is missing or of a kind that Glint can't decode. Error "texture-basisu": it is KTX2 only, the
+    // file requires KHR_texture_basisu, and this build does not have it.
     Result<int> use(int texture);
 
 private:
     Result<int> append(int texture);
+    Result<int> chooseImage(int texture);
     Result<int> useImage(int image);
 
     Document& document_;

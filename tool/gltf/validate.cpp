@@ -1,5 +1,8 @@
 #include "gltf/validate.h"
 
+#include "gltf/material_rules.h"
+#include "gltf/rules.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -8,41 +11,7 @@ namespace glint::gltf {
 
 namespace {
 
-// Above this, tinygltf's int no longer holds the value.
-constexpr double kMaxInt = 2147483647.0;
-// Above this, a double skips integers.
-constexpr double kMaxSize = 9007199254740991.0;
-
-constexpr Rule text(std::string_view name, bool required = false) {
-    return {.name = name, .kind = Kind::Text, .required = required};
-}
-constexpr Rule boolean(std::string_view name) {
-    return {.name = name, .kind = Kind::Bool};
-}
-constexpr Rule number(std::string_view name, bool required = false) {
-    return {.name = name, .kind = Kind::Number, .required = required};
-}
-constexpr Rule numbers(std::string_view name, std::size_t length) {
-    return {.name = name, .kind = Kind::Numbers, .length = length};
-}
-constexpr Rule integer(std::string_view name, double min, double max, bool required = false) {
-    return {.name = name, .kind = Kind::Integer, .required = required, .min = min, .max = max};
-}
-constexpr Rule size(std::string_view name, double min = 0.0, bool required = false) {
-    return integer(name, min, kMaxSize, required);
-}
-constexpr Rule index(std::string_view name, std::string_view target, bool required = false) {
-    return {.name = name, .kind = Kind::Index, .required = required, .target = target};
-}
-constexpr Rule indices(std::string_view name, std::string_view target) {
-    return {.name = name, .kind = Kind::Indices, .target = target};
-}
-constexpr Rule object(std::string_view name, std::span<const Rule> rules, bool required = false) {
-    return {.name = name, .kind = Kind::Object, .required = required, .rules = rules};
-}
-constexpr Rule objects(std::string_view name, std::span<const Rule> rules) {
-    return {.name = name, .kind = Kind::Objects, .rules = rules};
-}
+using namespace rules;
 
 // Buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an int.
 constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
@@ -67,33 +36,16 @@ constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
 constexpr std::array kAttributeRules{index("POSITION", "/accessors"),   index("NORMAL", "/accessors"),
                                      index("TANGENT", "/accessors"),    index("TEXCOORD_0", "/accessors"),
                                      index("TEXCOORD_1", "/accessors"), index("COLOR_0", "/accessors")};
+constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
+                                     index("material", "/materials", true)};
+constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
+constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
 constexpr std::array kPrimitive{object("attributes", kAttributeRules, true), index("indices", "/accessors"),
-                                index("material", "/materials"), integer("mode", 0.0, kMaxInt)};
+                                index("material", "/materials"), integer("mode", 0.0, kMaxInt),
+                                object("extensions", kPrimitiveExtensions)};
 constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive)};
 
-// Materials and textures
-constexpr std::array kTransform{numbers("offset", 2), number("rotation"), numbers("scale", 2),
-                                integer("texCoord", 0.0, kMaxInt)};
-constexpr std::array kTextureInfoExtensions{object("KHR_texture_transform", kTransform)};
-constexpr std::array kTextureInfo{index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
-                                  number("scale"), number("strength"),
-                                  object("extensions", kTextureInfoExtensions)};
-constexpr std::array kMetallicRoughness{numbers("baseColorFactor", 4), number("metallicFactor"),
-                                        number("roughnessFactor"), object("baseColorTexture", kTextureInfo),
-                                        object("metallicRoughnessTexture", kTextureInfo)};
-constexpr std::array kEmissiveStrength{number("emissiveStrength")};
-constexpr std::array kMaterialExtensions{object("KHR_materials_emissive_strength", kEmissiveStrength),
-                                         object("KHR_materials_unlit", {})};
-constexpr std::array kMaterial{text("name"),
-                               object("pbrMetallicRoughness", kMetallicRoughness),
-                               object("normalTexture", kTextureInfo),
-                               object("occlusionTexture", kTextureInfo),
-                               object("emissiveTexture", kTextureInfo),
-                               numbers("emissiveFactor", 3),
-                               text("alphaMode"),
-                               number("alphaCutoff"),
-                               boolean("doubleSided"),
-                               object("extensions", kMaterialExtensions)};
+// Textures
 constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
                               object("extensions", {})};
 constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
@@ -122,7 +74,10 @@ constexpr std::array kSpot{number("innerConeAngle"), number("outerConeAngle")};
 constexpr std::array kLight{text("name"),        text("type", true), numbers("color", 3),
                             number("intensity"), number("range"),    object("spot", kSpot)};
 constexpr std::array kLights{objects("lights", kLight)};
-constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights)};
+constexpr std::array kVariant{text("name", true)};
+constexpr std::array kVariants{objects("variants", kVariant, true)};
+constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
+                                     object("KHR_materials_variants", kVariants)};
 
 constexpr std::array kRoot{
     object("extensions", kRootExtensions),

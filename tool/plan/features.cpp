@@ -1,5 +1,7 @@
 #include "plan/features.h"
 
+#include "plan/rules.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,267 +10,131 @@ namespace glint {
 
 namespace {
 
-constexpr const char* kUnlitReadsBaseColor = "unlit shading reads the base colour alone";
-
-bool has(FeatureMask mask, Feature feature) {
-    return (mask & bit(feature)) != 0;
-}
-
-Presence absent() {
-    return {};
-}
-
-Presence present() {
-    return {true, {}};
-}
-
-Presence dropped(std::string reason) {
-    return {false, std::move(reason)};
-}
-
-bool isIdentity(const TextureTransform& transform) {
-    return transform.offset[0] == 0.0F && transform.offset[1] == 0.0F && transform.rotation == 0.0F &&
-           transform.scale[0] == 1.0F && transform.scale[1] == 1.0F;
-}
-
-bool isBlack(const Material& material) {
-    return material.baseColorFactor[0] == 0.0F && material.baseColorFactor[1] == 0.0F &&
-           material.baseColorFactor[2] == 0.0F;
-}
-
-bool emits(const Material& material) {
-    return material.emissiveStrength != 0.0F &&
-           (material.emissiveFactor[0] != 0.0F || material.emissiveFactor[1] != 0.0F ||
-            material.emissiveFactor[2] != 0.0F);
-}
-
-bool hasTexCoords(const PrimitiveInputs& primitive, int set) {
-    return set == 0 ? primitive.hasTexCoords0 : set == 1 && primitive.hasTexCoords1;
-}
-
-// Whether a slot can be read at all; `neutral` is the reason why reading it changes nothing, or null.
-Presence textureRule(const Material& material, const PrimitiveInputs& primitive, TextureSlot slot,
-                     const char* neutral) {
-    const TextureInfo& info = material.texture(slot);
-    if (info.texture < 0) {
-        return absent();
-    }
-    if (neutral != nullptr) {
-        return dropped(neutral);
-    }
-    if (info.texCoord > 1) {
-        return dropped(fmt::format("it reads TEXCOORD_{}; Glint reads sets 0 and 1", info.texCoord));
-    }
-    if (!hasTexCoords(primitive, info.texCoord)) {
-        return dropped(fmt::format("the primitive has no TEXCOORD_{}", info.texCoord));
-    }
-    return present();
-}
-
-// Whether alpha can fall below the cut-off: whether testing it can change anything.
-bool canFailAlphaTest(const Material& material, const PrimitiveInputs& primitive) {
-    if (material.alphaCutoff <= 0.0F) {
-        return false;
-    }
-    const TextureInfo& info = material.texture(TextureSlot::BaseColor);
-    const bool textured = info.texture >= 0 && hasTexCoords(primitive, info.texCoord);
-    return textured || primitive.colors == ColorContent::Varying ||
-           material.baseColorFactor[3] < material.alphaCutoff;
-}
-
-bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options) {
-    return options.alpha == AlphaPolicy::Tested && material.alphaMode == AlphaMode::Mask &&
-           canFailAlphaTest(material, primitive);
-}
-
-// The slots whose textures a key reads.
-constexpr struct {
-    Feature feature;
-    TextureSlot slot;
-} kTextureFeatures[] = {
-    {Feature::BaseColorTexture, TextureSlot::BaseColor},
-    {Feature::MetallicRoughnessTexture, TextureSlot::MetallicRoughness},
-    {Feature::NormalTexture, TextureSlot::Normal},
-    {Feature::OcclusionTexture, TextureSlot::Occlusion},
-    {Feature::EmissiveTexture, TextureSlot::Emissive},
-};
-
-Presence unlitRule(const Material& material, const PrimitiveInputs&, const KeyOptions&, FeatureMask) {
-    return material.unlit ? present() : absent();
-}
-
-Presence baseColorTextureRule(const Material& material, const PrimitiveInputs& primitive,
-                              const KeyOptions& options, FeatureMask) {
-    const bool black = isBlack(material) && !isAlphaTested(material, primitive, options);
-    return textureRule(material, primitive, TextureSlot::BaseColor,
-                       black ? "baseColorFactor is black" : nullptr);
-}
-
-Presence metallicRoughnessTextureRule(const Material& material, const PrimitiveInputs& primitive,
-                                      const KeyOptions&, FeatureMask soFar) {
-    const bool zero = material.metallicFactor == 0.0F && material.roughnessFactor == 0.0F;
-    const char* neutral = has(soFar, Feature::Unlit) ? kUnlitReadsBaseColor
-                          : zero                     ? "metallicFactor and roughnessFactor are 0"
-                                                     : nullptr;
-    return textureRule(material, primitive, TextureSlot::MetallicRoughness, neutral);
-}
-
-Presence normalTextureRule(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
-                           FeatureMask soFar) {
-    const char* neutral = has(soFar, Feature::Unlit)     ? kUnlitReadsBaseColor
-                          : material.normalScale == 0.0F ? "its scale is 0"
-                                                         : nullptr;
-    return textureRule(material, primitive, TextureSlot::Normal, neutral);
-}
-
-Presence occlusionTextureRule(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
-                              FeatureMask soFar) {
-    const char* neutral = has(soFar, Feature::Unlit)           ? kUnlitReadsBaseColor
-                          : material.occlusionStrength == 0.0F ? "its strength is 0"
-                                                               : nullptr;
-    return textureRule(material, primitive, TextureSlot::Occlusion, neutral);
-}
-
-Presence emissiveTextureRule(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
-                             FeatureMask soFar) {
-    const char* neutral = has(soFar, Feature::Unlit) ? kUnlitReadsBaseColor
-                          : !emits(material)         ? "emissiveFactor times emissiveStrength is 0"
-                                                     : nullptr;
-    return textureRule(material, primitive, TextureSlot::Emissive, neutral);
-}
-
-Presence emissiveStrengthRule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
-                              FeatureMask soFar) {
-    if (!material.hasEmissiveStrength && material.emissiveStrength == 1.0F) {
-        return absent();
-    }
-    if (has(soFar, Feature::Unlit)) {
-        return dropped(kUnlitReadsBaseColor);
-    }
-    if (material.emissiveStrength == 1.0F) {
-        return dropped("emissiveStrength is 1");
-    }
-    // A strength of 0 is not neutral unless nothing was emitted in the first place.
-    const auto& factor = material.emissiveFactor;
-    return factor[0] == 0.0F && factor[1] == 0.0F && factor[2] == 0.0F ? dropped("emissiveFactor is black")
-                                                                       : present();
-}
-
-template <int kSet>
-Presence texCoordRule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
-                      FeatureMask soFar) {
-    const bool used = std::ranges::any_of(kTextureFeatures, [&](const auto& entry) {
-        return has(soFar, entry.feature) && material.texture(entry.slot).texCoord == kSet;
-    });
-    return used ? present() : absent();
-}
-
-Presence textureTransformRule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
-                              FeatureMask soFar) {
-    bool given = false;
-    for (const auto& entry : kTextureFeatures) {
-        const TextureInfo& info = material.texture(entry.slot);
-        const bool moves = !isIdentity(info.transform);
-        if (has(soFar, entry.feature) && moves) {
-            return present();
-        }
-        given = given || info.hasTransform || moves;
-    }
-    return given ? dropped("every texture that is read has the identity transform") : absent();
-}
-
-Presence vertexColorRule(const Material& material, const PrimitiveInputs& primitive,
-                         const KeyOptions& options, FeatureMask) {
-    if (primitive.colors == ColorContent::None) {
-        return absent();
-    }
-    if (primitive.colors == ColorContent::White) {
-        return dropped("COLOR_0 is white everywhere");
-    }
-    if (isBlack(material) && !isAlphaTested(material, primitive, options)) {
-        return dropped("baseColorFactor is black");
-    }
-    return present();
-}
-
-Presence normalsRule(const Material&, const PrimitiveInputs& primitive, const KeyOptions&,
-                     FeatureMask soFar) {
-    if (!primitive.hasNormals) {
-        return absent();
-    }
-    return has(soFar, Feature::Unlit) ? dropped(kUnlitReadsBaseColor) : present();
-}
-
-Presence tangentsRule(const Material&, const PrimitiveInputs& primitive, const KeyOptions&,
-                      FeatureMask soFar) {
-    if (!primitive.hasTangents) {
-        return absent();
-    }
-    if (!has(soFar, Feature::NormalTexture)) {
-        return dropped("no normal texture reads them");
-    }
-    return has(soFar, Feature::Normals) ? present() : dropped("the primitive has no NORMAL");
-}
-
-Presence doubleSidedRule(const Material& material, const PrimitiveInputs&, const KeyOptions&,
-                         FeatureMask soFar) {
-    if (!material.doubleSided) {
-        return absent();
-    }
-    return has(soFar, Feature::Unlit) ? dropped(kUnlitReadsBaseColor) : present();
-}
-
-Presence alphaMaskRule(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
-                       FeatureMask) {
-    switch (material.alphaMode) {
-        case AlphaMode::Opaque:
-            return absent();
-        case AlphaMode::Blend:
-            return dropped("alphaMode BLEND is drawn opaque: rays see no blending order");
-        case AlphaMode::Mask:
-            break;
-    }
-    if (options.alpha == AlphaPolicy::Opaque) {
-        return dropped("hits are forced opaque (--alpha opaque)");
-    }
-    return canFailAlphaTest(material, primitive) ? present() : dropped("alpha is never below alphaCutoff");
-}
-
+// Lobes first, as their textures ask for them; what reads texture coordinates and tangents before those.
 constexpr FeatureInfo kTable[] = {
     {Feature::Unlit, "unlit", "Unlit", "GLINT_UNLIT", "materials[].extensions.KHR_materials_unlit",
-     "never: its presence changes the shading", unlitRule},
+     "never: its presence changes the shading", rules::unlit},
+    {Feature::SpecularGlossiness, "specularGlossiness", "SpecGloss", "GLINT_SPECULAR_GLOSSINESS",
+     "materials[].extensions.KHR_materials_pbrSpecularGlossiness",
+     "unlit; else never: it is another base model", rules::specularGlossiness},
+    {Feature::Ior, "ior", "Ior", "GLINT_IOR", "materials[].extensions.KHR_materials_ior",
+     "ior is 1.5, or metallicFactor is 1", rules::ior},
+    {Feature::Specular, "specular", "Specular", "GLINT_SPECULAR",
+     "materials[].extensions.KHR_materials_specular",
+     "specularFactor is 1 and specularColorFactor white, or metallicFactor is 1", rules::specular},
+    {Feature::Clearcoat, "clearcoat", "Clearcoat", "GLINT_CLEARCOAT",
+     "materials[].extensions.KHR_materials_clearcoat", "clearcoatFactor is 0", rules::clearcoat},
+    {Feature::Sheen, "sheen", "Sheen", "GLINT_SHEEN", "materials[].extensions.KHR_materials_sheen",
+     "sheenColorFactor is black", rules::sheen},
+    {Feature::Anisotropy, "anisotropy", "Anisotropy", "GLINT_ANISOTROPY",
+     "materials[].extensions.KHR_materials_anisotropy",
+     "anisotropyStrength is 0, or roughnessFactor is 1, or nothing gives a direction", rules::anisotropy},
+    {Feature::Iridescence, "iridescence", "Iridescence", "GLINT_IRIDESCENCE",
+     "materials[].extensions.KHR_materials_iridescence",
+     "iridescenceFactor is 0, or the film has no thickness, or iridescenceIor is 1", rules::iridescence},
+    {Feature::Transmission, "transmission", "Transmission", "GLINT_TRANSMISSION",
+     "materials[].extensions.KHR_materials_transmission", "transmissionFactor is 0, or metallicFactor is 1",
+     rules::transmission},
+    {Feature::DiffuseTransmission, "diffuseTransmission", "DiffuseTransmission", "GLINT_DIFFUSE_TRANSMISSION",
+     "materials[].extensions.KHR_materials_diffuse_transmission",
+     "diffuseTransmissionFactor is 0, or metallicFactor is 1, or transmissionFactor is 1",
+     rules::diffuseTransmission},
+    {Feature::Volume, "volume", "Volume", "GLINT_VOLUME", "materials[].extensions.KHR_materials_volume",
+     "thicknessFactor is 0, or nothing transmits light", rules::volume},
+    {Feature::Attenuation, "attenuation", "Attenuation", "GLINT_ATTENUATION",
+     "materials[].extensions.KHR_materials_volume.attenuationColor",
+     "attenuationColor is white, or attenuationDistance infinite, or there is no volume", rules::attenuation},
+    {Feature::Dispersion, "dispersion", "Dispersion", "GLINT_DISPERSION",
+     "materials[].extensions.KHR_materials_dispersion",
+     "dispersion is 0, or ior is 1, or there is no volume or no transmission", rules::dispersion},
     {Feature::BaseColorTexture, "baseColorTexture", "BaseTex", "GLINT_BASE_COLOR_TEXTURE",
-     "materials[].pbrMetallicRoughness.baseColorTexture", "baseColorFactor is black", baseColorTextureRule},
+     "materials[].pbrMetallicRoughness.baseColorTexture", "baseColorFactor is black",
+     rules::baseColorTexture},
     {Feature::MetallicRoughnessTexture, "metallicRoughnessTexture", "MetalRoughTex",
      "GLINT_METALLIC_ROUGHNESS_TEXTURE", "materials[].pbrMetallicRoughness.metallicRoughnessTexture",
-     "metallicFactor and roughnessFactor are 0", metallicRoughnessTextureRule},
+     "metallicFactor and roughnessFactor are 0", rules::metallicRoughnessTexture},
     {Feature::NormalTexture, "normalTexture", "NormalTex", "GLINT_NORMAL_TEXTURE",
-     "materials[].normalTexture", "scale is 0", normalTextureRule},
+     "materials[].normalTexture", "scale is 0", rules::normalTexture},
     {Feature::OcclusionTexture, "occlusionTexture", "OcclusionTex", "GLINT_OCCLUSION_TEXTURE",
-     "materials[].occlusionTexture", "strength is 0", occlusionTextureRule},
+     "materials[].occlusionTexture", "strength is 0", rules::occlusionTexture},
     {Feature::EmissiveTexture, "emissiveTexture", "EmissiveTex", "GLINT_EMISSIVE_TEXTURE",
-     "materials[].emissiveTexture", "emissiveFactor times emissiveStrength is 0", emissiveTextureRule},
+     "materials[].emissiveTexture", "emissiveFactor times emissiveStrength is 0", rules::emissiveTexture},
+    {Feature::ClearcoatTexture, "clearcoatTexture", "ClearcoatTex", "GLINT_CLEARCOAT_TEXTURE",
+     "materials[].extensions.KHR_materials_clearcoat.clearcoatTexture", "there is no clearcoat",
+     rules::textureOf<TextureSlot::Clearcoat, Feature::Clearcoat>},
+    {Feature::ClearcoatRoughnessTexture, "clearcoatRoughnessTexture", "ClearcoatRoughTex",
+     "GLINT_CLEARCOAT_ROUGHNESS_TEXTURE",
+     "materials[].extensions.KHR_materials_clearcoat.clearcoatRoughnessTexture",
+     "clearcoatRoughnessFactor is 0", rules::textureOf<TextureSlot::ClearcoatRoughness, Feature::Clearcoat>},
+    {Feature::ClearcoatSharesNormal, "clearcoatSharesNormal", "ClearcoatSharesNormal",
+     "GLINT_CLEARCOAT_SHARES_NORMAL", "materials[].extensions.KHR_materials_clearcoat.clearcoatNormalTexture",
+     "it is another texture than normalTexture", rules::clearcoatSharesNormal},
+    {Feature::ClearcoatNormalTexture, "clearcoatNormalTexture", "ClearcoatNormalTex",
+     "GLINT_CLEARCOAT_NORMAL_TEXTURE",
+     "materials[].extensions.KHR_materials_clearcoat.clearcoatNormalTexture",
+     "scale is 0, or it is normalTexture", rules::clearcoatNormalTexture},
+    {Feature::SheenColorTexture, "sheenColorTexture", "SheenColorTex", "GLINT_SHEEN_COLOR_TEXTURE",
+     "materials[].extensions.KHR_materials_sheen.sheenColorTexture", "there is no sheen",
+     rules::textureOf<TextureSlot::SheenColor, Feature::Sheen>},
+    {Feature::SheenRoughnessTexture, "sheenRoughnessTexture", "SheenRoughTex",
+     "GLINT_SHEEN_ROUGHNESS_TEXTURE", "materials[].extensions.KHR_materials_sheen.sheenRoughnessTexture",
+     "sheenRoughnessFactor is 0", rules::textureOf<TextureSlot::SheenRoughness, Feature::Sheen>},
+    {Feature::AnisotropyTexture, "anisotropyTexture", "AnisotropyTex", "GLINT_ANISOTROPY_TEXTURE",
+     "materials[].extensions.KHR_materials_anisotropy.anisotropyTexture", "there is no anisotropy",
+     rules::textureOf<TextureSlot::Anisotropy, Feature::Anisotropy>},
+    {Feature::SpecularTexture, "specularTexture", "SpecularTex", "GLINT_SPECULAR_TEXTURE",
+     "materials[].extensions.KHR_materials_specular.specularTexture", "specularFactor is 0",
+     rules::textureOf<TextureSlot::Specular, Feature::Specular>},
+    {Feature::SpecularColorTexture, "specularColorTexture", "SpecularColorTex",
+     "GLINT_SPECULAR_COLOR_TEXTURE", "materials[].extensions.KHR_materials_specular.specularColorTexture",
+     "specularFactor is 0, or specularColorFactor is black",
+     rules::textureOf<TextureSlot::SpecularColor, Feature::Specular>},
+    {Feature::IridescenceTexture, "iridescenceTexture", "IridescenceTex", "GLINT_IRIDESCENCE_TEXTURE",
+     "materials[].extensions.KHR_materials_iridescence.iridescenceTexture", "there is no iridescence",
+     rules::textureOf<TextureSlot::Iridescence, Feature::Iridescence>},
+    {Feature::IridescenceThicknessTexture, "iridescenceThicknessTexture", "FilmThicknessTex",
+     "GLINT_IRIDESCENCE_THICKNESS_TEXTURE",
+     "materials[].extensions.KHR_materials_iridescence.iridescenceThicknessTexture",
+     "iridescenceThicknessMinimum and Maximum are the same",
+     rules::textureOf<TextureSlot::IridescenceThickness, Feature::Iridescence>},
+    {Feature::TransmissionTexture, "transmissionTexture", "TransmissionTex", "GLINT_TRANSMISSION_TEXTURE",
+     "materials[].extensions.KHR_materials_transmission.transmissionTexture", "there is no transmission",
+     rules::textureOf<TextureSlot::Transmission, Feature::Transmission>},
+    {Feature::ThicknessTexture, "thicknessTexture", "ThicknessTex", "GLINT_THICKNESS_TEXTURE",
+     "materials[].extensions.KHR_materials_volume.thicknessTexture",
+     "there is no attenuation, which alone reads it",
+     rules::textureOf<TextureSlot::Thickness, Feature::Attenuation>},
+    {Feature::DiffuseTransmissionTexture, "diffuseTransmissionTexture", "DiffuseTransmissionTex",
+     "GLINT_DIFFUSE_TRANSMISSION_TEXTURE",
+     "materials[].extensions.KHR_materials_diffuse_transmission.diffuseTransmissionTexture",
+     "there is no diffuseTransmission",
+     rules::textureOf<TextureSlot::DiffuseTransmission, Feature::DiffuseTransmission>},
+    {Feature::DiffuseTransmissionColorTexture, "diffuseTransmissionColorTexture",
+     "DiffuseTransmissionColorTex", "GLINT_DIFFUSE_TRANSMISSION_COLOR_TEXTURE",
+     "materials[].extensions.KHR_materials_diffuse_transmission.diffuseTransmissionColorTexture",
+     "diffuseTransmissionColorFactor is black",
+     rules::textureOf<TextureSlot::DiffuseTransmissionColor, Feature::DiffuseTransmission>},
     {Feature::EmissiveStrength, "emissiveStrength", "EmissiveStrength", "GLINT_EMISSIVE_STRENGTH",
      "materials[].extensions.KHR_materials_emissive_strength",
-     "emissiveStrength is 1, or emissiveFactor is black", emissiveStrengthRule},
+     "emissiveStrength is 1, or emissiveFactor is black", rules::emissiveStrength},
     {Feature::TexCoord0, "texCoord0", "Uv0", "GLINT_TEXCOORD_0", "textureInfo.texCoord = 0",
-     "no texture that is read uses the set", texCoordRule<0>},
+     "no texture that is read uses the set", rules::texCoord<0>},
     {Feature::TexCoord1, "texCoord1", "Uv1", "GLINT_TEXCOORD_1", "textureInfo.texCoord = 1",
-     "no texture that is read uses the set", texCoordRule<1>},
+     "no texture that is read uses the set", rules::texCoord<1>},
     {Feature::TextureTransform, "textureTransform", "Transform", "GLINT_TEXTURE_TRANSFORM",
      "textureInfo.extensions.KHR_texture_transform", "identity on every texture that is read",
-     textureTransformRule},
+     rules::textureTransform},
     {Feature::VertexColor, "vertexColor", "Color", "GLINT_VERTEX_COLOR",
      "meshes[].primitives[].attributes.COLOR_0", "white everywhere, or baseColorFactor is black",
-     vertexColorRule},
+     rules::vertexColor},
     {Feature::Normals, "normals", "Normals", "GLINT_NORMALS", "meshes[].primitives[].attributes.NORMAL",
-     "unlit", normalsRule},
+     "unlit", rules::normals},
     {Feature::Tangents, "tangents", "Tangents", "GLINT_TANGENTS", "meshes[].primitives[].attributes.TANGENT",
-     "no normal texture is read", tangentsRule},
+     "neither a normal texture nor anisotropy is read", rules::tangents},
     {Feature::DoubleSided, "doubleSided", "DoubleSided", "GLINT_DOUBLE_SIDED", "materials[].doubleSided",
-     "unlit", doubleSidedRule},
+     "unlit", rules::doubleSided},
     {Feature::AlphaMask, "alphaMask", "Mask", "GLINT_ALPHA_MASK", "materials[].alphaMode = MASK",
-     "alpha is never below alphaCutoff, or hits are forced opaque", alphaMaskRule},
+     "alpha is never below alphaCutoff, or hits are forced opaque", rules::alphaMask},
 };
 
 }  // namespace
@@ -280,7 +146,7 @@ std::span<const FeatureInfo> featureTable() {
 std::vector<std::string_view> featureNames(FeatureMask mask) {
     std::vector<const FeatureInfo*> rows;
     for (const FeatureInfo& info : kTable) {
-        if (has(mask, info.feature)) {
+        if ((mask & bit(info.feature)) != 0) {
             rows.push_back(&info);
         }
     }

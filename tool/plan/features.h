@@ -21,6 +21,18 @@ using FeatureMask = std::uint64_t;
 //   bits 32..63  inputs: what the surface's parameters are read from
 enum class Feature : std::uint8_t {
     Unlit = 0,
+    SpecularGlossiness,
+    Ior,
+    Specular,
+    Clearcoat,
+    Sheen,
+    Anisotropy,
+    Iridescence,
+    Transmission,
+    DiffuseTransmission,
+    Volume,       // not thin-walled: light refracts
+    Attenuation,  // the volume absorbs
+    Dispersion,
     BaseColorTexture = 32,
     MetallicRoughnessTexture,
     NormalTexture,
@@ -35,6 +47,21 @@ enum class Feature : std::uint8_t {
     Tangents,
     DoubleSided,
     AlphaMask,
+    ClearcoatTexture,
+    ClearcoatRoughnessTexture,
+    ClearcoatNormalTexture,
+    ClearcoatSharesNormal,  // the coat's normal texture is that of the base: read once
+    SheenColorTexture,
+    SheenRoughnessTexture,
+    AnisotropyTexture,
+    SpecularTexture,
+    SpecularColorTexture,
+    IridescenceTexture,
+    IridescenceThicknessTexture,
+    TransmissionTexture,
+    ThicknessTexture,
+    DiffuseTransmissionTexture,
+    DiffuseTransmissionColorTexture,
 };
 
 constexpr FeatureMask bit(Feature feature) {
@@ -47,6 +74,8 @@ enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
 
 struct KeyOptions {
     AlphaPolicy alpha = AlphaPolicy::Opaque;
+    // Lobes that may be in a key; a lobe left out takes the inputs with it that nothing else reads.
+    FeatureMask keptLobes = kLobeMask;
 };
 
 // What a feature's rule says of one (material, primitive).

@@ -9,7 +9,30 @@
 namespace glint {
 
 // Texture slots, in the order of MaterialRecord::textures (shaders/interop/scene.h).
-enum class TextureSlot : std::uint8_t { BaseColor, MetallicRoughness, Normal, Occlusion, Emissive, Count };
+// KHR_materials_pbrSpecularGlossiness keeps its diffuse texture in BaseColor, its other one in
+// MetallicRoughness.
+enum class TextureSlot : std::uint8_t {
+    BaseColor,
+    MetallicRoughness,
+    Normal,
+    Occlusion,
+    Emissive,
+    Clearcoat,
+    ClearcoatRoughness,
+    ClearcoatNormal,
+    SheenColor,
+    SheenRoughness,
+    Anisotropy,
+    Specular,
+    SpecularColor,
+    Iridescence,
+    IridescenceThickness,
+    Transmission,
+    Thickness,
+    DiffuseTransmission,
+    DiffuseTransmissionColor,
+    Count
+};
 inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::Count);
 
 // KHR_texture_transform: uv' = T(offset) R(rotation) S(scale) uv; rotation in radians, counter-clockwise.
@@ -24,6 +47,76 @@ struct TextureInfo {
     int texCoord = 0;  // the UV set, the extension's override already applied
     TextureTransform transform;
     bool hasTransform = false;  // the file gives KHR_texture_transform here, identity or not
+};
+
+// The extensions that change what light does at the surface. `given`: the file has the extension, neutral or
+// not.
+
+struct SpecularGlossiness {  // KHR_materials_pbrSpecularGlossiness; its diffuseFactor is baseColorFactor
+    bool given = false;
+    std::array<float, 3> specularFactor{1.0F, 1.0F, 1.0F};
+    float glossinessFactor = 1.0F;
+};
+
+struct Ior {  // KHR_materials_ior
+    bool given = false;
+    float ior = 1.5F;  // 1 or more; 0: reflects everything
+};
+
+struct Specular {  // KHR_materials_specular
+    bool given = false;
+    float factor = 1.0F;
+    std::array<float, 3> colorFactor{1.0F, 1.0F, 1.0F};  // may exceed 1
+};
+
+struct Clearcoat {  // KHR_materials_clearcoat
+    bool given = false;
+    float factor = 0.0F;
+    float roughnessFactor = 0.0F;
+    float normalScale = 1.0F;
+};
+
+struct Sheen {  // KHR_materials_sheen
+    bool given = false;
+    std::array<float, 3> colorFactor{0.0F, 0.0F, 0.0F};
+    float roughnessFactor = 0.0F;
+};
+
+struct Anisotropy {  // KHR_materials_anisotropy
+    bool given = false;
+    float strength = 0.0F;
+    float rotation = 0.0F;  // radians, counter-clockwise from the tangent
+};
+
+struct Iridescence {  // KHR_materials_iridescence
+    bool given = false;
+    float factor = 0.0F;
+    float ior = 1.3F;
+    float thicknessMinimum = 100.0F;  // nanometres
+    float thicknessMaximum = 400.0F;
+};
+
+struct Transmission {  // KHR_materials_transmission
+    bool given = false;
+    float factor = 0.0F;
+};
+
+struct DiffuseTransmission {  // KHR_materials_diffuse_transmission
+    bool given = false;
+    float factor = 0.0F;
+    std::array<float, 3> colorFactor{1.0F, 1.0F, 1.0F};
+};
+
+struct Volume {  // KHR_materials_volume
+    bool given = false;
+    float thicknessFactor = 0.0F;      // metres in the space of the mesh; 0: thin-walled
+    float attenuationDistance = 0.0F;  // metres; 0 means infinite
+    std::array<float, 3> attenuationColor{1.0F, 1.0F, 1.0F};
+};
+
+struct Dispersion {  // KHR_materials_dispersion
+    bool given = false;
+    float dispersion = 0.0F;  // 20 / Abbe number
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -43,8 +136,19 @@ struct Material {
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
     bool unlit = false;  // KHR_materials_unlit
+    SpecularGlossiness specularGlossiness;
+    Ior ior;
+    Specular specular;
+    Clearcoat clearcoat;
+    Sheen sheen;
+    Anisotropy anisotropy;
+    Iridescence iridescence;
+    Transmission transmission;
+    DiffuseTransmission diffuseTransmission;
+    Volume volume;
+    Dispersion dispersion;
     std::array<TextureInfo, kTextureSlots> textures;
-    // Material extensions that the file uses here and that Glint does not shade yet.
+    // Material extensions that the file uses here and that Glint does not shade.
     std::vector<std::string> unsupportedExtensions;
 
     const TextureInfo& texture(TextureSlot slot) const {

@@ -33,6 +33,8 @@ void collectKeys(std::span<const Material> materials, std::span<const PrimitiveI
         std::vector<std::pair<std::string, std::string>> dropped;
         const FeatureMask mask = makeKey(materials[materialIndex], primitives[i], options, &dropped);
         masks.push_back(mask);
+        plan.primaryMaskOfPrimitive.push_back(
+            makeKey(materials[materialIndex], primitives[i], keepAllLobes(options)));
         Key& key = byMask[mask];
         key.mask = mask;
         key.primitives.push_back(static_cast<int>(i));
@@ -52,6 +54,21 @@ void collectKeys(std::span<const Material> materials, std::span<const PrimitiveI
     for (const FeatureMask mask : masks) {
         plan.keyOfPrimitive.push_back(indexOf[mask]);
     }
+}
+
+struct FeatureSpread {
+    FeatureMask always = 0;     // features of every mask
+    FeatureMask sometimes = 0;  // features of some
+};
+
+FeatureSpread spreadOf(const std::vector<FeatureMask>& masks) {
+    FeatureMask any = 0;
+    FeatureMask every = masks.empty() ? 0 : ~FeatureMask{0};
+    for (const FeatureMask mask : masks) {
+        any |= mask;
+        every &= mask;
+    }
+    return {every, any & ~every};
 }
 
 // Which cluster a key belongs to: keys with equal values share a case.
@@ -124,15 +141,17 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
     collectKeys(materials, primitives, options.keys, plan, droppedBy);
     clusterKeys(options.merge, plan);
 
-    FeatureMask anyKey = 0;
-    FeatureMask everyKey = plan.keys.empty() ? 0 : ~FeatureMask{0};
+    std::vector<FeatureMask> hitMasks;
     for (const Key& key : plan.keys) {
-        anyKey |= key.mask;
-        everyKey &= key.mask;
+        hitMasks.push_back(key.mask);
     }
-    plan.always = everyKey;
-    plan.sometimes = anyKey & ~everyKey;
-    plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2(std::popcount(anyKey));
+    const FeatureSpread hits = spreadOf(hitMasks);
+    const FeatureSpread primary = spreadOf(plan.primaryMaskOfPrimitive);
+    plan.always = hits.always;
+    plan.sometimes = hits.sometimes;
+    plan.primaryAlways = primary.always;
+    plan.primarySometimes = primary.sometimes;
+    plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2(std::popcount(hits.always | hits.sometimes));
     for (auto& [what, materialSet] : droppedBy) {
         plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
     }

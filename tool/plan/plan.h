@@ -26,7 +26,7 @@ struct DroppedFeature {
     std::vector<int> materials;  // ascending
 };
 
-// The set of features that shading some primitives needs.
+// The set of features that shading hits of some primitives needs.
 struct Key {
     FeatureMask mask = 0;
     std::vector<int> materials;   // ascending
@@ -44,19 +44,27 @@ struct Case {
     std::vector<int> materials;  // ascending
 };
 
+// Keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes); the key of a
+// primitive's hits is part of its primary mask, and the same where hits keep all.
 struct Plan {
     std::vector<Key> keys;            // ascending by mask
     std::vector<Case> cases;          // ascending by their smallest key
     std::vector<int> keyOfPrimitive;  // by primitive
+    std::vector<FeatureMask> primaryMaskOfPrimitive;
     std::vector<DroppedFeature> dropped;
     FeatureMask always = 0;     // features of every key
     FeatureMask sometimes = 0;  // features of some keys
-    double keysPossible = 0.0;  // 2^n for n features that occur in the scene
+    FeatureMask primaryAlways = 0;
+    FeatureMask primarySometimes = 0;
+    double keysPossible = 0.0;  // 2^n for n features that occur in keys
 };
 
 // The canonical key of one primitive. `dropped`, if not null, receives (feature name, reason) pairs.
 FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
                     std::vector<std::pair<std::string, std::string>>* dropped = nullptr);
+
+// The same options for primary surfaces.
+KeyOptions keepAllLobes(KeyOptions options);
 
 // Clusters the keys of `primitives`. Requires every PrimitiveInputs::material to index `materials`.
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,

@@ -24,6 +24,12 @@ void registerPasses(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
+    // What literals decide within a function goes before anything is inlined: inlining every lobe of the BSDF to drop
+    // it afterwards takes several times as long.
+    optimizer.RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateBlockMergePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
     optimizer.RegisterPerformancePasses();
     // What the performance passes uncover late, folded once more: features are decided through two masks.
     optimizer.RegisterPass(spvtools::CreateCCPPass())

@@ -36,6 +36,8 @@ public:
         std::uint32_t blasCount = 0;
         std::uint64_t blasBytes = 0;  // after compaction
         std::uint64_t blasUncompactedBytes = 0;
+        // 16-bit images that are 8-bit on this device, as it can't filter or blit R16G16B16A16_UNORM.
+        std::uint32_t narrowedTextures = 0;
         double blasBuildMs = 0.0;  // device time
         double tlasBuildMs = 0.0;
     };
@@ -83,6 +85,7 @@ struct FrameCounters {
     std::uint32_t skippedRough = 0;
     std::uint32_t skippedUnlit = 0;
     std::uint32_t unknownShader = 0;
+    std::uint32_t nonFinite = 0;  // samples since sample 0 that were no number: they count as black
     std::vector<std::uint32_t> bucketCounts;  // visibility only: misses, then hits by shader ID
 };
 

@@ -27,11 +27,20 @@ struct InstanceView {
     std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
 };
 
-// 8-bit RGBA, first row on top.
+// RGBA, first row on top, as stored: where the package reads an image as colour, it is taken to be in sRGB.
 struct ImageView {
+    enum class Format : std::uint32_t {
+        Rgba8,
+        Rgba16,  // native byte order
+    };
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::span<const std::uint8_t> rgba8;  // 4 * width * height bytes
+    std::span<const std::uint8_t> pixels;  // bytesPerPixel() * width * height bytes
+    Format format = Format::Rgba8;
+
+    std::uint32_t bytesPerPixel() const {
+        return format == Format::Rgba16 ? 8 : 4;
+    }
 };
 
 struct LightView {

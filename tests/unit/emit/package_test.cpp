@@ -160,6 +160,33 @@ TEST(Manifest, DescribesThePackage) {
     }
 }
 
+TEST(Manifest, HoldsTheSettingsAndTheVariant) {
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    const nlohmann::json usual = manifestOf(compileSample(settings));
+    EXPECT_EQ(usual["settings"]["hitLobes"].size(), featureNames(kLobeMask).size());
+    EXPECT_EQ(usual["settings"]["energyCompensation"], true);
+    EXPECT_EQ(usual["settings"]["textureLod"], "cones");
+    EXPECT_TRUE(usual["variant"].is_null());
+
+    Scene scene = makeSampleScene();
+    scene.variant = "Night";
+    scene.materials[0].sheen.colorFactor = {1.0F, 1.0F, 1.0F};
+    settings.plan.keys.keptLobes = bit(Feature::Unlit) | bit(Feature::Ior);
+    settings.energyCompensation = false;
+    settings.textureLod = TextureLod::Mip0;
+    const auto package = compilePackage(scene, settings);
+    ASSERT_TRUE(package) << toString(package.error());
+    const nlohmann::json other = manifestOf(*package);
+    EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
+    EXPECT_EQ(other["settings"]["energyCompensation"], false);
+    EXPECT_EQ(other["settings"]["textureLod"], "mip0");
+    EXPECT_EQ(other["variant"], "Night");
+    const auto& dropped = other["dropped"];
+    EXPECT_TRUE(std::any_of(dropped.begin(), dropped.end(),
+                            [](const auto& drop) { return drop["feature"] == "sheen"; }));
+}
+
 TEST(Manifest, TakesNamesThatAreNotUtf8) {
     Scene scene = makeSampleScene();
     scene.materials[0].name = "\xFF\xC0";

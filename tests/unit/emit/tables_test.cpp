@@ -1,14 +1,17 @@
 #include "emit/tables.h"
 
 #include "emit/sources.h"
+#include "gltf/import.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 
 namespace glint {
 namespace {
@@ -92,6 +95,93 @@ TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
     EXPECT_EQ(identity.rowV.y, 1.0F);
 }
 
+// One image in every slot: which of its views each slot gets.
+TEST(MaterialTables, TexturesOfColorsAreSrgb) {
+    const auto srgbSlots = [](bool specularGlossiness) {
+        Scene scene = makeSampleScene();
+        scene.materials.resize(1);
+        scene.materials[0].specularGlossiness.given = specularGlossiness;
+        for (TextureInfo& info : scene.materials[0].textures) {
+            info.texture = 0;
+        }
+        const MaterialTables tables = makeMaterialTables(scene);
+        EXPECT_EQ(tables.textures.size(), 2U);
+        std::set<std::uint32_t> slots;
+        for (std::uint32_t slot = 0; slot < gpu::kTextureSlotCount; ++slot) {
+            if (tables.textures[tables.materials[0].textures[slot].textureIndex].srgb == 1U) {
+                slots.insert(slot);
+            }
+        }
+        return slots;
+    };
+    std::set<std::uint32_t> expected{gpu::kTextureBaseColor, gpu::kTextureEmissive, gpu::kTextureSheenColor,
+                                     gpu::kTextureSpecularColor, gpu::kTextureDiffuseTransmissionColor};
+    EXPECT_EQ(srgbSlots(false), expected);
+    expected.insert(gpu::kTextureMetallicRoughness);
+    EXPECT_EQ(srgbSlots(true), expected);
+}
+
+gpu::MaterialRecord recordOf(const Material& material) {
+    Scene scene;
+    scene.materials = {material};
+    return makeMaterialTables(scene).materials.at(0);
+}
+
+TEST(MaterialTables, HoldEveryFactorOfTheExtensions) {
+    Material material;
+    material.ior.ior = 1.25F;
+    material.specular = {true, 0.5F, {0.25F, 0.5F, 2.0F}};
+    material.clearcoat = {true, 0.75F, 0.125F, -1.5F};
+    material.sheen = {true, {0.1F, 0.2F, 0.3F}, 0.4F};
+    material.anisotropy = {true, 0.625F, 2.5F};
+    material.iridescence = {true, 0.7F, 1.8F, 150.0F, 650.0F};
+    material.transmission = {true, 0.9F};
+    material.diffuseTransmission = {true, 0.35F, {0.6F, 0.5F, 0.4F}};
+    material.volume.thicknessFactor = 0.05F;
+    material.dispersion = {true, 0.45F};
+    const gpu::MaterialRecord record = recordOf(material);
+    EXPECT_EQ(record.ior, 1.25F);
+    EXPECT_EQ(record.specularFactor, 0.5F);
+    EXPECT_EQ(record.specularColorFactor.z, 2.0F);
+    EXPECT_EQ(record.clearcoatFactor, 0.75F);
+    EXPECT_EQ(record.clearcoatRoughnessFactor, 0.125F);
+    EXPECT_EQ(record.clearcoatNormalScale, -1.5F);
+    EXPECT_EQ(record.sheenColorFactor.y, 0.2F);
+    EXPECT_EQ(record.sheenRoughnessFactor, 0.4F);
+    EXPECT_EQ(record.anisotropyStrength, 0.625F);
+    EXPECT_FLOAT_EQ(record.anisotropyDirection.x, std::cos(2.5F));
+    EXPECT_FLOAT_EQ(record.anisotropyDirection.y, std::sin(2.5F));
+    EXPECT_EQ(record.iridescenceFactor, 0.7F);
+    EXPECT_EQ(record.iridescenceIor, 1.8F);
+    EXPECT_EQ(record.iridescenceThicknessMinimum, 150.0F);
+    EXPECT_EQ(record.iridescenceThicknessMaximum, 650.0F);
+    EXPECT_EQ(record.transmissionFactor, 0.9F);
+    EXPECT_EQ(record.diffuseTransmissionFactor, 0.35F);
+    EXPECT_EQ(record.diffuseTransmissionColorFactor.z, 0.4F);
+    EXPECT_EQ(record.thicknessFactor, 0.05F);
+    EXPECT_EQ(record.dispersion, 0.45F);
+    material.specularGlossiness = {true, {0.3F, 0.2F, 0.1F}, 0.85F};
+    EXPECT_EQ(recordOf(material).glossinessFactor, 0.85F);
+    EXPECT_EQ(recordOf(material).specularColorFactor.x, 0.3F);
+}
+
+// After the attenuation distance, the attenuation colour is what is left of white light.
+TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
+    Material material;
+    material.volume = {true, 1.0F, 0.25F, {0.5F, 1.0F, 0.0F}};
+    const gpu::vec3 absorption = recordOf(material).absorption;
+    EXPECT_NEAR(std::exp(-static_cast<double>(absorption.x) * 0.25), 0.5, 1e-7);
+    EXPECT_EQ(absorption.y, 0.0F);
+    EXPECT_FALSE(std::signbit(absorption.y));
+    // Black: nothing passes, and the product with a kilometre is finite.
+    EXPECT_GE(absorption.z, 1e17F);
+    EXPECT_TRUE(std::isfinite(absorption.z * 1000.0F));
+    material.volume.attenuationDistance = 1e-30F;
+    EXPECT_LE(recordOf(material).absorption.x, 1.0001e18F);
+    material.volume.attenuationDistance = 0.0F;
+    EXPECT_EQ(recordOf(material).absorption.z, 0.0F);
+}
+
 TEST(Tables, HoldWhatTheHeaderSays) {
     CompileSettings settings;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
@@ -157,6 +247,25 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
             EXPECT_EQ(primitives[i].featureLobes | FeatureMask{primitives[i].featureInputs} << 32U, key.mask);
             EXPECT_EQ(primitives[i].shaderId, static_cast<std::uint32_t>(key.shaderId));
         }
+    }
+}
+
+// Hits may keep fewer lobes; the mask on the device is that of primary surfaces.
+TEST(Tables, GivePrimitivesTheirPrimaryMask) {
+    Scene scene = makeSampleScene();
+    scene.materials[0].clearcoat.factor = 1.0F;
+    CompileSettings settings;
+    settings.plan.keys.keptLobes = 0;
+    const std::vector<PrimitiveInputs> inputs = planningInputs(scene);
+    const Plan plan = makePlan(scene.materials, inputs, settings.plan);
+    const Bytes bytes = makeTables(scene, inputs, plan, {}, settings);
+    const auto primitives = TableReader(bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
+    ASSERT_EQ(primitives.size(), 4U);
+    EXPECT_EQ(primitives[0].featureLobes, bit(Feature::Clearcoat));
+    EXPECT_EQ((plan.always | plan.sometimes) & bit(Feature::Clearcoat), 0U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(primitives[i].featureLobes | FeatureMask{primitives[i].featureInputs} << 32U,
+                  plan.primaryMaskOfPrimitive[i]);
     }
 }
 

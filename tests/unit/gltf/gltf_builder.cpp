@@ -52,11 +52,22 @@ const char* GltfBuilder::typeName(int components) {
     }
 }
 
+Json GltfBuilder::buffers(bool embedded) const {
+    Json first{{"byteLength", buffer.size()}};
+    if (embedded) {
+        first["uri"] = "data:application/octet-stream;base64," + base64(buffer);
+    }
+    Json all = Json::array({std::move(first)});
+    for (const Json& other : otherBuffers) {
+        all.push_back(other);
+    }
+    return all;
+}
+
 std::string GltfBuilder::text() const {
     Json document = root;
     if (!buffer.empty() && !document.contains("buffers")) {
-        document["buffers"].push_back({{"byteLength", buffer.size()},
-                                       {"uri", "data:application/octet-stream;base64," + base64(buffer)}});
+        document["buffers"] = buffers(true);
     }
     return document.dump();
 }
@@ -64,7 +75,7 @@ std::string GltfBuilder::text() const {
 std::string GltfBuilder::glb() const {
     Json document = root;
     if (!document.contains("buffers")) {
-        document["buffers"].push_back({{"byteLength", buffer.size()}});
+        document["buffers"] = buffers(false);
     }
     const std::string body = chunk(0x4E4F534A, document.dump(), ' ') +
                              chunk(0x004E4942, std::string(buffer.begin(), buffer.end()), '\0');

@@ -73,8 +73,12 @@ public:
     // The document as a GLB.
     std::string glb() const;
 
+    // The buffers of the document: the first holds `buffer`, by data URI or as the chunk of a GLB.
+    Json buffers(bool embedded) const;
+
     Json root;
     Bytes buffer;
+    std::vector<Json> otherBuffers;  // after the first
 
 private:
     static const char* typeName(int components);
@@ -99,10 +103,6 @@ Diagnostic findWarning(const Scene& scene, std::string_view id);
 // PNG, 1 x 2 pixels of 8 bits, RGBA: (255, 0, 128, 64) above (1, 2, 3, 4).
 inline constexpr const char* kPng8 =
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAACCAYAAACZgbYnAAAAEklEQVR4nGP4z9DgwMDIxMwCAA4VAcozrSjMAAAAAElFTkSuQmCC";
-// PNG, 2 x 1 pixels of 16 bits, RGB: (FFFF, 8000, 0000) and (1234, 5678, 9ABC).
-inline constexpr const char* kPng16 =
-    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR4nGP4/"
-    "7+BgYFByCSsYtYeACIWBOlPR491AAAAAElFTkSuQmCC";
 // PNG that announces 16000 x 16000 pixels and holds none of them.
 inline constexpr const char* kPngBomb =
     "iVBORw0KGgoAAAANSUhEUgAAPoAAAD6ACAYAAABBft/eAAAACUlEQVR4nGMAAAABAAFe/335AAAAAElFTkSuQmCC";

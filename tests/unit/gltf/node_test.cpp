@@ -210,6 +210,27 @@ TEST(GltfLights, AreChecked) {
     EXPECT_EQ(errorId(withLight("")), "index-range");
 }
 
+TEST(GltfLights, WarnOfWhatTheExtensionForbids) {
+    const auto lightAndWarnings = [](const std::string& members) {
+        const Scene scene = mustImport(withLight(R"({"type": "spot", )" + members + "}"));
+        return std::pair(scene.lights.at(0), countWarnings(scene, "light-range"));
+    };
+    const auto [unlimited, rangeWarnings] = lightAndWarnings(R"("range": 0)");
+    EXPECT_EQ(unlimited.range, 0.0F);
+    EXPECT_EQ(rangeWarnings, 1U);
+    EXPECT_EQ(lightAndWarnings(R"("range": -3)").first.range, 0.0F);
+    EXPECT_EQ(lightAndWarnings(R"("range": 0.5)").second, 0U);
+    // The hue stays.
+    const auto [bright, colorWarnings] = lightAndWarnings(R"("color": [1, 2, 4])");
+    EXPECT_EQ(bright.color, (Float3{1, 2, 4}));
+    EXPECT_EQ(colorWarnings, 2U);
+    const auto [sharp, coneWarnings] =
+        lightAndWarnings(R"("spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.5})");
+    EXPECT_EQ(sharp.innerConeAngle, sharp.outerConeAngle);
+    EXPECT_EQ(coneWarnings, 1U);
+    EXPECT_EQ(lightAndWarnings(R"("spot": {"innerConeAngle": 0.4, "outerConeAngle": 0.5})").second, 0U);
+}
+
 TEST(GltfMotion, IsLeftOutWithOneWarningOfEachKind) {
     const Scene scene = mustImport(R"("animations": [{}, {}], "skins": [{}, {}],
         "nodes": [{"skin": 7}],

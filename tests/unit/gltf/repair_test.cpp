@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace glint::test {
 namespace {
@@ -87,6 +91,133 @@ TEST(GltfRepair, ReplacesOtherValuesThatAreNotFinite) {
     EXPECT_EQ(onlyPrimitive(scene).texCoords0[0], (Float2{0, 0}));
     EXPECT_EQ(onlyPrimitive(scene).colors[0], (Float4{1, 1, 1, 1}));
     EXPECT_EQ(countWarnings(*scene, "attribute-not-finite"), 2U);
+}
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
+constexpr float kHuge = 3e38F;
+
+bool isSound(const Primitive& primitive) {
+    const auto finite = [](const auto& values) {
+        return std::all_of(values.begin(), values.end(), [](const auto& value) {
+            return std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); });
+        });
+    };
+    const auto unit = [](const auto& values) {
+        return std::all_of(values.begin(), values.end(), [](const auto& v) {
+            return std::abs(std::hypot(v[0], v[1], v[2]) - 1.0F) < 1e-5F;
+        });
+    };
+    return finite(primitive.positions) && finite(primitive.texCoords0) && finite(primitive.texCoords1) &&
+           finite(primitive.colors) && unit(primitive.normals) && unit(primitive.tangents);
+}
+
+// One value of each kind that arithmetic stumbles over, at each place of each attribute.
+TEST(GltfRepair, NoValueSpreads) {
+    const std::vector<std::pair<const char*, int>> attributes{
+        {"POSITION", 3}, {"NORMAL", 3}, {"TANGENT", 4}, {"TEXCOORD_0", 2}, {"TEXCOORD_1", 2}, {"COLOR_0", 4}};
+    for (const auto& [broken, brokenComponents] : attributes) {
+        for (const float value : {kNan, kInfinity, -kInfinity, kDenormal, kHuge, -kHuge}) {
+            for (std::size_t place = 0; place < 3U * static_cast<std::size_t>(brokenComponents); ++place) {
+                GltfBuilder builder;
+                Json primitive;
+                for (const auto& [name, components] : attributes) {
+                    std::vector<float> values(static_cast<std::size_t>(3 * components), 0.5F);
+                    if (std::string_view(name) == "POSITION") {
+                        values = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+                    }
+                    if (std::string_view(name) == broken) {
+                        values[place] = value;
+                    }
+                    primitive["attributes"][name] = builder.addAccessor<float>(values, components);
+                }
+                // A second triangle without the first vertex, so that there is something left.
+                primitive["indices"] =
+                    builder.addAccessor<std::uint8_t>({0, 1, 2, 0, 0, 0, 1, 1, 1, 2, 2, 2}, 1);
+                builder.addMesh(primitive);
+                const Result<Scene> scene = import(builder);
+                const Primitive& read = onlyPrimitive(scene);
+                EXPECT_TRUE(isSound(read)) << broken << "[" << place << "] = " << value;
+                // A value that a float holds is no damage, but the sign of a tangent is 1 or -1.
+                const bool isDamage = !std::isfinite(value);
+                EXPECT_EQ(scene->warnings.size(), isDamage ? 1U : 0U)
+                    << broken << "[" << place << "] = " << value;
+            }
+        }
+    }
+}
+
+TEST(GltfRepair, VectorsOfAnyLengthBecomeUnit) {
+    for (const float length : {kDenormal, 1e-30F, 1e30F, kHuge}) {
+        GltfBuilder builder;
+        Json& primitive = builder.addTriangle();
+        primitive["attributes"]["NORMAL"] =
+            builder.addAccessor<float>({length, length, 0, 0, 0, -length, length, length, length}, 3);
+        primitive["attributes"]["TANGENT"] = builder.addAccessor<float>(
+            {0, 0, length, length, length, 0, 0, -length, length, -length, 0, length}, 4);
+        const Result<Scene> scene = import(builder);
+        const Primitive& read = onlyPrimitive(scene);
+        EXPECT_TRUE(scene->warnings.empty()) << length;
+        EXPECT_FLOAT_EQ(read.normals.at(0)[0], std::sqrt(0.5F));
+        EXPECT_EQ(read.normals[1], (Float3{0, 0, -1}));
+        EXPECT_FLOAT_EQ(read.normals[2][2], std::sqrt(1.0F / 3.0F));
+        EXPECT_EQ(read.tangents[0], (Float4{0, 0, 1, 1}));
+        EXPECT_EQ(read.tangents[1], (Float4{1, 0, 0, -1}));
+    }
+}
+
+// The geometric normal of a triangle as large as floats go, and of one as small.
+TEST(GltfRepair, SubstitutesAreUnitAtEveryScale) {
+    for (const float size : {1e-38F, 1e38F, kHuge}) {
+        GltfBuilder builder;
+        Json primitive;
+        primitive["attributes"]["POSITION"] =
+            builder.addAccessor<float>({-size, -size, 0, size, -size, 0, 0, size, 0}, 3);
+        primitive["attributes"]["NORMAL"] = builder.addAccessor<float>(std::vector<float>(9, kNan), 3);
+        builder.addMesh(primitive);
+        EXPECT_EQ(onlyPrimitive(import(builder)).normals.at(0), (Float3{0, 0, 1})) << size;
+    }
+}
+
+TEST(GltfRepair, SparseValuesAreRepairedToo) {
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    const int normals = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    primitive["attributes"]["NORMAL"] = normals;
+    const std::uint16_t targets[] = {0, 1, 2};
+    const float values[] = {kNan, 0, 1, kInfinity, 0, 0, 0, kDenormal, 0};
+    const int indexView = builder.addView(targets, sizeof targets);
+    const int valueView = builder.addView(values, sizeof values);
+    builder.root["accessors"][static_cast<std::size_t>(normals)]["sparse"] = {
+        {"count", 3},
+        {"indices", {{"bufferView", indexView}, {"componentType", 5123}}},
+        {"values", {{"bufferView", valueView}}}};
+    const Result<Scene> scene = import(builder);
+    EXPECT_TRUE(isSound(onlyPrimitive(scene)));
+    EXPECT_EQ(onlyPrimitive(scene).normals.at(2), (Float3{0, 1, 0}));
+    EXPECT_EQ(findWarning(*scene, "normal-invalid").message.substr(0, 2), "2 ");
+}
+
+// JSON has no NaN; its largest numbers are infinities or overflow when transforms multiply.
+TEST(GltfRepair, TransformsThatOverflowAreRefused) {
+    const auto idOf = [](const char* node) {
+        GltfBuilder builder;
+        builder.addTriangle();
+        builder.root["nodes"] = Json::array({Json::parse(node)});
+        builder.root["nodes"].push_back(Json::parse(R"({"children": [0], "scale": [1e30, 1e30, 1e30]})"));
+        const Result<Scene> scene = import(builder);
+        return scene ? std::string("imported") : scene.error().id;
+    };
+    EXPECT_EQ(idOf(R"({"mesh": 0, "scale": [1e30, 1, 1]})"), "node-transform");
+    EXPECT_EQ(idOf(R"({"mesh": 0, "translation": [1e300, 0, 0]})"), "json-range");
+    EXPECT_EQ(idOf(R"({"mesh": 0, "rotation": [1e39, 0, 0, 1]})"), "json-range");
+    EXPECT_EQ(idOf(R"({"mesh": 0, "matrix": [1e39,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "json-range");
+    EXPECT_EQ(idOf(R"({"mesh": 0, "scale": [1e-45, 1e-30, 0]})"), "imported");
+    EXPECT_EQ(idOf(R"({"mesh": 0, "rotation": [1e38, 1e38, 1e38, 1e38]})"), "imported");
+    const Result<Scene> tooLarge =
+        importText(R"({"asset": {"version": "2.0"}, "nodes": [{"translation": [1e400, 0, 0]}]})");
+    ASSERT_FALSE(tooLarge.ok());
+    EXPECT_EQ(tooLarge.error().id, "json-syntax");
 }
 
 }  // namespace

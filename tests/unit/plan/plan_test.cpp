@@ -154,29 +154,50 @@ Material randomMaterial(std::mt19937& random) {
     material.alphaMode = coin() ? AlphaMode::Mask : AlphaMode::Opaque;
     material.emissiveFactor[0] = coin() ? 1.0F : 0.0F;
     material.emissiveStrength = coin() ? 2.0F : 1.0F;
+    material.specularGlossiness.given = random() % 8 == 0;
+    material.metallicFactor = coin() ? 1.0F : 0.5F;
+    material.ior.ior = coin() ? 1.0F : 1.5F;
+    material.clearcoat.factor = coin() ? 1.0F : 0.0F;
+    material.sheen.colorFactor[1] = coin() ? 1.0F : 0.0F;
+    material.anisotropy.strength = coin() ? 1.0F : 0.0F;
+    material.iridescence.factor = coin() ? 1.0F : 0.0F;
+    material.specular.factor = coin() ? 1.0F : 0.5F;
+    material.transmission.factor = coin() ? 1.0F : 0.0F;
+    material.diffuseTransmission.factor = coin() ? 1.0F : 0.0F;
+    material.volume.thicknessFactor = coin() ? 1.0F : 0.0F;
+    material.volume.attenuationDistance = coin() ? 1.0F : 0.0F;
+    material.volume.attenuationColor[2] = coin() ? 1.0F : 0.0F;
+    material.dispersion.dispersion = coin() ? 1.0F : 0.0F;
     return material;
 }
+
+struct RandomScene {
+    std::vector<Material> materials;
+    std::vector<PrimitiveInputs> primitives;
+
+    explicit RandomScene(std::mt19937& random) {
+        for (int i = 0; i < 500; ++i) {
+            materials.push_back(randomMaterial(random));
+            PrimitiveInputs primitive;
+            primitive.material = i;
+            primitive.hasNormals = (random() & 1U) != 0;
+            primitive.hasTangents = (random() & 1U) != 0;
+            primitive.hasTexCoords0 = (random() & 3U) != 0;
+            primitive.hasTexCoords1 = (random() & 1U) != 0;
+            primitive.colors = static_cast<ColorContent>(random() % 3);
+            primitives.push_back(primitive);
+        }
+    }
+};
 
 // What `always`, `sometimes` and "never" promise holds for every key of every case.
 TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     constexpr unsigned kSeed = 20240611;
     RecordProperty("seed", kSeed);
     std::mt19937 random(kSeed);
-    std::vector<Material> materials;
-    std::vector<PrimitiveInputs> primitives;
-    for (int i = 0; i < 500; ++i) {
-        materials.push_back(randomMaterial(random));
-        PrimitiveInputs primitive;
-        primitive.material = i;
-        primitive.hasNormals = (random() & 1U) != 0;
-        primitive.hasTangents = (random() & 1U) != 0;
-        primitive.hasTexCoords0 = true;
-        primitive.hasTexCoords1 = (random() & 1U) != 0;
-        primitive.colors = static_cast<ColorContent>(random() % 3);
-        primitives.push_back(primitive);
-    }
+    const RandomScene scene(random);
     for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
-        const Plan plan = makePlan(materials, primitives, {{AlphaPolicy::Tested}, merge});
+        const Plan plan = makePlan(scene.materials, scene.primitives, {{AlphaPolicy::Tested}, merge});
         std::set<std::string> names;
         std::size_t keyCount = 0;
         for (const Case& shaderCase : plan.cases) {
@@ -195,6 +216,49 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
         }
         EXPECT_EQ(keyCount, plan.keys.size());
     }
+}
+
+// The device tests a feature of hits on the mask of primary surfaces: none may be missing there.
+TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
+    constexpr unsigned kSeed = 20241121;
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    const RandomScene scene(random);
+    for (int i = 0; i < 50; ++i) {
+        const KeyOptions keys{AlphaPolicy::Tested, static_cast<FeatureMask>(random()) & kLobeMask};
+        const Plan plan = makePlan(scene.materials, scene.primitives, {keys, MergePolicy::Family});
+        const FeatureMask whole = plan.primaryAlways | plan.primarySometimes;
+        FeatureMask every = ~FeatureMask{0};
+        for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+            const FeatureMask primary = plan.primaryMaskOfPrimitive[p];
+            EXPECT_EQ(plan.keys[plan.keyOfPrimitive[p]].mask & ~primary, 0U);
+            EXPECT_EQ(primary, makeKey(scene.materials[p], scene.primitives[p], {AlphaPolicy::Tested}));
+            EXPECT_EQ(primary & ~whole, 0U);
+            every &= primary;
+        }
+        EXPECT_EQ(plan.primaryAlways, every);
+        EXPECT_EQ(plan.primaryAlways & plan.primarySometimes, 0U);
+    }
+}
+
+TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
+    SmallScene scene;
+    scene.materials[1].clearcoat.factor = 1.0F;
+    const Plan all = scene.plan(MergePolicy::Family);
+    PlanOptions options{{}, MergePolicy::Family};
+    options.keys.keptLobes = bit(Feature::Ior);
+    const Plan few = makePlan(scene.materials, scene.primitives, options);
+    EXPECT_EQ(all.cases.size(), 3U);
+    // The base models stay: unlit is a case of its own.
+    EXPECT_EQ(few.cases.size(), 2U);
+    EXPECT_EQ((few.always | few.sometimes) & bit(Feature::Clearcoat), 0U);
+    EXPECT_NE(few.primarySometimes & bit(Feature::Clearcoat), 0U);
+    EXPECT_EQ(all.primarySometimes, few.primarySometimes);
+    EXPECT_EQ(all.sometimes, all.primarySometimes);
+    const auto coat = std::ranges::find(few.dropped, "clearcoat", &DroppedFeature::feature);
+    ASSERT_NE(coat, few.dropped.end());
+    EXPECT_NE(coat->reason.find("--hit-lobes"), std::string::npos);
+    EXPECT_EQ(coat->materials, (std::vector<int>{1}));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ SceneView TestScene::view() {
     }
     imageViews_.clear();
     for (const Pixels& image : images) {
-        imageViews_.push_back({image.width, image.height, image.rgba8});
+        imageViews_.push_back({image.width, image.height, image.bytes, image.format});
     }
     return {primitiveViews_, instances, imageViews_, lights};
 }

@@ -26,7 +26,8 @@ struct TestScene {
     struct Pixels {
         std::uint32_t width = 0;
         std::uint32_t height = 0;
-        std::vector<std::uint8_t> rgba8;
+        std::vector<std::uint8_t> bytes;
+        ImageView::Format format = ImageView::Format::Rgba8;
     };
     std::vector<Mesh> meshes;
     std::vector<InstanceView> instances;

@@ -204,13 +204,37 @@ TEST_F(UploadTest, TexturesOfAllShapes) {
     TestScene scene;
     for (const auto& [width, height] : {std::pair(2100U, 2050U), std::pair(1U, 33U), std::pair(7U, 5U)}) {
         scene.images.push_back(
-            {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 99)});
+            {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 99), {}});
     }
     const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
     ASSERT_NE(uploaded, nullptr);
     EXPECT_EQ(uploaded->state().textures.size(), 4U);
     EXPECT_EQ(uploaded->state().textures[0].mips, 12U);
     EXPECT_EQ(uploaded->state().textures[1].mips, 6U);
+}
+
+// 16-bit images keep their precision where the device can filter them, as colour too.
+TEST_F(UploadTest, WideTexturesAreNarrowedOnlyWhereTheDeviceDemands) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.textures = {{0, 1}, {0, 0}, {1, 1}};
+    const Package package = load(spec);
+    TestScene scene;
+    scene.images.push_back(
+        {2100, 1030, std::vector<std::uint8_t>(std::size_t{8} * 2100 * 1030, 99), ImageView::Format::Rgba16});
+    scene.images.push_back({3, 3, std::vector<std::uint8_t>(std::size_t{4} * 9, 99), {}});
+    ASSERT_TRUE(context().state().limits.wideTextures);
+    const std::unique_ptr<GpuScene> wide = upload(package, scene);
+    ASSERT_NE(wide, nullptr);
+    EXPECT_EQ(wide->state().textures[0].format, VK_FORMAT_R16G16B16A16_UNORM);
+    EXPECT_EQ(wide->state().textures[1].format, VK_FORMAT_R16G16B16A16_UNORM);
+    EXPECT_EQ(wide->state().textures[2].format, VK_FORMAT_R8G8B8A8_SRGB);
+    EXPECT_EQ(wide->statistics().narrowedTextures, 0U);
+    context().state().limits.wideTextures = false;
+    const std::unique_ptr<GpuScene> narrow = upload(package, scene);
+    ASSERT_NE(narrow, nullptr);
+    EXPECT_EQ(narrow->state().textures[0].format, VK_FORMAT_R8G8B8A8_SRGB);
+    EXPECT_EQ(narrow->state().textures[1].format, VK_FORMAT_R8G8B8A8_UNORM);
+    EXPECT_EQ(narrow->statistics().narrowedTextures, 2U);
 }
 
 TEST_F(UploadTest, BrokenScenesAreErrors) {
@@ -252,6 +276,8 @@ TEST_F(UploadTest, BrokenScenesAreErrors) {
     EXPECT_EQ(withScene([](P&, S& s, I&) { s.images = {}; }), "scene-package");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 3; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.height = 0; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = I::Format::Rgba16; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = static_cast<I::Format>(7); }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 1U << 30; }), "scene-image");
     LightView light;
     light.range = std::numeric_limits<float>::infinity();

@@ -231,7 +231,11 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"alpha policy value", [](PackageSpec& s) { s.alphaTested = 2; }},
         {"geometry flags", [](PackageSpec& s) { s.primitives[0].geometryFlags |= 1U << 31; }},
         {"alpha mode", [](PackageSpec& s) { s.primitives[0].alphaMode = 3; }},
-        {"key beyond its case", [](PackageSpec& s) { s.primitives[0].featureInputs = 1; }},
+        {"key short of its case",
+         [](PackageSpec& s) {
+             s.cases[0].always |= std::uint64_t{1} << 40;
+             s.cases[0].sometimes &= ~(std::uint64_t{1} << 40);
+         }},
         {"case count", [](PackageSpec& s) { s.caseCount = 0; }},
         {"case features",
          [](PackageSpec& s) {

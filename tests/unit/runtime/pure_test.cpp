@@ -114,12 +114,12 @@ TEST(CameraTest, UnusableCamerasAreErrors) {
 }
 
 TEST(InstanceTest, NormalsOfMirroredAndStretchedInstances) {
-    // Scale (-2, 3, 4): cofactors (12, -8, -6), times the sign of the determinant.
+    // Scale (-2, 3, 4): cofactors (12, -8, -6), times the sign of the determinant, over 8.
     const gpu::InstanceRecord record = makeInstanceRecord({-2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 7});
     EXPECT_EQ(record.flags, gpu::kInstanceMirrored);
-    EXPECT_EQ(record.normalToWorld[0].x, -12.0F);
-    EXPECT_EQ(record.normalToWorld[1].y, 8.0F);
-    EXPECT_EQ(record.normalToWorld[2].z, 6.0F);
+    EXPECT_EQ(record.normalToWorld[0].x, -1.5F);
+    EXPECT_EQ(record.normalToWorld[1].y, 1.0F);
+    EXPECT_EQ(record.normalToWorld[2].z, 0.75F);
     EXPECT_EQ(record.objectToWorld[1].w, 6.0F);
     EXPECT_EQ(makeInstanceRecord({2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0}).flags, 0U);
 }

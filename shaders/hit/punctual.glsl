@@ -1,5 +1,5 @@
 // Punctual lights: KHR_lights_punctual.
-#include "hit/bindings.glsl"
+#include "interop/lights.h"
 #include "hit/constants.glsl"
 
 struct LightSample {
@@ -16,11 +16,12 @@ LightSample sampleLight(LightRecord light, vec3 position) {
         return LightSample(-light.direction, kFarDistance, light.intensity);
     }
     vec3 toLight = light.position - position;
-    float squared = max(dot(toLight, toLight), kMinSquaredDistance);
+    float squared = dot(toLight, toLight);
     float distance = sqrt(squared);
-    vec3 direction = toLight / distance;
+    // A light at the point itself lights no side of it.
+    vec3 direction = squared > 0.0 ? toLight / distance : vec3(0.0);
     // Inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
-    float attenuation = 1.0 / squared;
+    float attenuation = 1.0 / max(squared, kMinSquaredDistance);
     if (light.range > 0.0) {
         float ratio = distance / light.range;
         float ratio2 = ratio * ratio;

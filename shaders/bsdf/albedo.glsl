@@ -1,0 +1,60 @@
+// Directional albedos, what a lobe reflects of a uniform white sky, in closed form. Constants and bounds are from
+// scripts/fit_directional_albedo.py, which checks them in single precision against quadrature. Where a fit errs, it
+// tells too much rather than too little, so that what makes up for the rest adds no light.
+#include "bsdf/constants.glsl"
+#include "bsdf/sheen.glsl"
+
+// 0.07². Below alpha = 0.068 the lobe of KHR_materials_sheen reflects more than it receives near grazing, at this alpha
+// up to 2.94 times as much, and where n·v is below 6e-6 it does at any alpha. Divided by max(1, E(v), E(l)) the lobe
+// makes no light and stays reciprocal.
+const float kMinSheenAlpha = 0.0049;
+
+// Of a single-scatter GGX lobe, alpha in [1e-4, 1]. x: 1 - E, E of white microfacets, which keeps its digits where
+// alpha is small; y: the part of E that Schlick's (1 - v·h)⁵ weights. E and y exceed the truth by at most 6e-3 and fall
+// short by at most 2e-4; where nDotV is below 1e-3, by 7e-3 and 3e-3. 0 <= y <= E <= 1. A mirror's y is (1 - n·v)⁵.
+vec2 ggxAlbedo(float nDotV, float alpha) {
+    float a = alpha;
+    float a2 = a * a;
+    float n2 = nDotV * nDotV;
+    // The lowest terms of each fraction are of like degree in nDotV and alpha: the loss of a smooth lobe is a function
+    // of their ratio.
+    float lost = nDotV * a2 *
+                 (0.1974063 + 0.7082196 * a2 + nDotV * (0.1156772 + a * (0.2777179 + a * 2.765653)));
+    float all = a2 * (a * (1.0 + a * (-2.256997 + a * (2.191374 - 0.7307094 * a))) +
+                      nDotV * (0.5940123 + 2.222831 * a)) +
+                n2 * (a * (-0.1239762 + a * (0.550922 + 2.027213 * a2)) + nDotV * (0.3813426 + 0.0187559 * a));
+    float loss = lost / all;
+    // Schlick's weight at the cosine of view and half vector that gives the mean weight.
+    float roughness = sqrt(a);
+    float shift = a2 *
+                  (a * (8.235557 + 13.27825 * roughness) + nDotV * roughness * (17.42174 - 40.69226 * roughness) -
+                   24.25735 * n2 * nDotV) /
+                  (a2 * (1.0 + roughness * (17.05333 + 30.21491 * a)) +
+                   nDotV * (a * (0.8381407 + 13.68742 * roughness) + nDotV * (0.07524006 + 6.138967 * roughness)));
+    float m = clamp(1.0 - nDotV - shift, 0.0, 1.0);
+    float m2 = m * m;
+    return vec2(loss, (1.0 - loss) * m2 * m2 * m);
+}
+
+// 2 ∫ ggxAlbedo(μ) μ dμ of these very fits, so that losses and their mean cancel: 1 - S̄, S = f0 (E - y) + f90 y, is
+// 0.9997 to 1.015 times its integral, for all f0 <= f90 <= 1. The logarithm is that of the loss's tail, alpha² / n·v².
+vec2 ggxMeanAlbedo(float alpha) {
+    float loss = 0.1928936 + alpha * (5.444406 - 5.043088 * alpha) -
+                 log2(alpha) * (0.7152512 - alpha * (1.141897 + 2.373537 * alpha));
+    return vec2(alpha * alpha * loss, 0.0390746 + alpha * (-0.08094045 + 0.04194681 * alpha));
+}
+
+// Of the white sheen lobe, alpha in [kMinSheenAlpha, 1]: exceeds the truth by at most 1e-2 and falls short by at most
+// 2e-4, of what is larger, 1 or the truth. It exceeds 1 where the lobe does.
+float sheenAlbedo(float nDotV, float alpha) {
+    nDotV = max(nDotV, kMinViewCosine);
+    float r = sqrt(alpha);
+    float lit = r * (0.3977928 + 0.107606 * r + 0.2821581 * alpha) +
+                nDotV * (0.9007343 + 21.6968 * r + 20.91847 * alpha +
+                         nDotV * (-11.89948 - 27.70905 * r + 136.1858 * alpha + nDotV * (26.92788 - 91.85006 * r)));
+    float all = alpha * (1.0 + 0.2253711 * r) +
+                nDotV * (4.023617 * r + 72.63539 * alpha + nDotV * (9.221939 + 312.8053 * alpha));
+    // Facets that reflect into the upper hemisphere thin out like a bell in n·v. The masking of the view is the lobe's.
+    float bell = exp2(-0.2 * nDotV * nDotV / alpha);
+    return bell * max(lit, 0.0) / (all * nDotV * (1.0 + sheenLambda(nDotV, alpha)));
+}

@@ -1,0 +1,209 @@
+// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) under its extensions, layer on layer:
+// clearcoat over sheen over a base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
+#include "generated/scene.glsl"
+#include "hit/features.glsl"
+#include "bsdf/constants.glsl"
+#include "bsdf/exact.glsl"
+#include "bsdf/fresnel.glsl"
+#include "bsdf/ggx.glsl"
+#include "bsdf/albedo.glsl"
+#include "bsdf/sheen.glsl"
+#include "bsdf/iridescence.glsl"
+#include "bsdf/transmission.glsl"
+#include "bsdf/clearcoat.glsl"
+
+// Vectors are in the frame of the surface: z is the shading normal on the viewer's side, x the direction of anisotropy.
+struct Bsdf {
+    vec3 diffuse;   // albedo of the diffuse lobe: metal and what is transmitted taken out
+    vec3 f0;        // reflectance at normal incidence
+    float f90;      // and at grazing
+    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha
+    vec3 transmitted;         // tint and share of light that passes the microfacets
+    vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
+    vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
+    float clearcoat;          // share of the surface that the coat covers
+    float clearcoatAlpha;
+    vec3 clearcoatNormal;     // unit
+    vec3 sheenColor;
+    float sheenAlpha;  // at least kMinSheenAlpha
+    // By prepareBsdf(), of the view:
+    vec3 view;         // unit, z >= kMinViewCosine
+    float viewLoss;    // 1 - E: what single scattering of white microfacets drops
+    float viewBias;    // the part of E that (1 - v·h)⁵ weights
+    float meanLoss;    // of 2 ∫ (1 - E(μ)) μ dμ
+    float meanBias;
+    float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, where the lobe is divided by it
+};
+
+// The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
+// Based Shading at Imageworks" (2017), with the Fresnel of the second and later bounces after Hill (2018).
+vec3 multiScatterFresnel(Bsdf b) {
+    vec3 mean = b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+    return mean * mean * (1.0 - b.meanLoss) / (vec3(1.0) - mean * b.meanLoss);
+}
+
+// What the microfacets reflect of a uniform white sky: single scattering by E's loss and bias, and the rest of it if
+// energy compensation is on.
+vec3 specularAlbedo(Bsdf b, float loss, float bias) {
+    vec3 single = b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
+    return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
+}
+
+// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha but for views near grazing, where it rises: with the
+// lesser loss of either alpha, and the greater bias, no energy is made.
+vec2 lobeAlbedo(Bsdf b, Features features, float cosine) {
+    vec2 albedo = ggxAlbedo(cosine, b.alpha.x);
+    if (hasLobe(features, GLINT_ANISOTROPY)) {
+        vec2 other = ggxAlbedo(cosine, b.alpha.y);
+        float loss = min(albedo.x, other.x);
+        albedo = vec2(loss, min(max(albedo.y, other.y), 1.0 - loss));
+    }
+    return albedo;
+}
+
+// Takes the view, unit, in the frame of the surface.
+void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
+    b.view = view;
+    if (view.z < kMinViewCosine) {
+        vec2 across = view.xy;
+        float length2 = dot(across, across);
+        b.view = vec3(length2 > 0.0 ? across * inversesqrt(length2) : vec2(1.0, 0.0), kMinViewCosine);
+    }
+    vec2 lossBias = lobeAlbedo(b, features, b.view.z);
+    b.viewLoss = lossBias.x;
+    b.viewBias = lossBias.y;
+    vec2 meanX = ggxMeanAlbedo(b.alpha.x);
+    vec2 meanY = ggxMeanAlbedo(b.alpha.y);
+    b.meanLoss = min(meanX.x, meanY.x);
+    b.meanBias = max(meanX.y, meanY.y);
+    b.sheenAlbedo = 0.0;
+    if (hasLobe(features, GLINT_SHEEN)) {
+        b.sheenAlbedo = sheenAlbedo(b.view.z, b.sheenAlpha);
+    }
+}
+
+// Whether the viewer is on the denser side of a volume's surface.
+bool seenFromWithin(Bsdf b, Features features) {
+    return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
+}
+
+// What of a diffuse lobe the microfacets above it let in and out. With compensation, reciprocal and such that the whole
+// reflects what comes in at most: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model"
+// (2001). Without it, glTF 2.0, appendix B.3.5: light by the Fresnel of the half vector.
+float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) {
+    if (seenFromWithin(b, features)) {
+        // Total reflection is no part of E: what the smooth interface lets through, both ways.
+        return interfacePassed(b.f0, b.f90, b.view.z, b.eta.y) * interfacePassed(b.f0, b.f90, lightCosine, b.eta.y);
+    }
+    if (GLINT_ENERGY_COMPENSATION == 0) {
+        return 1.0 - fresnel;
+    }
+    vec2 light = lobeAlbedo(b, features, lightCosine);
+    float in1 = 1.0 - largest(specularAlbedo(b, b.viewLoss, b.viewBias));
+    float out1 = 1.0 - largest(specularAlbedo(b, light.x, light.y));
+    // Where all is reflected both vanish with the mean.
+    float mean = max(1.0 - largest(specularAlbedo(b, b.meanLoss, b.meanBias)), 1e-6);
+    return max(in1, 0.0) * max(out1, 0.0) / mean;
+}
+
+// Reflected by the base, times n·l; l.z > 0.
+vec3 baseReflection(Bsdf b, Features features, vec3 l) {
+    // |v + l| is twice the cosine of v and h, and keeps its digits where facets are seen from the side.
+    vec3 sum = b.view + l;
+    float size = sqrt(dot(sum, sum));
+    vec3 h = sum / size;
+    float cosine = min(0.5 * size, 1.0);
+    bool inside = seenFromWithin(b, features);
+    vec3 fresnel = inside ? fresnelInterface(b.f0, b.f90, cosine, b.eta.y) : fresnelSchlick(b.f0, b.f90, cosine);
+    vec3 specular = fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
+    if (GLINT_ENERGY_COMPENSATION != 0) {
+        float lightLoss = lobeAlbedo(b, features, l.z).x;
+        specular += multiScatterFresnel(b) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
+    }
+    vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(fresnel)));
+    return (diffuse + specular) * l.z;
+}
+
+// Passed by the microfacets at the index of one channel, times |n·l|; l.z < 0.
+float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
+    float cosine;
+    float lobe;
+    float passed;
+    if (hasLobe(features, GLINT_VOLUME) && !refracts(eta)) {
+        // Nothing bends, whatever the facets: as sharp as lobes get, with the view's own Fresnel.
+        lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
+        passed = interfacePassed(b.f0, b.f90, b.view.z, 1.0);
+    } else if (hasLobe(features, GLINT_VOLUME)) {
+        lobe = refractedTransmission(b.view, l, b.alpha, eta, cosine);
+        passed = interfacePassed(b.f0, b.f90, cosine, 1.0);
+    } else {
+        lobe = thinTransmission(b.view, l, b.alpha, cosine);
+        passed = interfacePassed(b.f0, b.f90, cosine, 1.0);
+    }
+    return lobe * passed;
+}
+
+// Passed by the base, times |n·l|; l.z < 0.
+vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
+    vec3 result = vec3(0.0);
+    if (hasLobe(features, GLINT_TRANSMISSION)) {
+        vec3 lobe = vec3(specularTransmission(b, features, l, b.eta.y));
+        if (hasLobe(features, GLINT_DISPERSION)) {
+            lobe.x = specularTransmission(b, features, l, b.eta.x);
+            lobe.z = specularTransmission(b, features, l, b.eta.z);
+        }
+        result += b.transmitted * lobe;
+    }
+    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        // Light leaves on the other side: the half vector tells nothing, the view's own Fresnel does.
+        float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
+        result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, -l.z, fresnel) * -l.z);
+    }
+    return result;
+}
+
+// Share of the base below the sheen, for light of one cosine: KHR_materials_sheen, albedo scaling.
+float belowSheen(Bsdf b, float albedo) {
+    return max(1.0 - largest(b.sheenColor) * min(albedo, 1.0), 0.0);
+}
+
+// Cosine of the view to the coat's normal.
+float coatViewCosine(Bsdf b) {
+    return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
+}
+
+// BSDF times |n·l|, prepared for a view. l is unit, in the frame of the surface; l.z < 0 is on the far side.
+vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
+    bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
+    vec3 result = vec3(0.0);
+    if (l.z > 0.0) {
+        result = baseReflection(b, features, l);
+    } else if (transmits && l.z < 0.0) {
+        result = baseTransmission(b, features, l);
+    }
+    if (hasLobe(features, GLINT_SHEEN)) {
+        float below = belowSheen(b, b.sheenAlbedo);
+        if (l.z > 0.0) {
+            float lightAlbedo = sheenAlbedo(l.z, b.sheenAlpha);
+            below = min(below, belowSheen(b, lightAlbedo));
+            vec3 h = normalize(b.view + l);
+            float lobe = sheenDistribution(h.x * h.x + h.y * h.y, b.sheenAlpha) *
+                         sheenVisibility(l.z, b.view.z, b.sheenAlpha) /
+                         max(max(b.sheenAlbedo, lightAlbedo), 1.0);
+            result = result * below + b.sheenColor * (lobe * l.z);
+        } else {
+            result *= below;
+        }
+    }
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        float nDotV = coatViewCosine(b);
+        float nDotL = accurateDot(b.clearcoatNormal, l);
+        float coat = clearcoatFresnel(b.clearcoat, nDotV);
+        result *= clearcoatPassed(b.clearcoat, nDotV);
+        if (l.z > 0.0 && nDotL > 0.0) {
+            result += vec3(coat * nDotL *
+                           clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha));
+        }
+    }
+    return result;
+}

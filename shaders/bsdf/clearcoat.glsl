@@ -1,0 +1,27 @@
+// Clearcoat: KHR_materials_clearcoat. An isotropic GGX lobe of index 1.5 about a normal of its own. The vectors are in
+// the frame of the base, where the coat's normal need not be z: so products that nearly cancel keep their errors.
+
+// Reflectance of the layer, by the angle of the view alone, as the extension's text has it.
+float clearcoatFresnel(float factor, float nDotV) {
+    return factor * (0.04 + 0.96 * schlickWeight(nDotV));
+}
+
+// What it lets through: 1 - clearcoatFresnel(), with its digits where little passes.
+float clearcoatPassed(float factor, float nDotV) {
+    return (1.0 - factor) + factor * 0.96 * schlickRest(nDotV);
+}
+
+// The lobe without Fresnel: D V. n is unit; nDotL and nDotV are cosines to it, above 0.
+float clearcoatLobe(vec3 n, float nDotL, float nDotV, vec3 v, vec3 l, float alpha) {
+    // Of the unnormalised half vector s: sine and cosine to n, times |s|.
+    vec3 s = v + l;
+    vec3 sine = accurateCrossOfSum(n, v, l);
+    float squared = dot(s, s);
+    float cosine = dot(n, s);
+    float a2 = alpha * alpha;
+    float t = (dot(sine, sine) / a2 + cosine * cosine) / squared;
+    float distribution = cosine > 0.0 ? 1.0 / (kPi * a2 * t * t) : 0.0;
+    float projectionV = sqrt(nDotV * nDotV * (1.0 - a2) + a2);
+    float projectionL = sqrt(nDotL * nDotL * (1.0 - a2) + a2);
+    return distribution * 0.5 / (nDotL * projectionV + nDotV * projectionL);
+}

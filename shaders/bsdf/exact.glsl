@@ -1,0 +1,70 @@
+// Sums and products whose rounding errors are kept. A fused multiply-add would be shorter, but GLSL's fma() need not be
+// fused. `precise` keeps compilers from simplifying the errors away.
+
+// The error of fl(a * b), exactly: Dekker 1971, with Veltkamp's split at 12 bits.
+float productError(float a, float b, float product) {
+    const float kSplit = 4097.0;
+    precise float bigA = kSplit * a;
+    precise float highA = bigA - (bigA - a);
+    precise float lowA = a - highA;
+    precise float bigB = kSplit * b;
+    precise float highB = bigB - (bigB - b);
+    precise float lowB = b - highB;
+    precise float error = ((highA * highB - product) + highA * lowB + lowA * highB) + lowA * lowB;
+    return error;
+}
+
+// The error of fl(a + b), exactly: Knuth 1969.
+float sumError(float a, float b, float sum) {
+    precise float partB = sum - a;
+    precise float error = (a - (sum - partB)) + (b - partB);
+    return error;
+}
+
+// a + b c as if rounded once, or nearly so, where the sum cancels.
+float addProduct(float a, float b, float c) {
+    precise float product = b * c;
+    precise float sum = a + product;
+    precise float result = sum + (sumError(a, product, sum) + productError(b, c, product));
+    return result;
+}
+
+// a b - c d with full relative precision: Kahan's difference of products.
+float differenceOfProducts(float a, float b, float c, float d) {
+    precise float first = a * b;
+    precise float second = c * d;
+    precise float result = (first - second) + (productError(a, b, first) - productError(c, d, second));
+    return result;
+}
+
+// Squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law; negative beyond the
+// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest.
+float refractedCosine2(float cosine, float eta) {
+    precise float cosine2 = cosine * cosine;
+    precise float eta2 = eta * eta;
+    precise float sum = cosine2 + eta2;
+    precise float errors = sumError(cosine2, eta2, sum) + productError(cosine, cosine, cosine2) +
+                           productError(eta, eta, eta2);
+    return ((sum - 1.0) + errors) / eta2;
+}
+
+// dot(a, b), accurate where it nears 0.
+float accurateDot(vec3 a, vec3 b) {
+    precise float x = a.x * b.x;
+    precise float y = a.y * b.y;
+    precise float z = a.z * b.z;
+    precise float xy = x + y;
+    precise float sum = xy + z;
+    precise float errors = sumError(x, y, xy) + sumError(xy, z, sum) + productError(a.x, b.x, x) +
+                           productError(a.y, b.y, y) + productError(a.z, b.z, z);
+    return sum + errors;
+}
+
+// cross(n, a + b), accurate where a + b nears n: the sine between a normal and an unnormalised half vector.
+vec3 accurateCrossOfSum(vec3 n, vec3 a, vec3 b) {
+    precise vec3 s = a + b;
+    vec3 low = vec3(sumError(a.x, b.x, s.x), sumError(a.y, b.y, s.y), sumError(a.z, b.z, s.z));
+    vec3 high = vec3(differenceOfProducts(n.y, s.z, n.z, s.y), differenceOfProducts(n.z, s.x, n.x, s.z),
+                     differenceOfProducts(n.x, s.y, n.y, s.x));
+    return high + cross(n, low);
+}

@@ -1,0 +1,58 @@
+// Thin-film iridescence: KHR_materials_iridescence; Belcour and Barla, "A Practical Extension to Microfacet Theory for
+// the Modeling of Varying Iridescence" (2017).
+
+// cos(2π cycles), reduced first: hardware cosines are specified for one turn only.
+float cosineOfCycles(float cycles) {
+    return cos(2.0 * kPi * (cycles - floor(cycles + 0.5)));
+}
+
+// What the eye makes of a spectrum that oscillates with the optical path difference (nanometres), in linear Rec. 709:
+// the Fourier transform of the XYZ sensitivities, fitted by Gaussians. `turns`: phase shift of each channel, cycles.
+vec3 filmSensitivity(float pathDifference, vec3 turns) {
+    float path = pathDifference * 1e-9;
+    float phase = 2.0 * kPi * path;
+    float p2 = phase * phase;
+    // value √(2π variance) of each Gaussian, over the common norm 1.0685e-7.
+    float x = 0.846590 * cosineOfCycles(1.6810e6 * path + turns.x) * exp(-4.3278e9 * p2) +
+              0.153868 * cosineOfCycles(2.2399e6 * path + turns.x) * exp(-4.5282e9 * p2);
+    float y = 1.000222 * cosineOfCycles(1.7953e6 * path + turns.y) * exp(-9.3046e9 * p2);
+    float z = 1.001122 * cosineOfCycles(2.2084e6 * path + turns.z) * exp(-6.6121e9 * p2);
+    return vec3(3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+                0.0556434 * x - 0.2040259 * y + 1.0572252 * z);
+}
+
+// Reflectance of a film of `thickness` nanometres over a base of reflectance `baseF0` at normal incidence, in [0, 1].
+// Below 0.03 nm the film's index fades to that of air, so that no film is no film. The loop of the extension's text
+// stands unrolled: two orders of interference.
+vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness) {
+    float ior = mix(1.0, filmIor, smoothstep(0.0, 0.03, thickness));
+    float refracted2 = refractedCosine2(cosine, ior);
+    if (refracted2 <= 0.0) {
+        return vec3(1.0);
+    }
+    float cosineInFilm = sqrt(refracted2);
+
+    // Air to film. Reflection off the denser side turns the phase by half a cycle.
+    float r12 = mix(dielectricF0(ior), 1.0, schlickWeight(cosine));
+    float t121 = 1.0 - r12;
+    float turn21 = ior < 1.0 ? 0.0 : 0.5;
+
+    // Film to base. An F0 of 1 has no finite index: 0.9999 is one of 4e4.
+    vec3 root = sqrt(clamp(baseF0, vec3(0.0), vec3(0.9999)));
+    vec3 baseIor = (vec3(1.0) + root) / (vec3(1.0) - root);
+    vec3 ratio = (baseIor - vec3(ior)) / (baseIor + vec3(ior));
+    vec3 r23 = mix(ratio * ratio, vec3(1.0), vec3(schlickWeight(cosineInFilm)));
+    vec3 turns = vec3(turn21) + vec3(baseIor.x < ior ? 0.5 : 0.0, baseIor.y < ior ? 0.5 : 0.0,
+                                     baseIor.z < ior ? 0.5 : 0.0);
+
+    // The series of internal reflections; the cut keeps its sum finite.
+    vec3 r123 = clamp(r12 * r23, vec3(1e-5), vec3(0.9999));
+    vec3 amplitude = sqrt(r123);
+    vec3 series = t121 * t121 * r23 / (vec3(1.0) - r123);
+    float pathDifference = 2.0 * ior * thickness * cosineInFilm;
+    vec3 order1 = (series - vec3(t121)) * amplitude;
+    vec3 order2 = order1 * amplitude;
+    vec3 reflectance = vec3(r12) + series + 2.0 * order1 * filmSensitivity(pathDifference, turns) +
+                       2.0 * order2 * filmSensitivity(2.0 * pathDifference, 2.0 * turns);
+    return clamp(reflectance, vec3(0.0), vec3(1.0));
+}

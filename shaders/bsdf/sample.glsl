@@ -1,0 +1,224 @@
+// Directions in proportion to the BSDF, one lobe of a mixture at a time, and the density of the mixture.
+#include "bsdf/bsdf.glsl"
+#include "hit/geometry.glsl"
+
+struct BsdfSample {
+    vec3 direction;  // unit, in the frame of the surface
+    vec3 weight;     // BSDF |n·l| / pdf
+    float pdf;       // 0: the lobe sent this sample nowhere (below the horizon, or along a facet's edge)
+};
+
+// Chances of the lobes; they sum to 1.
+struct LobeChances {
+    float coat;         // visible normals of the coat
+    float microfacets;  // visible normals of the base, reflected or passed
+    float diffuse;      // by the cosine: diffuse, sheen, multiple scattering
+    float passed;       // by the cosine, on the far side
+};
+
+LobeChances lobeChances(Bsdf b, Features features) {
+    vec3 single = b.f0 * (1.0 - b.viewLoss - b.viewBias) + vec3(b.f90 * b.viewBias);
+    vec3 all = specularAlbedo(b, b.viewLoss, b.viewBias);
+    float below = max(1.0 - largest(all), 0.0);
+    float microfacets = luminance(single);
+    float diffuse = luminance(b.diffuse) * below + luminance(all - single);
+    float passed = 0.0;
+    if (hasLobe(features, GLINT_TRANSMISSION)) {
+        microfacets += luminance(b.transmitted) * below;
+    }
+    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        passed = luminance(b.diffuseTransmitted) * below;
+    }
+    if (hasLobe(features, GLINT_SHEEN)) {
+        float base = belowSheen(b, b.sheenAlbedo);
+        microfacets *= base;
+        passed *= base;
+        diffuse = diffuse * base + luminance(b.sheenColor) * min(b.sheenAlbedo, 1.0);
+    }
+    float coat = 0.0;
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        float nDotV = coatViewCosine(b);
+        coat = clearcoatFresnel(b.clearcoat, nDotV);
+        float underCoat = clearcoatPassed(b.clearcoat, nDotV);
+        microfacets *= underCoat;
+        diffuse *= underCoat;
+        passed *= underCoat;
+        if (accurateDot(b.clearcoatNormal, b.view) < kMinViewCosine) {
+            // A coat whose normal turns from the view has no visible normals.
+            diffuse += coat;
+            coat = 0.0;
+        }
+    }
+    float total = coat + microfacets + diffuse + passed;
+    // A black surface sends samples by its microfacets; their weight is 0.
+    return total > 0.0 ? LobeChances(coat / total, microfacets / total, diffuse / total, passed / total)
+                       : LobeChances(0.0, 1.0, 0.0, 0.0);
+}
+
+// Chances that a facet reflects (x) and that it lets through (y), seen under `cosine`.
+vec2 facetChances(Bsdf b, Features features, float cosine, float eta) {
+    if (!hasLobe(features, GLINT_TRANSMISSION)) {
+        return vec2(1.0, 0.0);
+    }
+    bool inside = hasLobe(features, GLINT_VOLUME) && eta < 1.0 && refracts(eta);
+    vec3 fresnel = inside ? fresnelInterface(b.f0, b.f90, cosine, eta) : fresnelSchlick(b.f0, b.f90, cosine);
+    float reflected = luminance(fresnel);
+    float passed = luminance(b.transmitted) * interfacePassed(b.f0, b.f90, cosine, inside ? eta : 1.0);
+    float both = reflected + passed;
+    return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
+}
+
+// Whether light passes without bending: then the facets that reflect and those that let through part ways, and the view
+// alone decides between the two.
+bool passesStraight(Features features, float eta) {
+    return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
+}
+
+// The cosine under which a facet is seen for facetChances().
+float facetCosine(Bsdf b, Features features, vec3 h, float eta) {
+    return passesStraight(features, eta) ? b.view.z : clamp(dot(b.view, h), 0.0, 1.0);
+}
+
+// The index of one of three colours; only dispersion tells them apart.
+float sampledIndex(Bsdf b, Features features, float u) {
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        return u < 1.0 / 3.0 ? b.eta.x : u < 2.0 / 3.0 ? b.eta.y : b.eta.z;
+    }
+    return b.eta.y;
+}
+
+// Density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), the cosine cancelled.
+float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
+    return 0.5 * ggxDistribution(h, alpha) / (v.z + ggxProjection(v, alpha));
+}
+
+// Density of a direction beyond the microfacets, for the index of one colour.
+float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
+    vec3 h;
+    if (!hasLobe(features, GLINT_VOLUME) || !refracts(eta)) {
+        vec3 mirrored = vec3(l.x, l.y, -l.z);
+        h = normalize(b.view + mirrored);
+        vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
+        return facetChances(b, features, facetCosine(b, features, h, eta), eta).y *
+               mirroredPdf(b.view, h, alpha);
+    }
+    float spread;
+    if (!refractionHalfVector(b.view, l, eta, h, spread)) {
+        return 0.0;
+    }
+    float cosine = min(dot(b.view, h), 1.0);
+    return facetChances(b, features, cosine, eta).y * visibleNormalPdf(b.view, h, b.alpha) * spread *
+           -dot(l, h);
+}
+
+float microfacetPdf(Bsdf b, Features features, vec3 l) {
+    if (l.z > 0.0) {
+        vec3 h = normalize(b.view + l);
+        float chance = facetChances(b, features, facetCosine(b, features, h, b.eta.y), b.eta.y).x;
+        if (hasLobe(features, GLINT_DISPERSION)) {
+            chance = (facetChances(b, features, facetCosine(b, features, h, b.eta.x), b.eta.x).x + chance +
+                      facetChances(b, features, facetCosine(b, features, h, b.eta.z), b.eta.z).x) / 3.0;
+        }
+        return chance * mirroredPdf(b.view, h, b.alpha);
+    }
+    if (!hasLobe(features, GLINT_TRANSMISSION)) {
+        return 0.0;
+    }
+    float pdf = passedPdf(b, features, l, b.eta.y);
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        pdf = (passedPdf(b, features, l, b.eta.x) + pdf + passedPdf(b, features, l, b.eta.z)) / 3.0;
+    }
+    return pdf;
+}
+
+float coatPdf(Bsdf b, vec3 l) {
+    float nDotL = accurateDot(b.clearcoatNormal, l);
+    if (nDotL <= 0.0) {
+        return 0.0;
+    }
+    // In the coat's frame: D / (2 (n·v + projection)).
+    vec3 s = b.view + l;
+    vec3 sine = accurateCrossOfSum(b.clearcoatNormal, b.view, l);
+    float cosine = dot(b.clearcoatNormal, s);
+    float a2 = b.clearcoatAlpha * b.clearcoatAlpha;
+    float t = (dot(sine, sine) / a2 + cosine * cosine) / dot(s, s);
+    float nDotV = coatViewCosine(b);
+    float projection = sqrt(nDotV * nDotV * (1.0 - a2) + a2);
+    return cosine > 0.0 ? 0.5 / (kPi * a2 * t * t * (nDotV + projection)) : 0.0;
+}
+
+// Density, by solid angle, with which sampleBsdf() chooses l.
+float bsdfPdf(Bsdf b, Features features, vec3 l) {
+    LobeChances chances = lobeChances(b, features);
+    float pdf = chances.microfacets * microfacetPdf(b, features, l);
+    if (l.z > 0.0) {
+        pdf += chances.diffuse * l.z * kInversePi;
+        if (hasLobe(features, GLINT_CLEARCOAT)) {
+            pdf += chances.coat * coatPdf(b, l);
+        }
+    } else {
+        pdf += chances.passed * -l.z * kInversePi;
+    }
+    return pdf;
+}
+
+// By the cosine to z: Malley's method.
+vec3 sampleCosine(vec2 u) {
+    float radius = sqrt(u.x);
+    float phi = 2.0 * kPi * u.y;
+    return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(1.0 - u.x, 0.0)));
+}
+
+// A facet of the base, and where it sends the view: u.z chooses the colour, then between reflection and passage.
+vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
+    vec3 h = sampleVisibleNormal(b.view, b.alpha, u.xy);
+    float eta = sampledIndex(b, features, u.z);
+    float chooser = hasLobe(features, GLINT_DISPERSION) ? fract(3.0 * u.z) : u.z;
+    vec3 reflected = 2.0 * dot(b.view, h) * h - b.view;
+    if (chooser < facetChances(b, features, facetCosine(b, features, h, eta), eta).x) {
+        return reflected.z > 0.0 ? reflected : vec3(0.0);
+    }
+    if (passesStraight(features, eta)) {
+        h = sampleVisibleNormal(b.view, vec2(kMinAlpha), u.xy);
+        reflected = 2.0 * dot(b.view, h) * h - b.view;
+    }
+    if (!hasLobe(features, GLINT_VOLUME) || !refracts(eta)) {
+        return reflected.z > 0.0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0.0);
+    }
+    vec3 refracted;
+    return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
+}
+
+// A direction for the prepared view; u is uniform in [0, 1)³.
+BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
+    LobeChances chances = lobeChances(b, features);
+    float chooser = u.z;
+    vec3 l;
+    if (chooser < chances.microfacets) {
+        l = sampleMicrofacet(b, features, vec3(u.xy, min(chooser / chances.microfacets, 0.99999994)));
+    } else if (chooser < chances.microfacets + chances.diffuse) {
+        l = sampleCosine(u.xy);
+    } else if (chooser < chances.microfacets + chances.diffuse + chances.passed) {
+        l = sampleCosine(u.xy) * vec3(1.0, 1.0, -1.0);
+    } else {
+        vec3 tangent;
+        vec3 bitangent;
+        buildBasis(b.clearcoatNormal, tangent, bitangent);
+        vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
+        vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u.xy);
+        vec3 facet = tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z;
+        l = 2.0 * dot(b.view, facet) * facet - b.view;
+        // Below the coat there is no density of its own.
+        l = l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
+    }
+    BsdfSample result = BsdfSample(l, vec3(0.0), 0.0);
+    if (l.z == 0.0) {
+        return result;
+    }
+    result.direction = normalize(l);
+    result.pdf = bsdfPdf(b, features, result.direction);
+    if (result.pdf > 0.0) {
+        result.weight = evaluateBsdf(b, features, result.direction) / result.pdf;
+    }
+    return result;
+}

@@ -1,0 +1,26 @@
+// Punctual lights. Apart from the rest of a scene as it needs no device addresses.
+#ifndef GLINT_INTEROP_LIGHTS_H
+#define GLINT_INTEROP_LIGHTS_H
+
+#include "interop/types.h"
+
+GLINT_INTEROP_BEGIN
+
+// LightRecord::type, in the order of KHR_lights_punctual's text
+GLINT_CONSTANT(kLightDirectional, 0u);
+GLINT_CONSTANT(kLightPoint, 1u);
+GLINT_CONSTANT(kLightSpot, 2u);
+
+// A punctual light in world space (KHR_lights_punctual).
+struct LightRecord {
+    vec3 position;   // point and spot
+    uint type;       // kLight*
+    vec3 direction;  // unit, the way the light travels; directional and spot
+    float range;     // metres; 0 means unlimited
+    vec3 intensity;  // colour times intensity: lux (directional) or candela
+    float spotScale;   // 1 / max(0.001, cos(inner) - cos(outer))
+    float spotOffset;  // -cos(outer) * spotScale
+};
+
+GLINT_INTEROP_END
+#endif

@@ -1,0 +1,126 @@
+// Damage to compressed geometry and images: the decoders see bytes that their encoders never wrote.
+#include "fuzz/mutations.h"
+#include "unit/gltf/packed_scenes.h"
+#include "unit/gltf/png_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace glint::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMutationsPerScene = 1500;
+constexpr int kMutationsPerModel = 150;
+const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models" / "features";
+
+GltfBuilder widePngScene() {
+    GltfBuilder builder;
+    const Bytes png = makePng({4, 4, 16, PngColor::Rgba, {}, Bytes(std::size_t{4} * 4 * 8, 0x5A)});
+    const int view = builder.addView(png.data(), png.size());
+    builder.append("images", {{"bufferView", view}, {"mimeType", "image/png"}});
+    builder.append("textures", {{"source", 0}});
+    builder.append("materials", Json::parse(R"({"normalTexture": {"index": 0}})"));
+    return builder;
+}
+
+// A GLB with flipped bits in its binary chunk only: the JSON leads every import to the decoder.
+std::string damageBinary(Random& random, const GltfBuilder& builder) {
+    GltfBuilder copy = builder;
+    std::string binary(copy.buffer.begin(), copy.buffer.end());
+    flipBytes(random, binary);
+    copy.buffer.assign(binary.begin(), binary.end());
+    return copy.glb();
+}
+
+void expectBothOutcomes(const Tally& tally, const char* name) {
+    std::printf("%s: %d imported, %d refused for %zu kinds of reason\n", name, tally.imported, tally.refused,
+                tally.ids.size());
+    // Mutations that all fail, or all succeed, would test nothing.
+    EXPECT_GT(tally.imported, 100) << name;
+    EXPECT_GT(tally.refused, 100) << name;
+}
+
+TEST(PackedFuzz, DamagedDataIsRefusedOrRead) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "scene.glb";
+    const std::vector<std::pair<const char*, GltfBuilder>> scenes{
+        {"Draco, sequential", dracoScene(DracoMethod::Sequential)},
+        {"Draco, edgebreaker", dracoScene(DracoMethod::Edgebreaker)},
+        {"meshopt", meshoptScene()},
+        {"WebP", webpScene()},
+        {"PNG of 16 bits", widePngScene()}};
+    std::printf("seed %u\n", kSeed);
+    for (const auto& [name, scene] : scenes) {
+        Random random(kSeed);
+        Tally whole;
+        importMutation(path, scene.glb(), whole);
+        ASSERT_EQ(whole.imported, 1) << name;
+        Tally tally;
+        for (int i = 0; i < kMutationsPerScene; ++i) {
+            importMutation(path, damageBinary(random, scene), tally);
+            importMutation(path, mutateContents(random, scene), tally);
+        }
+        expectBothOutcomes(tally, name);
+    }
+}
+
+TEST(PackedFuzz, EveryTruncationOfPackedDataReturns) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "scene.glb";
+    for (const DracoMethod method : {DracoMethod::Sequential, DracoMethod::Edgebreaker}) {
+        GltfBuilder scene = dracoScene(method);
+        const auto size = scene.root["bufferViews"][0]["byteLength"].get<std::size_t>();
+        Tally tally;
+        for (std::size_t length = 0; length < size; ++length) {
+            scene.root["bufferViews"][0]["byteLength"] = length;
+            importMutation(path, scene.glb(), tally);
+        }
+        EXPECT_EQ(tally.imported, 0);
+        EXPECT_EQ(tally.refused, static_cast<int>(size));
+    }
+}
+
+// The models are damaged in the file that holds the compressed data, beside copies of the others.
+TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
+    if (!fs::exists(kModels)) {
+        GTEST_SKIP() << "no models in " << kModels;
+    }
+    const std::vector<std::array<const char*, 3>> models{
+        {"Avocado-draco", "Avocado.gltf", "Avocado.bin"},
+        {"pirate", "pirate.glb", "pirate.glb"},
+        {"box-textured-separate-webp", "box-textured-separate.gltf", "cesium logo.webp"}};
+    for (const auto& [folderName, scene, packed] : models) {
+        const TemporaryFolder folder;
+        fs::copy(kModels / folderName, folder.path(), fs::copy_options::recursive);
+        const Result<Bytes> whole = readFile(folder.path() / packed);
+        ASSERT_TRUE(whole.ok());
+        const bool isImage = std::string_view(packed).ends_with(".webp");
+        Random random(kSeed);
+        int imported = 0;
+        for (int i = 0; i < kMutationsPerModel; ++i) {
+            std::string bytes(whole->begin(), whole->end());
+            flipBytes(random, bytes);
+            if (below(random, 4) == 0) {
+                bytes.resize(below(random, bytes.size()));
+            }
+            ASSERT_TRUE(writeFile(folder.path() / packed, bytes).ok());
+            const Result<Scene> result = importScene(folder.path() / scene, {.decodeImages = isImage});
+            imported += result ? 1 : 0;
+            EXPECT_TRUE(result.ok() || !result.error().message.empty());
+        }
+        std::printf("%s: %d of %d imported\n", folderName, imported, kMutationsPerModel);
+        EXPECT_LT(imported, kMutationsPerModel);
+    }
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,23 @@
+// The probes of probes.glsl and textbook.glsl as C++ functions.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace glint::numerics {
+
+// What every probe's arrays hold room for.
+inline constexpr int kMaxInputs = 64;
+inline constexpr int kMaxOutputs = 24;
+
+template <typename Real>
+struct ProbeFunction {
+    std::string_view name;
+    void (*call)(const Real* inputs, Real* outputs) = nullptr;
+};
+
+// Every probe, in the order of the text.
+std::span<const ProbeFunction<float>> floatProbes();
+std::span<const ProbeFunction<double>> doubleProbes();
+
+}  // namespace glint::numerics

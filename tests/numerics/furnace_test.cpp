@@ -1,0 +1,188 @@
+// Energy and reciprocity of the BSDF in double precision, against analytic values and a quadrature that
+// shares no code with the shaders.
+#include "materials.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace glint::numerics {
+namespace {
+
+constexpr std::array kCosines{0.02, 0.1, 0.3, 0.7, 1.0};
+constexpr std::uint64_t kSeed = 20240601;
+
+// White microfacets, each of which reflects once.
+double singleScatterAlbedo(double alpha, double cosine, int points) {
+    glsl::energyCompensation = 0;
+    TestMaterial material = makeMaterial(alpha);
+    material.bsdf.f0 = glm::dvec3(1.0);
+    const double result = albedo(material.seenFrom(direction(cosine, 0.4)), points).x;
+    glsl::energyCompensation = 1;
+    return result;
+}
+
+TEST(Ggx, DistributionIntegratesToOneOverProjectedArea) {
+    for (const double alpha : {1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0}) {
+        // Substitute t = tan θ / α, which keeps the peak resolved: ∫ D cos θ dω = 2π ∫ D cos⁴θ α² t dt. The
+        // tail beyond t = 1000 is 1 / (1 + t²).
+        constexpr int kSteps = 20000;
+        constexpr double kEnd = 1e3;
+        double sum = 0.0;
+        for (int i = 0; i < kSteps; ++i) {
+            // Quadratic spacing: dense where the integrand is.
+            const double s = (i + 0.5) / kSteps;
+            const double t = kEnd * s * s;
+            const double dt = 2.0 * kEnd * s / kSteps;
+            const double cosine = 1.0 / std::sqrt(1.0 + alpha * alpha * t * t);
+            const double sine = alpha * t * cosine;
+            const glm::dvec3 h(sine * std::cos(0.3), sine * std::sin(0.3), cosine);
+            sum += 2.0 * kPi * glsl::ggxDistribution(h, glm::dvec2(alpha)) * std::pow(cosine, 4) * alpha *
+                   alpha * t * dt;
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-5) << "alpha " << alpha;
+    }
+}
+
+TEST(Ggx, SingleScatterAlbedoHasTheAnalyticValueAtAlphaOne) {
+    for (const double mu : {0.1, 0.3, 0.7, 1.0}) {
+        EXPECT_NEAR(singleScatterAlbedo(1.0, mu, 20000), 1.0 - mu * std::log(1.0 + 1.0 / mu), 3e-4)
+            << "mu " << mu;
+    }
+}
+
+TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
+    std::ifstream table(GLINT_SOURCE_DIR "/../shared/reference/ggx_directional_albedo.csv");
+    if (!table) {
+        GTEST_SKIP() << "no table of reference values beside the repository";
+    }
+    // Columns: roughness, alpha, then E_mu<cosine> each, then the mean.
+    std::string header;
+    std::getline(table, header);
+    std::vector<double> cosines;
+    std::istringstream names(header);
+    for (std::string name; std::getline(names, name, ',');) {
+        if (name.starts_with("E_mu")) {
+            cosines.push_back(std::stod(name.substr(4)));
+        }
+    }
+    ASSERT_FALSE(cosines.empty()) << header;
+    int rows = 0;
+    for (std::string line; std::getline(table, line); ++rows) {
+        std::istringstream cells(line);
+        double roughness = 0.0;
+        double alpha = 0.0;
+        double expected = 0.0;
+        char comma = 0;
+        cells >> roughness >> comma >> alpha;
+        for (const double mu : cosines) {
+            cells >> comma >> expected;
+            EXPECT_NEAR(singleScatterAlbedo(alpha, mu, 20000), expected, 3e-4)
+                << "alpha " << alpha << ", mu " << mu;
+        }
+    }
+    EXPECT_GT(rows, 0);
+}
+
+TEST(Furnace, WhiteMetalReflectsEverything) {
+    for (const double roughness : {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0}) {
+        TestMaterial metal = makeMaterial(roughness * roughness);
+        metal.bsdf.f0 = glm::dvec3(1.0);
+        for (const double cosine : kCosines) {
+            const double reflected = albedo(metal.seenFrom(direction(cosine, 0.4)), 20000).x;
+            EXPECT_NEAR(reflected, 1.0, 0.01) << "roughness " << roughness << ", cosine " << cosine;
+            EXPECT_LE(reflected, 1.001) << "roughness " << roughness << ", cosine " << cosine;
+        }
+    }
+}
+
+TEST(Furnace, NothingReflectsMoreThanItReceives) {
+    Engine engine(kSeed);
+    // All lobes but Unlit and SpecularGlossiness.
+    constexpr glsl::uint kAll = GLINT_CLEARCOAT | GLINT_SHEEN | GLINT_ANISOTROPY | GLINT_TRANSMISSION |
+                                GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME | GLINT_DISPERSION;
+    int failures = 0;
+    for (int i = 0; i < 2000 && failures < 5; ++i) {
+        const double cosine =
+            i % 4 == 0 ? std::exp(uniform(engine, std::log(1e-4), 0.0)) : uniform(engine, 1e-3, 1.0);
+        const TestMaterial seen =
+            randomMaterial(engine, kAll).seenFrom(direction(cosine, uniform(engine, 0.0, 2.0 * kPi)));
+        // A coat whose normal turns from the view has no visible normals for the quadrature to follow.
+        if (seen.has(GLINT_CLEARCOAT) && glm::dot(seen.bsdf.clearcoatNormal, seen.bsdf.view) < 0.01) {
+            continue;
+        }
+        double most = largestOf(albedo(seen, 256));
+        // A coarse sum tells most; what comes close is summed finely.
+        if (most > 0.98) {
+            most = largestOf(albedo(seen, 20000));
+        }
+        // What makes up for multiple scattering is fitted for isotropic lobes; 1.014 is the most that is
+        // known of others.
+        const double bound = seen.has(GLINT_ANISOTROPY) ? 1.02 : 1.001;
+        EXPECT_LE(most, bound) << "material " << i << " of seed " << kSeed << ": " << seen;
+        failures += most > bound ? 1 : 0;
+    }
+}
+
+// f(v, l) of a material, without the cosine. Both directions may be on either side.
+glm::dvec3 valueOf(const TestMaterial& material, glm::dvec3 view, glm::dvec3 light) {
+    if (view.z < 0.0) {  // a wall that is the same from both sides
+        view.z = -view.z;
+        light.z = -light.z;
+    }
+    return material.seenFrom(view).evaluate(light) / std::abs(light.z);
+}
+
+void expectReciprocity(glsl::uint lobes, bool passes) {
+    Engine engine(kSeed + lobes);
+    int compared = 0;
+    for (int i = 0; i < 20000; ++i) {
+        TestMaterial material = randomMaterial(engine, 0, 0.01);
+        material.lobes = lobes;
+        glsl::Bsdf& b = material.bsdf;
+        b.transmitted = colour(engine);
+        b.diffuseTransmitted = colour(engine);
+        if ((lobes & GLINT_ANISOTROPY) != 0U) {
+            b.alpha.x = randomAlpha(engine, 0.01);
+        }
+        const glm::dvec3 view = direction(uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi));
+        const double side = passes ? -1.0 : 1.0;
+        // Near the mirror direction as often as anywhere.
+        const glm::dvec3 light =
+            i % 2 == 0 ? direction(side * uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi))
+                       : glm::normalize(glm::dvec3(-view.x + 0.1 * uniform(engine),
+                                                   -view.y + 0.1 * uniform(engine), side * view.z));
+        const glm::dvec3 forth = valueOf(material, view, light);
+        const glm::dvec3 back = valueOf(material, light, view);
+        const double largest = std::max(largestOf(forth), largestOf(back));
+        if (largest > 1e-12) {
+            ++compared;
+            ASSERT_LE(glm::length(forth - back), 1e-4 * largest)
+                << material << ", view (" << view.x << ", " << view.y << ", " << view.z << "), light ("
+                << light.x << ", " << light.y << ", " << light.z << ")";
+        }
+    }
+    EXPECT_GT(compared, 1000);
+}
+
+TEST(Reciprocity, HoldsForDiffuseAndMicrofacets) {
+    expectReciprocity(0, false);
+    expectReciprocity(GLINT_ANISOTROPY, false);
+}
+
+TEST(Reciprocity, HoldsUnderSheen) {
+    expectReciprocity(GLINT_SHEEN, false);
+}
+
+TEST(Reciprocity, HoldsForThinWalls) {
+    expectReciprocity(GLINT_TRANSMISSION, true);
+    expectReciprocity(GLINT_DIFFUSE_TRANSMISSION, true);
+}
+
+}  // namespace
+}  // namespace glint::numerics

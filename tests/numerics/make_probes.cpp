@@ -1,0 +1,107 @@
+// Makes of probes.glsl, with all that it includes, one GLSL text for the device, the same text as C++, and
+// the list of its probes.
+//
+//   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
+#include "base/files.h"
+#include "emit/flatten.h"
+#include "plan/features.h"
+#include "translate.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kRoot = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+#include "numerics/probes.glsl"
+#include "numerics/textbook.glsl"
+)";
+
+// Found files stay in memory: flatten() keeps views of them.
+class Sources {
+public:
+    explicit Sources(std::vector<fs::path> folders) : folders_(std::move(folders)) {
+        texts_["generated/features.glsl"] = glint::featureDefines();
+        // What a scene chooses, who compiles the text defines.
+        texts_["generated/scene.glsl"] = "";
+    }
+
+    std::optional<std::string_view> find(std::string_view name) {
+        const auto known = texts_.find(name);
+        if (known != texts_.end()) {
+            return known->second;
+        }
+        for (const fs::path& folder : folders_) {
+            if (!fs::exists(folder / name)) {
+                continue;
+            }
+            glint::Result<glint::Bytes> bytes = glint::readFile(folder / name);
+            if (bytes) {
+                return texts_.emplace(name, std::string(bytes->begin(), bytes->end())).first->second;
+            }
+        }
+        return std::nullopt;
+    }
+
+private:
+    std::vector<fs::path> folders_;
+    std::map<std::string, std::string, std::less<>> texts_;
+};
+
+std::string listProbes(const std::string& glsl) {
+    static const std::regex kProbe(R"(PROBE\((\w+)\) \{)");
+    std::string list = "// Made by make_probes from probes.glsl and textbook.glsl. Do not edit.\n";
+    for (std::sregex_iterator i(glsl.begin(), glsl.end(), kProbe); i != std::sregex_iterator(); ++i) {
+        list += fmt::format("LISTED_PROBE({})\n", i->str(1));
+    }
+    return list;
+}
+
+glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
+    Sources sources(std::move(folders));
+    const glint::Result<std::string> glsl = glint::flatten(
+        "probes", kRoot, [&](std::string_view name) { return sources.find(name); }, glint::FlattenSide::Glsl);
+    if (!glsl) {
+        return glsl.error();
+    }
+    const glint::Result<std::string> cpp = glint::numerics::translateToCpp(*glsl);
+    if (!cpp) {
+        return cpp.error();
+    }
+    const std::map<std::string, std::string> files{
+        {"probes.glsl", *glsl}, {"probes.inc", *cpp}, {"probe_list.inc", listProbes(*glsl)}};
+    for (const auto& [name, text] : files) {
+        if (glint::Status status = glint::writeFile(output / name, text); !status) {
+            return status;
+        }
+    }
+    return glint::okStatus();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::vector<fs::path> arguments(argv + 1, argv + argc);
+    if (arguments.size() < 2) {
+        std::fputs("usage: make_probes OUTPUT SOURCES...\n", stderr);
+        return 2;
+    }
+    const glint::Status status = make(arguments[0], {arguments.begin() + 1, arguments.end()});
+    if (!status) {
+        std::fprintf(stderr, "%s\n", glint::toString(status.error()).c_str());
+        return 1;
+    }
+    return 0;
+}

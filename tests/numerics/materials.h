@@ -1,0 +1,152 @@
+// Materials for tests of the whole BSDF, as evaluateSurface() makes them: energy is shared between metal,
+// diffuse and transmitted light.
+#pragma once
+
+#include "quadrature.h"
+#include "shaders_double.h"
+
+#include <algorithm>
+#include <ostream>
+#include <random>
+
+namespace glint::numerics {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+struct TestMaterial {
+    glsl::Bsdf bsdf{};
+    glsl::uint lobes = 0;
+
+    glsl::Features features() const {
+        return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+    }
+    bool has(glsl::uint lobe) const {
+        return (lobes & lobe) != 0U;
+    }
+    // With what follows from the view.
+    TestMaterial seenFrom(const glm::dvec3& view) const {
+        TestMaterial seen = *this;
+        glsl::prepareBsdf(seen.bsdf, features(), view);
+        return seen;
+    }
+    glm::dvec3 evaluate(const glm::dvec3& light) const {
+        return glsl::evaluateBsdf(bsdf, features(), light);
+    }
+    double pdf(const glm::dvec3& light) const {
+        return glsl::bsdfPdf(bsdf, features(), light);
+    }
+};
+
+// Black, and as neutral as can be.
+[[maybe_unused]] TestMaterial makeMaterial(double alpha) {
+    TestMaterial material;
+    material.bsdf.f90 = 1.0;
+    material.bsdf.alpha = glm::dvec2(alpha);
+    material.bsdf.eta = glm::dvec3(1.5);
+    material.bsdf.clearcoatAlpha = 0.01;
+    material.bsdf.clearcoatNormal = {0.0, 0.0, 1.0};
+    material.bsdf.sheenAlpha = 0.25;
+    return material;
+}
+
+using Engine = std::mt19937_64;
+
+[[maybe_unused]] double uniform(Engine& engine, double low = 0.0, double high = 1.0) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+}
+
+[[maybe_unused]] glm::dvec3 colour(Engine& engine) {
+    const auto component = [&] { return uniform(engine) < 0.3 ? 1.0 : uniform(engine); };
+    return {component(), component(), component()};
+}
+
+// Roughness as artists set it, alpha from `leastAlpha` on.
+[[maybe_unused]] double randomAlpha(Engine& engine, double leastAlpha) {
+    const double roughness = uniform(engine);
+    return std::max(roughness * roughness, leastAlpha);
+}
+
+// Any lobes of `allowed` at once.
+[[maybe_unused]] TestMaterial randomMaterial(Engine& engine, glsl::uint allowed, double leastAlpha = 1e-4) {
+    TestMaterial material = makeMaterial(randomAlpha(engine, leastAlpha));
+    glsl::Bsdf& b = material.bsdf;
+    material.lobes = static_cast<glsl::uint>(engine()) & allowed;
+    if (material.has(GLINT_ANISOTROPY)) {
+        b.alpha.x = randomAlpha(engine, leastAlpha);
+    }
+    const double ior = uniform(engine) < 0.1 ? 1.0 : uniform(engine, 1.0, 3.0);
+    const bool leaves = material.has(GLINT_VOLUME) && uniform(engine) < 0.4;
+    const double spread = material.has(GLINT_DISPERSION) ? (ior - 1.0) * uniform(engine, 0.0, 0.05) : 0.0;
+    const glm::dvec3 iors(ior - spread, ior, ior + spread);
+    b.eta = leaves ? 1.0 / iors : iors;
+    const double metal = uniform(engine) < 0.5 ? std::round(uniform(engine)) : uniform(engine);
+    b.f0 = glm::mix(glm::dvec3(glsl::dielectricF0(ior)), colour(engine), metal);
+    const double transmission = material.has(GLINT_TRANSMISSION) ? uniform(engine) : 0.0;
+    const double through = material.has(GLINT_DIFFUSE_TRANSMISSION) ? uniform(engine) : 0.0;
+    const double dielectric = 1.0 - metal;
+    b.transmitted = colour(engine) * (dielectric * transmission);
+    b.diffuse = colour(engine) * (dielectric * (1.0 - transmission) * (1.0 - through));
+    b.diffuseTransmitted = colour(engine) * (dielectric * (1.0 - transmission) * through);
+    b.clearcoat = uniform(engine);
+    b.clearcoatAlpha = randomAlpha(engine, leastAlpha);
+    b.clearcoatNormal =
+        direction(1.0 - 0.1 * uniform(engine) * uniform(engine), uniform(engine, 0.0, 2.0 * kPi));
+    b.sheenColor = colour(engine);
+    b.sheenAlpha = std::max(randomAlpha(engine, leastAlpha), glsl::kMinSheenAlpha);
+    return material;
+}
+
+// Points where the material, seen from its view, has its mass.
+[[maybe_unused]] Quadrature quadratureOf(const TestMaterial& material) {
+    const glsl::Bsdf& b = material.bsdf;
+    Quadrature quadrature(b.view);
+    quadrature.addReflection(b.alpha);
+    if (material.has(GLINT_CLEARCOAT)) {
+        quadrature.addReflection(glm::dvec2(b.clearcoatAlpha), b.clearcoatNormal);
+    }
+    if (material.has(GLINT_TRANSMISSION)) {
+        for (int channel = 0; channel < (material.has(GLINT_DISPERSION) ? 3 : 1); ++channel) {
+            const double eta = material.has(GLINT_DISPERSION) ? b.eta[channel] : b.eta.y;
+            const bool bends = material.has(GLINT_VOLUME) && glsl::refracts(eta);
+            if (bends) {
+                quadrature.addRefraction(b.alpha, eta);
+            } else {
+                quadrature.addThinTransmission(material.has(GLINT_VOLUME) ? glm::dvec2(glsl::kMinAlpha)
+                                                                          : b.alpha);
+            }
+        }
+    }
+    return quadrature;
+}
+
+[[maybe_unused]] glm::dvec3 albedo(const TestMaterial& seen, int points) {
+    return quadratureOf(seen).integrate([&](const glm::dvec3& light) { return seen.evaluate(light); },
+                                        points);
+}
+
+[[maybe_unused]] double largestOf(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+[[maybe_unused]] std::ostream& operator<<(std::ostream& out, const TestMaterial& material) {
+    const glsl::Bsdf& b = material.bsdf;
+    const auto put = [&](const char* name, const glm::dvec3& v) {
+        out << ", " << name << " (" << v.x << ", " << v.y << ", " << v.z << ")";
+    };
+    out << "lobes " << material.lobes << ", alpha (" << b.alpha.x << ", " << b.alpha.y << ")";
+    put("f0", b.f0);
+    put("diffuse", b.diffuse);
+    put("transmitted", b.transmitted);
+    put("diffuse transmitted", b.diffuseTransmitted);
+    put("eta", b.eta);
+    out << ", coat " << b.clearcoat << " of alpha " << b.clearcoatAlpha;
+    put("coat's normal", b.clearcoatNormal);
+    put("sheen", b.sheenColor);
+    out << " of alpha " << b.sheenAlpha;
+    put("view", b.view);
+    return out;
+}
+
+}  // namespace
+}  // namespace glint::numerics

@@ -1,0 +1,273 @@
+#include "measure.h"
+
+#include "evaluate.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cstdlib>
+#include <future>
+#include <limits>
+#include <thread>
+
+namespace glint::numerics {
+namespace {
+
+constexpr std::uint32_t kChunk = 4096;
+
+std::uint64_t fromEnvironment(const char* name, std::uint64_t fallback) {
+    const char* text = std::getenv(name);
+    const std::uint64_t value = text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
+    return value == 0 ? fallback : value;
+}
+
+template <typename Real>
+auto findCall(std::span<const ProbeFunction<Real>> functions, std::string_view name) {
+    const auto found = std::ranges::find(functions, name, &ProbeFunction<Real>::name);
+    return found == functions.end() ? nullptr : found->call;
+}
+
+struct Calls {
+    void (*single)(const float*, float*) = nullptr;
+    void (*twice)(const double*, double*) = nullptr;
+};
+
+Result<Calls> findCalls(std::string_view name) {
+    const Calls calls{findCall(floatProbes(), name), findCall(doubleProbes(), name)};
+    if (calls.single == nullptr) {
+        return makeError("probe-name", std::string(name),
+                         "no probe of that name in probes.glsl or textbook.glsl",
+                         "name the probe as PROBE() does");
+    }
+    return calls;
+}
+
+// Errors of `values` against `truth`, both with scale and decision behind the outputs.
+template <typename Real>
+bool compare(const Probe& probe, const Real* values, const double* truth, const float* inputs,
+             ErrorStatistics& statistics) {
+    for (int k = 0; k < probe.allOutputs(); ++k) {
+        if (!std::isfinite(values[k])) {
+            statistics.addNotFinite(k, inputs, probe.inputs);
+            return true;
+        }
+    }
+    if (probe.decides()) {
+        const int decision = probe.allOutputs() - 1;
+        if (static_cast<double>(values[decision]) != truth[decision]) {
+            return false;
+        }
+    }
+    const double scale = probe.hasScale ? std::abs(truth[probe.outputs]) : 1.0;
+    for (int k = 0; k < probe.outputs; ++k) {
+        // The least normal number stands in for a scale of 0: devices may flush what is below.
+        const double against =
+            std::max({std::abs(truth[k]), probe.bounds.floorShare * scale, static_cast<double>(FLT_MIN)});
+        statistics.add(std::abs(static_cast<double>(values[k]) - truth[k]) / against, k, inputs,
+                       probe.inputs);
+    }
+    return true;
+}
+
+// One batch of inputs with what each implementation makes of them.
+struct Batch {
+    std::vector<float> inputs;
+    std::vector<float> device;
+    std::vector<float> textbook;
+};
+
+struct Chunk {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+struct ChunkResult {
+    ErrorStatistics device;
+    ErrorStatistics single;
+    ErrorStatistics textbook;
+    std::uint64_t undecided = 0;
+};
+
+ChunkResult compareChunk(const Probe& probe, const Calls& ours, const Calls& textbook, const Batch& batch,
+                         Chunk chunk) {
+    ChunkResult result;
+    std::array<double, kMaxInputs> inputs{};
+    std::array<double, kMaxOutputs> truth{};
+    std::array<double, kMaxOutputs> textbookTruth{};
+    std::array<float, kMaxOutputs> single{};
+    for (std::uint32_t element = chunk.first; element < chunk.first + chunk.count; ++element) {
+        const float* given = batch.inputs.data() + std::size_t{element} * probe.inputs;
+        std::copy_n(given, probe.inputs, inputs.begin());
+        const std::size_t output = std::size_t{element} * probe.allOutputs();
+        ours.twice(inputs.data(), truth.data());
+        ours.single(given, single.data());
+        result.undecided +=
+            compare(probe, batch.device.data() + output, truth.data(), given, result.device) ? 0 : 1;
+        compare(probe, single.data(), truth.data(), given, result.single);
+        if (textbook.twice != nullptr) {
+            if (probe.textbookAgainstItself) {
+                textbook.twice(inputs.data(), textbookTruth.data());
+            }
+            compare(probe, batch.textbook.data() + output,
+                    probe.textbookAgainstItself ? textbookTruth.data() : truth.data(), given,
+                    result.textbook);
+        }
+    }
+    return result;
+}
+
+// Calls work(chunk) for each chunk of `count` elements on every core; results in the order of the chunks.
+template <typename Work>
+auto forChunks(std::uint32_t count, const Work& work) {
+    std::vector<Chunk> chunks;
+    for (std::uint32_t first = 0; first < count; first += kChunk) {
+        chunks.push_back({first, std::min(kChunk, count - first)});
+    }
+    std::vector<decltype(work(Chunk{}))> results(chunks.size());
+    const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<std::future<void>> running;
+    for (std::size_t thread = 0; thread < threads; ++thread) {
+        running.push_back(std::async(std::launch::async, [&, thread] {
+            for (std::size_t i = thread; i < chunks.size(); i += threads) {
+                results[i] = work(chunks[i]);
+            }
+        }));
+    }
+    for (std::future<void>& future : running) {
+        future.get();
+    }
+    return results;
+}
+
+void fillInputs(const Probe& probe, std::uint64_t seed, std::uint64_t batch, std::uint32_t count,
+                std::vector<float>& inputs) {
+    inputs.resize(std::size_t{count} * probe.inputs);
+    forChunks(count, [&](Chunk chunk) {
+        // A stream of its own for each chunk, so that inputs do not depend on the number of cores.
+        std::seed_seq sequence{seed, seed >> 32U, batch, std::uint64_t{chunk.first}};
+        std::array<std::uint32_t, 2> word{};
+        sequence.generate(word.begin(), word.end());
+        InputSource source((std::uint64_t{word[0]} << 32U) | word[1]);
+        for (std::uint32_t element = chunk.first; element < chunk.first + chunk.count; ++element) {
+            source.start(inputs.data() + std::size_t{element} * probe.inputs);
+            probe.fill(source);
+        }
+        return 0;
+    });
+}
+
+}  // namespace
+
+MeasureOptions optionsFromEnvironment() {
+    const MeasureOptions defaults;
+    return {fromEnvironment("GLINT_NUMERIC_INPUTS", defaults.inputs),
+            fromEnvironment("GLINT_NUMERIC_SEED", defaults.seed)};
+}
+
+void ErrorStatistics::add(double error, int output, const float* inputs, int inputCount) {
+    if (error > worst_) {
+        worst_ = error;
+        worstOutput_ = output;
+        worstInputs_.assign(inputs, inputs + inputCount);
+    }
+    if (error <= 0.0) {
+        ++exact_;
+        return;
+    }
+    const double bin = kBinsPerOctave * (std::log2(error) + kOctaves - 1);
+    ++bins_[static_cast<std::size_t>(std::clamp(bin, 0.0, kBinsPerOctave * kOctaves - 1.0))];
+}
+
+void ErrorStatistics::addNotFinite(int output, const float* inputs, int inputCount) {
+    ++notFinite_;
+    add(std::numeric_limits<double>::infinity(), output, inputs, inputCount);
+}
+
+void ErrorStatistics::merge(const ErrorStatistics& other) {
+    exact_ += other.exact_;
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+        bins_[i] += other.bins_[i];
+    }
+    notFinite_ += other.notFinite_;
+    if (other.worst_ > worst_) {
+        worst_ = other.worst_;
+        worstOutput_ = other.worstOutput_;
+        worstInputs_ = other.worstInputs_;
+    }
+}
+
+double ErrorStatistics::median() const {
+    std::uint64_t total = exact_;
+    for (const std::uint64_t bin : bins_) {
+        total += bin;
+    }
+    std::uint64_t below = exact_;
+    if (2 * below >= total) {
+        return 0.0;
+    }
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+        below += bins_[i];
+        if (2 * below >= total) {
+            return std::exp2(static_cast<double>(i + 1) / kBinsPerOctave - (kOctaves - 1));
+        }
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+Result<ProbeResult> measure(ProbeDevice& device, const std::string& glsl, const Probe& probe,
+                            const MeasureOptions& options) {
+    const Result<Calls> ours = findCalls(probe.name);
+    if (!ours) {
+        return ours.error();
+    }
+    const bool hasTextbook = !probe.textbook.empty();
+    const Result<Calls> textbook = hasTextbook ? findCalls(probe.textbook) : Result<Calls>(Calls{});
+    if (!textbook) {
+        return textbook.error();
+    }
+    Result<ProbePipeline> pipeline = device.compile(glsl, probe.name, probe.inputs, probe.allOutputs());
+    if (!pipeline) {
+        return pipeline.error();
+    }
+    Result<ProbePipeline> textbookPipeline =
+        hasTextbook ? device.compile(glsl, probe.textbook, probe.inputs, probe.allOutputs())
+                    : Result<ProbePipeline>(ProbePipeline{});
+    if (!textbookPipeline) {
+        return textbookPipeline.error();
+    }
+
+    ProbeResult result;
+    result.inputs = probe.inputLimit == 0 ? options.inputs : std::min(options.inputs, probe.inputLimit);
+    result.seed = options.seed;
+    if (hasTextbook) {
+        result.textbook.emplace();
+    }
+    Batch batch;
+    for (std::uint64_t done = 0; done < result.inputs; done += ProbeDevice::kBatch) {
+        const auto count =
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(ProbeDevice::kBatch, result.inputs - done));
+        fillInputs(probe, options.seed, done / ProbeDevice::kBatch, count, batch.inputs);
+        batch.device.resize(std::size_t{count} * probe.allOutputs());
+        if (Status status = device.run(*pipeline, batch.inputs, batch.device); !status) {
+            return status.error();
+        }
+        if (hasTextbook) {
+            batch.textbook.resize(batch.device.size());
+            if (Status status = device.run(*textbookPipeline, batch.inputs, batch.textbook); !status) {
+                return status.error();
+            }
+        }
+        const auto chunks = forChunks(
+            count, [&](Chunk chunk) { return compareChunk(probe, *ours, *textbook, batch, chunk); });
+        for (const ChunkResult& chunk : chunks) {
+            result.device.merge(chunk.device);
+            result.single.merge(chunk.single);
+            result.undecided += chunk.undecided;
+            if (hasTextbook) {
+                result.textbook->merge(chunk.textbook);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace glint::numerics

@@ -1,0 +1,106 @@
+// glint_numerics: measures every function of the shaders and writes the table of docs/numerics.md.
+#include "base/files.h"
+#include "report.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace glint;
+
+struct Settings {
+    numerics::MeasureOptions measure = numerics::optionsFromEnvironment();
+    std::string document;
+    std::string json;
+};
+
+Result<numerics::Report> measureAll(const numerics::MeasureOptions& options) {
+    Result<std::unique_ptr<numerics::ProbeDevice>> device = numerics::ProbeDevice::create();
+    if (!device) {
+        return device.error();
+    }
+    const Result<std::string> glsl = numerics::readProbes();
+    if (!glsl) {
+        return glsl.error();
+    }
+    numerics::Report report{(*device)->description(), options, {}};
+    for (const numerics::Probe& probe : numerics::allProbes()) {
+        Result<numerics::ProbeResult> result = numerics::measure(**device, *glsl, probe, options);
+        if (!result) {
+            return result.error();
+        }
+        report.rows.push_back({probe, std::move(*result)});
+        const numerics::ReportRow& row = report.rows.back();
+        std::printf("%-36s worst %9.2e  median %9.2e  C++ %9.2e%s\n", std::string(probe.function).c_str(),
+                    row.result.device.worst(), row.result.device.median(), row.result.single.worst(),
+                    row.passes() ? "" : "  OUT OF BOUNDS");
+        if (!row.passes()) {
+            std::printf("    output %d of %s, %llu not finite, %llu undecided\n",
+                        row.result.device.worstOutput(),
+                        numerics::formatInputs(row.result.device.worstInputs()).c_str(),
+                        static_cast<unsigned long long>(row.result.device.notFinite()),
+                        static_cast<unsigned long long>(row.result.undecided));
+        }
+        std::fflush(stdout);
+    }
+    const std::vector<std::string> messages = (*device)->messages();
+    return messages.empty() ? Result<numerics::Report>(std::move(report))
+                            : makeError("validation", "", messages.front(), "");
+}
+
+Status writeReport(const Settings& settings, const numerics::Report& report) {
+    if (!settings.json.empty()) {
+        if (Status status = writeFile(settings.json, numerics::toJson(report)); !status) {
+            return status;
+        }
+    }
+    if (settings.document.empty()) {
+        return okStatus();
+    }
+    const Result<Bytes> bytes = readFile(settings.document);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const Result<std::string> document =
+        numerics::replaceRegion({bytes->begin(), bytes->end()}, numerics::toMarkdown(report));
+    return document ? writeFile(settings.document, *document) : Status(document.error());
+}
+
+int run(const Settings& settings) {
+    const Result<numerics::Report> report = measureAll(settings.measure);
+    if (!report) {
+        std::fprintf(stderr, "%s\n", toString(report.error()).c_str());
+        return 1;
+    }
+    if (const Status status = writeReport(settings, *report); !status) {
+        std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
+        return 1;
+    }
+    return std::ranges::all_of(report->rows, &numerics::ReportRow::passes) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        Settings settings;
+        CLI::App app("Measures the error of every function of the shaders that needs no device.");
+        app.add_option("--inputs", settings.measure.inputs, "Inputs of each function")
+            ->capture_default_str()
+            ->check(CLI::PositiveNumber);
+        app.add_option("--seed", settings.measure.seed, "Seed of the inputs")->capture_default_str();
+        app.add_option("--report", settings.document, "Markdown file whose generated region is replaced");
+        app.add_option("--json", settings.json, "JSON file to write");
+        CLI11_PARSE(app, argc, argv);
+        return run(settings);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "glint_numerics: error: %s\n", error.what());
+        return 1;
+    }
+}

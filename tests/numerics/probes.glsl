@@ -1,0 +1,357 @@
+// One probe for each function of the shaders that needs no device: reads its arguments from i, writes results to o.
+// Written once; the device runs it as GLSL, the host as C++ in single and in double precision.
+#include "hit/geometry.glsl"
+#include "hit/accumulate.glsl"
+#include "hit/lod.glsl"
+#include "hit/punctual.glsl"
+#include "hit/random.glsl"
+#include "bsdf/constants.glsl"
+#include "bsdf/exact.glsl"
+#include "bsdf/fresnel.glsl"
+#include "bsdf/ggx.glsl"
+#include "bsdf/albedo.glsl"
+#include "bsdf/sheen.glsl"
+#include "bsdf/iridescence.glsl"
+#include "bsdf/transmission.glsl"
+#include "bsdf/clearcoat.glsl"
+#include "bsdf/bsdf.glsl"
+#include "bsdf/sample.glsl"
+
+#define VEC2(k) vec2(i[k], i[(k) + 1])
+#define VEC3(k) vec3(i[k], i[(k) + 1], i[(k) + 2])
+#define VEC4(k) vec4(i[k], i[(k) + 1], i[(k) + 2], i[(k) + 3])
+#define WRITE3(k, v) \
+    o[k] = (v).x;    \
+    o[(k) + 1] = (v).y; \
+    o[(k) + 2] = (v).z
+
+// hit/geometry.glsl
+
+PROBE(BuildBasis) {
+    vec3 tangent;
+    vec3 bitangent;
+    buildBasis(VEC3(0), tangent, bitangent);
+    WRITE3(0, tangent);
+    WRITE3(3, bitangent);
+}
+
+PROBE(Octahedral) {
+    vec3 v = octahedralDecode(octahedralEncode(VEC3(0)));
+    WRITE3(0, v);
+}
+
+PROBE(DirectionOr) {
+    vec3 v = directionOr(VEC3(0), vec3(0.0, 0.0, 1.0));
+    WRITE3(0, v);
+}
+
+// The scale is what the terms of the sum amount to.
+PROBE(TransformPoint) {
+    vec4 rows[3];
+    rows[0] = VEC4(0);
+    rows[1] = VEC4(4);
+    rows[2] = VEC4(8);
+    vec3 p = transformPoint(rows, VEC3(12));
+    WRITE3(0, p);
+    vec3 terms = abs(VEC3(12));
+    o[3] = max(max(dot(abs(VEC4(0)), vec4(terms, 1.0)), dot(abs(VEC4(4)), vec4(terms, 1.0))),
+               dot(abs(VEC4(8)), vec4(terms, 1.0)));
+}
+
+PROBE(TransformNormal) {
+    vec3 rows[3];
+    rows[0] = VEC3(0);
+    rows[1] = VEC3(3);
+    rows[2] = VEC3(6);
+    vec3 n = transformNormal(rows, VEC3(9));
+    WRITE3(0, n);
+    vec3 terms = abs(VEC3(9));
+    o[3] = max(max(dot(abs(VEC3(0)), terms), dot(abs(VEC3(3)), terms)), dot(abs(VEC3(6)), terms));
+}
+
+PROBE(PlaneError) {
+    vec4 rows[3];
+    rows[0] = VEC4(15);
+    rows[1] = VEC4(19);
+    rows[2] = VEC4(23);
+    vec3 cofactors[3];
+    cofactors[0] = VEC3(27);
+    cofactors[1] = VEC3(30);
+    cofactors[2] = VEC3(33);
+    o[0] = planeError(VEC3(0), TrianglePoint(VEC3(3), VEC3(6), VEC3(9), VEC3(12)), rows, cofactors);
+}
+
+// hit/lod.glsl
+
+PROBE(ConeFootprint) {
+    o[0] = coneFootprint(i[0], i[1]);
+}
+
+PROBE(ConeLod) {
+    o[0] = coneLod(i[0], VEC3(1), VEC3(4), VEC4(7), VEC2(11));
+}
+
+// hit/punctual.glsl
+
+PROBE(SampleLight) {
+    LightSample light =
+        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12]), VEC3(13));
+    WRITE3(0, light.irradiance);
+    // What the intensity becomes at the distance, before window and cone, which end at 0.
+    o[3] = uint(i[3]) == kLightDirectional ? 1.0 : 1.0 / max(light.distance * light.distance, 1e-6);
+}
+
+PROBE(SampleLightDirection) {
+    LightSample light =
+        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12]), VEC3(13));
+    WRITE3(0, light.direction);
+    o[3] = light.distance / (length(VEC3(0) - VEC3(13)) + 1.0);
+}
+
+// hit/accumulate.glsl
+
+float givenSample(float pixel, float value, float spread, uint index) {
+    return value * (1.0 + spread * (randomUnit(uint(pixel), index, 0u, 0u) - 0.5));
+}
+
+// The mean of i[2] samples that spread by i[3] about i[1].
+PROBE(RunningMean) {
+    RunningMean mean = RunningMean(vec3(0.0), vec3(0.0));
+    uint count = uint(i[2]);
+    for (uint k = 0u; k < count; ++k) {
+        mean = includeSample(mean, vec3(givenSample(i[0], i[1], i[3], k)), k);
+    }
+    o[0] = mean.mean.x;
+}
+
+// hit/random.glsl
+
+PROBE(RandomUnit) {
+    o[0] = randomUnit(uint(i[0]) * 65537u + uint(i[1]), uint(i[2]), uint(i[3]), uint(i[4]));
+}
+
+// bsdf/exact.glsl
+
+PROBE(AddProduct) {
+    o[0] = addProduct(i[0], i[1], i[2]);
+}
+
+PROBE(DifferenceOfProducts) {
+    o[0] = differenceOfProducts(i[0], i[1], i[2], i[3]);
+}
+
+PROBE(AccurateDot) {
+    o[0] = accurateDot(VEC3(0), VEC3(3));
+}
+
+// Near 0 its root, the cosine, is what counts.
+PROBE(RefractedCosine2) {
+    float squared = refractedCosine2(i[0], i[1]);
+    o[0] = sqrt(max(squared, 0.0));
+    o[1] = squared > 0.0 ? 1.0 : 0.0;
+}
+
+// bsdf/fresnel.glsl
+
+PROBE(DielectricF0) {
+    o[0] = dielectricF0(i[0]);
+}
+
+PROBE(FresnelSchlick) {
+    vec3 f = fresnelSchlick(VEC3(0), i[3], i[4]);
+    WRITE3(0, f);
+}
+
+PROBE(FresnelInterface) {
+    vec3 f = fresnelInterface(VEC3(0), i[3], i[4], i[5]);
+    WRITE3(0, f);
+    o[3] = i[5] < 1.0 && refractedCosine2(i[4], i[5]) <= 0.0 ? 1.0 : 0.0;
+}
+
+PROBE(InterfacePassed) {
+    o[0] = interfacePassed(VEC3(0), i[3], i[4], i[5]);
+    o[1] = o[0] > 0.0 ? 1.0 : 0.0;
+}
+
+PROBE(SchlickF0) {
+    vec3 f = schlickF0(VEC3(0), i[3], i[4]);
+    WRITE3(0, f);
+}
+
+// bsdf/ggx.glsl. The scale of the NDF and of densities is their peak.
+
+PROBE(GgxDistribution) {
+    o[0] = ggxDistribution(VEC3(0), vec2(i[3]));
+    o[1] = 1.0 / (kPi * i[3] * i[3]);
+}
+
+PROBE(GgxDistributionAnisotropic) {
+    o[0] = ggxDistribution(VEC3(0), VEC2(3));
+    o[1] = 1.0 / (kPi * i[3] * i[4]);
+}
+
+PROBE(GgxVisibility) {
+    o[0] = ggxVisibility(VEC3(0), VEC3(3), vec2(i[6]));
+}
+
+PROBE(GgxVisibilityAnisotropic) {
+    o[0] = ggxVisibility(VEC3(0), VEC3(3), VEC2(6));
+}
+
+// The normal, with the ellipsoid of the microfacets stretched into a sphere: otherwise a smooth lobe hides its errors.
+PROBE(SampleVisibleNormal) {
+    vec3 h = sampleVisibleNormal(VEC3(0), VEC2(3), VEC2(5));
+    vec3 stretched = normalize(vec3(h.x / i[3], h.y / i[4], h.z));
+    WRITE3(0, stretched);
+    // The normal is that of a sum which is short where the facet is seen from the side: what a point of the sphere
+    // loses counts as much more there, and the facet as much less.
+    vec3 view = normalize(vec3(i[3] * i[0], i[4] * i[1], i[2]));
+    o[3] = 0.5 / max(dot(view, stretched), 1e-12);
+}
+
+PROBE(VisibleNormalPdf) {
+    o[0] = visibleNormalPdf(VEC3(0), VEC3(3), VEC2(6));
+    o[1] = 2.0 / (kPi * i[6] * i[7] * (i[2] + ggxProjection(VEC3(0), VEC2(6))));
+}
+
+// bsdf/sheen.glsl
+
+PROBE(SheenDistribution) {
+    o[0] = sheenDistribution(i[0], i[1]);
+}
+
+PROBE(SheenVisibility) {
+    o[0] = sheenVisibility(i[0], i[1], i[2]);
+}
+
+// bsdf/iridescence.glsl
+
+PROBE(IridescentFresnel) {
+    vec3 f = iridescentFresnel(i[0], VEC3(1), i[4], i[5]);
+    WRITE3(0, f);
+    // The phase jumps where the base becomes denser than the film.
+    float filmF0 = dielectricF0(i[4]);
+    o[3] = (i[1] < filmF0 ? 1.0 : 0.0) + (i[2] < filmF0 ? 2.0 : 0.0) + (i[3] < filmF0 ? 4.0 : 0.0);
+}
+
+// bsdf/transmission.glsl
+
+PROBE(RefractDirection) {
+    vec3 l;
+    bool refracted = refractDirection(VEC3(0), VEC3(3), i[6], l);
+    WRITE3(0, l);
+    o[3] = refracted ? 1.0 : 0.0;
+}
+
+// Light that a facet near the normal refracts. The scale is what a facet seen head on would bring.
+PROBE(RefractedTransmission) {
+    float cosine;
+    o[0] = refractedTransmission(VEC3(0), VEC3(3), VEC2(6), i[8], cosine);
+    vec3 h;
+    float spread;
+    bool refracted = refractionHalfVector(VEC3(0), VEC3(3), i[8], h, spread);
+    o[1] = refracted ? o[0] / max(-dot(VEC3(3), h) * dot(VEC3(0), h), 1e-12) : 0.0;
+    o[2] = refracted ? 1.0 : 0.0;
+}
+
+PROBE(ThinTransmission) {
+    float cosine;
+    o[0] = thinTransmission(VEC3(0), VEC3(3), VEC2(6), cosine);
+    o[1] = schlickWeight(cosine);
+    o[2] = o[0] > 0.0 ? 1.0 : 0.0;
+}
+
+PROBE(VolumeTransmittance) {
+    vec3 t = volumeTransmittance(VEC3(0), i[3]);
+    WRITE3(0, t);
+}
+
+PROBE(DispersedIor) {
+    vec3 n = dispersedIor(i[0], i[1]);
+    WRITE3(0, n);
+}
+
+// bsdf/clearcoat.glsl
+
+PROBE(ClearcoatLobe) {
+    float nDotV = accurateDot(VEC3(0), VEC3(3));
+    float nDotL = accurateDot(VEC3(0), VEC3(6));
+    bool lit = nDotV >= kMinViewCosine && nDotL >= kMinViewCosine;
+    o[0] = lit ? clearcoatLobe(VEC3(0), nDotL, nDotV, VEC3(3), VEC3(6), i[9]) : 0.0;
+    o[1] = lit ? 1.0 : 0.0;
+}
+
+// bsdf/albedo.glsl
+
+PROBE(GgxAlbedo) {
+    vec2 lossBias = ggxAlbedo(i[0], i[1]);
+    o[0] = lossBias.x;
+    o[1] = lossBias.y;
+}
+
+PROBE(GgxMeanAlbedo) {
+    vec2 lossBias = ggxMeanAlbedo(i[0]);
+    o[0] = lossBias.x;
+    o[1] = lossBias.y;
+}
+
+PROBE(SheenAlbedo) {
+    o[0] = sheenAlbedo(i[0], i[1]);
+}
+
+// bsdf/bsdf.glsl and bsdf/sample.glsl
+
+Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 alpha, vec3 transmitted, vec3 eta,
+               vec3 diffuseTransmitted) {
+    Bsdf b;
+    b.f0 = vec3(f0X, f0Y, f0Z);
+    b.diffuse = diffuse;
+    b.f90 = f90;
+    b.alpha = alpha;
+    b.transmitted = transmitted;
+    b.eta = eta;
+    b.diffuseTransmitted = diffuseTransmitted;
+    return b;
+}
+
+#define GIVEN_FEATURES Features(0u, 0u, 0xFFFFFFFFu, 0u, uint(i[0]), 0u)
+#define GIVEN_BSDF(b)                                                                                       \
+    Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));              \
+    b.clearcoat = i[19];                                                                                    \
+    b.clearcoatAlpha = i[20];                                                                               \
+    b.clearcoatNormal = VEC3(21);                                                                           \
+    b.sheenColor = VEC3(24);                                                                                \
+    b.sheenAlpha = i[27];                                                                                   \
+    prepareBsdf(b, GIVEN_FEATURES, VEC3(28))
+
+PROBE(EvaluateBsdf) {
+    GIVEN_BSDF(b);
+    vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
+    WRITE3(0, f);
+    o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
+}
+
+PROBE(EvaluateUnderSheen) {
+    GIVEN_BSDF(b);
+    vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
+    WRITE3(0, f);
+    o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
+}
+
+PROBE(BsdfPdf) {
+    GIVEN_BSDF(b);
+    o[0] = bsdfPdf(b, GIVEN_FEATURES, VEC3(31));
+    o[1] = 1.0 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
+    o[2] = o[0] == 0.0 ? 0.0 : 1.0;
+}
+
+// A sample in one number of which the truth is 1: its weight as it gives it, over what value and density of its
+// direction say.
+PROBE(SampleBsdf) {
+    GIVEN_BSDF(b);
+    BsdfSample s = sampleBsdf(b, GIVEN_FEATURES, VEC3(31));
+    vec3 f = evaluateBsdf(b, GIVEN_FEATURES, s.direction);
+    float weight = s.weight.x + s.weight.y + s.weight.z;
+    // A weight that is no normal number has few digits.
+    o[0] = s.pdf > 0.0 && weight > 1e-30 ? (f.x + f.y + f.z) / s.pdf / weight : 1.0;
+}

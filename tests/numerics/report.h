@@ -1,0 +1,40 @@
+// Results of probes as text.
+#pragma once
+
+#include "measure.h"
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::numerics {
+
+struct ReportRow {
+    Probe probe;
+    ProbeResult result;
+
+    // Nothing that is not finite, errors and undecided inputs within the probe's bounds.
+    bool passes() const;
+};
+
+struct Report {
+    std::string device;
+    MeasureOptions options;
+    std::vector<ReportRow> rows;
+};
+
+// The flattened text of all probes, from the build. Errors: those of readFile.
+Result<std::string> readProbes();
+
+// "(0.5, 1, -2e-07)", with the digits that identify a float.
+std::string formatInputs(std::span<const float> inputs);
+
+std::string toMarkdown(const Report& report);
+std::string toJson(const Report& report);
+
+// `document` with the text between the markers "<!-- begin numerics -->" and "<!-- end numerics -->"
+// replaced. Error "report-marker" where it lacks them.
+Result<std::string> replaceRegion(const std::string& document, const std::string& region);
+
+}  // namespace glint::numerics

@@ -1,0 +1,39 @@
+// Runs a compute shader of the tests over a loaded scene: it may include what the product's passes include.
+#pragma once
+
+#include "commands.h"
+#include "interop/frame.h"
+#include "render/harness.h"
+#include "resources.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+
+class HitKernel {
+public:
+    // `shader`: a file of tests/render/shaders. It finds the scene through FrameConstants, `width`
+    // invocations in workgroups of kRayGroupSize, its input in `rays` and `lights`, and writes words to
+    // `counters`. Errors: those of compileShader, "vulkan-call". `scene` must outlive the kernel.
+    static Result<std::unique_ptr<HitKernel>> create(const Scene& scene, const LoadedScene& loaded,
+                                                     const std::string& shader);
+
+    // The first `outputs` words, 0 where the shader wrote none. `constants` may hold further inputs.
+    Result<std::vector<std::uint32_t>> run(gpu::FrameConstants constants,
+                                           std::span<const gpu::RayRecord> rays, std::uint32_t invocations,
+                                           std::size_t outputs);
+
+private:
+    explicit HitKernel(GpuScene::State& scene);
+    Status createPipeline(const std::vector<std::uint32_t>& words);
+
+    GpuScene::State& scene_;
+    UniquePipelineLayout layout_;
+    UniquePipeline pipeline_;
+};
+
+}  // namespace glint::testing

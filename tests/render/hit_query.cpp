@@ -1,0 +1,49 @@
+#include "render/hit_query.h"
+
+#include "render/hit_kernel.h"
+
+#include <cstring>
+
+namespace glint::testing {
+
+namespace {
+
+constexpr std::size_t kWords = sizeof(Values) / sizeof(std::uint32_t);
+
+}  // namespace
+
+std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries) {
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
+    const LoadedScene loaded(scene, settings);
+    if (!loaded.ok()) {
+        return {};
+    }
+    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "hit_values.comp");
+    if (!kernel) {
+        ADD_FAILURE() << toString(kernel.error());
+        return {};
+    }
+    std::vector<gpu::RayRecord> rays;
+    for (const Query& query : queries) {
+        gpu::RayRecord ray{};
+        ray.origin = {query.barycentrics[0], query.barycentrics[1], 0.0F};
+        ray.pixel = query.geometry;
+        ray.direction = {query.direction[0], query.direction[1], query.direction[2]};
+        ray.coneWidth = query.coneWidth;
+        ray.coneSpread = static_cast<float>(query.triangle);
+        rays.push_back(ray);
+    }
+    const auto count = static_cast<std::uint32_t>(rays.size());
+    const Result<std::vector<std::uint32_t>> words = (*kernel)->run({}, rays, count, count * kWords);
+    if (!words) {
+        ADD_FAILURE() << toString(words.error());
+        return {};
+    }
+    expectNoValidationMessages();
+    std::vector<Values> values(queries.size());
+    std::memcpy(values.data(), words->data(), words->size() * sizeof(std::uint32_t));
+    return values;
+}
+
+}  // namespace glint::testing

@@ -1,0 +1,339 @@
+// Positions, normals, attributes and levels of detail of given hits, against the same in double precision.
+#include "cli/scene_view.h"
+#include "render/hit_query.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+using Double3 = std::array<double, 3>;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Double3 toDouble(const Float3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Double3 subtract(const Double3& a, const Double3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Double3 cross(const Double3& a, const Double3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Double3& a, const Double3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Double3 unitOf(const Double3& v) {
+    const double length = std::sqrt(dot(v, v));
+    return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+Double3 blend(const std::array<Float3, 3>& corners, const Float2& barycentrics) {
+    const double weights[] = {1.0 - double{barycentrics[0]} - double{barycentrics[1]}, barycentrics[0],
+                              barycentrics[1]};
+    Double3 sum{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            sum[axis] += weights[k] * corners[k][axis];
+        }
+    }
+    return sum;
+}
+
+Double3 rowOf(const std::array<float, 12>& rows, std::size_t row) {
+    return {rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]};
+}
+
+// A normal under a transform: the inverse transpose, times the determinant's magnitude.
+Double3 transformNormal(const std::array<float, 12>& rows, const Double3& n) {
+    Double3 result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        result[row] = dot(cross(rowOf(rows, (row + 1) % 3), rowOf(rows, (row + 2) % 3)), n);
+    }
+    const double determinant = dot(rowOf(rows, 0), cross(rowOf(rows, 1), rowOf(rows, 2)));
+    for (double& value : result) {
+        value = determinant < 0.0 ? -value : value;
+    }
+    return unitOf(result);
+}
+
+Double3 transformPoint(const std::array<float, 12>& rows, const Double3& p) {
+    Double3 result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        result[row] = dot(rowOf(rows, row), p) + rows[4 * row + 3];
+    }
+    return result;
+}
+
+constexpr std::array<Float3, 3> kPositions{{{0.1F, 0.2F, 0.3F}, {1.0F, 0.3F, 0.1F}, {0.2F, 1.1F, 0.4F}}};
+constexpr std::array<Float3, 3> kNormals{{{0.0F, 0.6F, 0.8F}, {0.48F, 0.64F, 0.6F}, {-0.36F, 0.48F, 0.8F}}};
+constexpr std::array<Float2, 3> kTexCoords{{{0.1F, 0.7F}, {3.3F, -0.2F}, {1e-5F, 7.1F}}};
+constexpr std::array<Float4, 3> kColors{
+    {{0.1F, 0.2F, 0.7F, 1.0F}, {0.9F, 1e-6F, 0.3F, 1.0F}, {0.123F, 1.0F, 0.77F, 1.0F}}};
+
+Scene triangleScene(const std::vector<Matrix4>& placements) {
+    Scene scene = emptyScene();
+    Material material;
+    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
+    Primitive triangle;
+    triangle.pointer = "/meshes/0/primitives/0";
+    triangle.material = addMaterial(scene, material);
+    triangle.positions.assign(kPositions.begin(), kPositions.end());
+    triangle.normals.assign(kNormals.begin(), kNormals.end());
+    triangle.texCoords0.assign(kTexCoords.begin(), kTexCoords.end());
+    triangle.colors.assign(kColors.begin(), kColors.end());
+    triangle.colorContent = ColorContent::Varying;
+    triangle.indices = {0, 1, 2};
+    const int mesh = addMesh(scene, triangle);
+    for (const Matrix4& placement : placements) {
+        addInstance(scene, mesh, placement);
+    }
+    return scene;
+}
+
+// Column-major from the rows of the linear part and a translation.
+Matrix4 matrix(const std::array<Double3, 3>& linear, const Double3& translation, double scale) {
+    Matrix4 result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            result[4 * column + row] = scale * linear[row][column];
+        }
+        result[12 + row] = translation[row];
+    }
+    result[15] = 1.0;
+    return result;
+}
+
+constexpr std::array<Double3, 3> kRotated{{{0.8, -0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<Double3, 3> kMirrored{{{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<Double3, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
+constexpr std::array<Double3, 3> kStretched{{{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0.6}, {0.0, 0.6e-3, 0.8}}};
+
+// Rounding in and after the sums of a normal: a few units in the last place, more where a shear cancels.
+constexpr double kNormalError = 4e-6;
+
+void expectSameDirection(const Float3& got, const Double3& expected, const std::string& where) {
+    EXPECT_NEAR(dot(toDouble(got), toDouble(got)), 1.0, 1e-6) << where;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(got[axis], expected[axis], kNormalError) << where << ", axis " << axis;
+    }
+}
+
+TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
+    std::vector<Matrix4> placements;
+    for (const auto& linear : {kRotated, kMirrored, kSheared, kStretched}) {
+        for (const double scale : {1.0, 1e6, 1e-6, 1e10, 1e-10}) {
+            placements.push_back(matrix(linear, {3.0, -5.0, 7.0}, scale));
+        }
+    }
+    const Scene scene = triangleScene(placements);
+    const SceneViewData data = makeSceneView(scene);
+    std::vector<Query> queries;
+    for (std::uint32_t i = 0; i < placements.size(); ++i) {
+        for (const Float2 barycentrics : {Float2{0.0F, 0.0F}, Float2{0.25F, 0.5F}, Float2{0.01F, 0.98F}}) {
+            queries.push_back({i, 0, barycentrics, {0.48F, -0.6F, -0.64F}, 0.0F});
+            queries.push_back({i, 0, barycentrics, {-0.48F, 0.6F, 0.64F}, 0.0F});
+        }
+    }
+    const std::vector<Values> values = ask(scene, queries);
+    ASSERT_EQ(values.size(), queries.size());
+    const Double3 winding = cross(subtract(toDouble(kPositions[1]), toDouble(kPositions[0])),
+                                  subtract(toDouble(kPositions[2]), toDouble(kPositions[0])));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const Query& query = queries[i];
+        const std::string where =
+            "placement " + std::to_string(query.geometry) + ", query " + std::to_string(i);
+        const auto& rows = data.instances[query.geometry].objectToWorld;
+        const Double3 front = transformNormal(rows, winding);
+        const double facing = -dot(front, toDouble(query.direction));
+        ASSERT_GT(std::abs(facing), 1e-3) << where << ": rounding decides the side";
+        EXPECT_EQ(values[i].frontFace, facing >= 0.0 ? 1.0F : 0.0F) << where;
+        const double side = facing >= 0.0 ? 1.0 : -1.0;
+        expectSameDirection(values[i].geometricNormal, {side * front[0], side * front[1], side * front[2]},
+                            where);
+        expectSameDirection(values[i].normal, transformNormal(rows, blend(kNormals, query.barycentrics)),
+                            where);
+        const Double3 off = subtract(toDouble(values[i].position),
+                                     transformPoint(rows, blend(kPositions, query.barycentrics)));
+        EXPECT_LE(std::abs(dot(off, front)), double{values[i].clearance}) << where;
+        EXPECT_GT(values[i].clearance, 0.0F) << where;
+    }
+}
+
+TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
+    const Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    const std::vector<Values> values =
+        ask(scene,
+            {{.barycentrics = {0.0F, 0.0F}}, {.barycentrics = {1.0F, 0.0F}}, {.barycentrics = {0.0F, 1.0F}}});
+    ASSERT_EQ(values.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(values[k].texCoord, kTexCoords[k]) << "vertex " << k;
+        EXPECT_EQ(values[k].color, (Float3{kColors[k][0], kColors[k][1], kColors[k][2]})) << "vertex " << k;
+        expectSameDirection(values[k].normal, unitOf(toDouble(kNormals[k])), "vertex " + std::to_string(k));
+    }
+}
+
+// Along edges and inside, what is the same at all vertices stays: the weights sum to 1.
+TEST(HitValues, WeightsSumToOne) {
+    Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    scene.meshes[0].primitives[0].texCoords0.assign(3, {0.7F, 1234.5F});
+    std::vector<Query> queries;
+    for (int i = 0; i <= 32; ++i) {
+        for (int j = 0; i + j <= 32; ++j) {
+            const float u = static_cast<float>(i) / 32.0F * 0.999999F;
+            const float v = static_cast<float>(j) / 32.0F;
+            queries.push_back({.barycentrics = {u, std::min(v, 1.0F - u)}});
+        }
+    }
+    for (const Values& value : ask(scene, queries)) {
+        // A rounding for each product and sum.
+        EXPECT_NEAR(value.texCoord[0], 0.7F, 4 * 0x1p-24F);
+        EXPECT_NEAR(value.texCoord[1], 1234.5F, 4 * 1234.5F * 0x1p-24F);
+    }
+}
+
+// A square metre with 1024 x 512 texels, so that a footprint of w metres has w * sqrt(1024 * 512) texels a
+// side.
+Scene squareScene(const std::vector<double>& scales) {
+    Scene scene = emptyScene();
+    Material material;
+    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
+    const Primitive quad = makeQuad(addMaterial(scene, material), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const int mesh = addMesh(scene, quad);
+    for (const double scale : scales) {
+        addInstance(scene, mesh, scaling(scale, scale, scale));
+    }
+    return scene;
+}
+
+TEST(HitValues, LevelOfDetailOfAPlaneIsAnalytic) {
+    const std::vector<double> scales{1.0, 1e6, 1e-6, 1e-12};
+    const Scene scene = squareScene(scales);
+    std::vector<Query> queries;
+    std::vector<double> expected;
+    for (std::uint32_t i = 0; i < scales.size(); ++i) {
+        for (const double texels : {0.5, 1.0, 3.0, 1000.0, 1e9}) {
+            // Straight down, and under a cosine of 0.36: the footprint is its width over the cosine's root.
+            for (const double cosine : {1.0, 0.36}) {
+                const double width = texels * scales[i] / std::sqrt(1024.0 * 512.0);
+                const auto sine = static_cast<float>(std::sqrt(1.0 - cosine * cosine));
+                queries.push_back({i,
+                                   1,
+                                   {0.3F, 0.3F},
+                                   {sine, 0.0F, static_cast<float>(-cosine)},
+                                   static_cast<float>(width)});
+                expected.push_back(std::max(0.0, std::log2(texels / std::sqrt(cosine))));
+            }
+        }
+    }
+    const std::vector<Values> values = ask(scene, queries);
+    ASSERT_EQ(values.size(), queries.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_NEAR(values[i].lod, expected[i], 1e-5) << "query " << i;
+    }
+}
+
+TEST(HitValues, NoLevelOfDetailWithoutAnArea) {
+    // After the square's two triangles: one without texels, one without an area in the world, one without
+    // either.
+    Scene scene = squareScene({1.0});
+    Primitive& square = scene.meshes[0].primitives[0];
+    for (const bool flat : {false, true}) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            square.positions.push_back(square.positions[flat && k == 1 ? 0 : k]);
+            square.normals.push_back(square.normals[k]);
+            square.texCoords0.push_back(flat ? square.texCoords0[k] : Float2{0.5F, 0.5F});
+        }
+    }
+    for (const std::uint32_t index : {4U, 5U, 6U, 7U, 8U, 9U, 0U, 0U, 1U}) {
+        square.indices.push_back(index);
+    }
+    struct Expectation {
+        const char* what;
+        std::uint32_t triangle;
+        float coneWidth;
+        bool level;
+    };
+    const Expectation expectations[] = {
+        {"a footprint", 0, 1.0F, true},
+        {"no footprint", 0, 0.0F, false},
+        {"endless footprint", 0, kInfinity, false},
+        {"no texels", 2, 1.0F, false},
+        {"no area in the world", 3, 1.0F, false},
+        {"neither", 4, 1.0F, false},
+        {"neither, endless", 4, kInfinity, false},
+    };
+    std::vector<Query> queries;
+    for (const Expectation& expectation : expectations) {
+        queries.push_back(
+            {0, expectation.triangle, {0.3F, 0.3F}, {0.0F, 0.0F, -1.0F}, expectation.coneWidth});
+    }
+    const std::vector<Values> values = ask(scene, queries);
+    ASSERT_EQ(values.size(), queries.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_TRUE(std::isfinite(values[i].lod)) << expectations[i].what;
+        EXPECT_EQ(values[i].lod > 0.0F, expectations[i].level) << expectations[i].what;
+    }
+}
+
+TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
+    Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    // A point, a line with a vertex twice, a line of three vertices, and a triangle whose area is no float.
+    Primitive& primitive = scene.meshes[0].primitives[0];
+    primitive.positions.push_back({0.55F, 0.25F, 0.2F});
+    primitive.positions.push_back({0.1F, 0.2F, 0.3F});
+    for (const Float3 tiny :
+         {Float3{0.0F, 0.0F, 0.0F}, Float3{1e-25F, 0.0F, 0.0F}, Float3{0.0F, 1e-25F, 0.0F}}) {
+        primitive.positions.push_back(tiny);
+    }
+    primitive.normals.assign(8, {0.0F, 0.0F, 0.0F});
+    primitive.texCoords0.resize(8);
+    primitive.colors.resize(8);
+    primitive.indices = {0, 0, 0, 0, 4, 1, 0, 1, 3, 5, 6, 7};
+    std::vector<Query> queries;
+    for (std::uint32_t triangle = 0; triangle < 4; ++triangle) {
+        queries.push_back({0, triangle, {0.3F, 0.3F}, {0.48F, -0.6F, -0.64F}, 1.0F});
+    }
+    const std::vector<Values> values = ask(scene, queries);
+    ASSERT_EQ(values.size(), 4U);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (const Float3& vector : {values[i].geometricNormal, values[i].normal}) {
+            EXPECT_NEAR(dot(toDouble(vector), toDouble(vector)), 1.0, 1e-6) << "triangle " << i;
+        }
+        EXPECT_TRUE(std::isfinite(values[i].clearance) && std::isfinite(values[i].lod)) << "triangle " << i;
+        EXPECT_TRUE(std::isfinite(dot(toDouble(values[i].position), {1, 1, 1}))) << "triangle " << i;
+    }
+    EXPECT_NEAR(values[0].normal[2], 0.64F, 1e-6F) << "without a side, it faces the viewer";
+}
+
+// A ray that leaves a wall must still meet what stands close to it.
+TEST(HitValues, NoLightLeaksThroughThinGaps) {
+    for (const float gap : {1e-3F, 5e-5F}) {
+        Scene scene = emptyScene();
+        const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
+        addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F}, {2, 0, 0}, {0, 2, 0})));
+        addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F + gap}, {2, 0, 0}, {0, 2, 0})));
+        const std::vector<Values> values =
+            ask(scene, {{0, 0, {0.4F, 0.4F}, {0, 0, -1}, 0.0F}, {1, 1, {0.4F, 0.4F}, {0, 0, -1}, 0.0F}});
+        ASSERT_EQ(values.size(), 2U);
+        EXPECT_EQ(values[0].freeAbove, 0U) << gap << ": the other quad shades this one";
+        EXPECT_EQ(values[0].freeBelow, 1U) << gap << ": nothing is below";
+        EXPECT_EQ(values[1].freeAbove, 1U) << gap << ": nothing is above";
+        EXPECT_EQ(values[1].freeBelow, 0U) << gap << ": the first quad stands there";
+    }
+}
+
+}  // namespace

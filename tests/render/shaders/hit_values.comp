@@ -1,0 +1,40 @@
+#version 460
+// Geometry of given hits. Of each RayRecord: origin.xy are the barycentrics, pixel the geometry, coneSpread the triangle,
+// coneWidth the width of the cone at the hit.
+#include "hit/hit.glsl"
+#include "hit/trace.glsl"
+
+layout(local_size_x = kRayGroupSize) in;
+
+const uint kWords = 23u;
+const vec2 kTexels = vec2(1024.0, 512.0);
+
+void writeVector(uint place, vec3 v) {
+    for (uint i = 0u; i < 3u; ++i) {
+        GLINT_FRAME.counters.data[place + i] = floatBitsToUint(v[i]);
+    }
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= GLINT_FRAME.width) {
+        return;
+    }
+    RayRecord ray = GLINT_FRAME.rays.data[index];
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[ray.pixel];
+    Hit hit = fetchHit(geometry, uint(ray.coneSpread), ray.origin.xy, ray.direction, ray.coneWidth, index,
+                       GLINT_PRIMARY_FEATURES(geometry));
+    uint base = index * kWords;
+    writeVector(base, hit.position);
+    writeVector(base + 3u, hit.geometricNormal);
+    writeVector(base + 6u, hit.normal);
+    writeVector(base + 9u, vec3(hit.texCoords[0], hit.frontFace ? 1.0 : 0.0));
+    writeVector(base + 12u, hit.color.rgb);
+    writeVector(base + 15u, hit.tangent.xyz);
+    writeVector(base + 18u, vec3(hit.tangent.w, hit.clearance,
+                                 coneLod(hit.footprint, hit.edges[0], hit.edges[1], hit.uvEdges[0], kTexels)));
+    // Whether a metre above the surface, and below, is free.
+    vec3 n = hit.geometricNormal;
+    GLINT_FRAME.counters.data[base + 21u] = isVisible(rayOrigin(hit, n), n, 1.0) ? 1u : 0u;
+    GLINT_FRAME.counters.data[base + 22u] = isVisible(rayOrigin(hit, -n), -n, 1.0) ? 1u : 0u;
+}

@@ -1,0 +1,57 @@
+#include "emit/sources.h"
+
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace glint {
+namespace {
+
+using namespace glint::testing;
+
+std::string sceneSource(const Plan& plan, const CompileSettings& settings) {
+    const SourceSet sources = makeSourceSet(makeSampleScene(), plan, settings);
+    return std::string(sources.find("generated/scene.glsl").value_or(""));
+}
+
+bool defines(const std::string& text, const std::string& macro, const std::string& value) {
+    return text.find("#define " + macro + " " + value + "\n") != std::string::npos;
+}
+
+TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
+    Plan plan;
+    plan.primaryAlways = 0x0000000100000004;
+    plan.primarySometimes = 0x0000000200000030;
+    plan.always = 0x0000000100000000;
+    plan.sometimes = 0x0000000200000010;
+    const std::string text = sceneSource(plan, {});
+    EXPECT_TRUE(defines(text, "GLINT_ALWAYS_LOBES", "0x4u"));
+    EXPECT_TRUE(defines(text, "GLINT_ALWAYS_INPUTS", "0x1u"));
+    EXPECT_TRUE(defines(text, "GLINT_SOMETIMES_LOBES", "0x30u"));
+    EXPECT_TRUE(defines(text, "GLINT_SOMETIMES_INPUTS", "0x2u"));
+    EXPECT_TRUE(defines(text, "GLINT_HIT_ALWAYS_LOBES", "0x0u"));
+    EXPECT_TRUE(defines(text, "GLINT_HIT_ALWAYS_INPUTS", "0x1u"));
+    EXPECT_TRUE(defines(text, "GLINT_HIT_SOMETIMES_LOBES", "0x10u"));
+    EXPECT_TRUE(defines(text, "GLINT_HIT_SOMETIMES_INPUTS", "0x2u"));
+}
+
+TEST(SceneSource, HoldsTheSettings) {
+    CompileSettings settings;
+    const std::string usual = sceneSource({}, settings);
+    EXPECT_TRUE(defines(usual, "GLINT_ENERGY_COMPENSATION", "1"));
+    EXPECT_TRUE(defines(usual, "GLINT_TEXTURE_LOD_CONES", "1"));
+    EXPECT_TRUE(defines(usual, "GLINT_ALPHA_TESTED", "0"));
+    EXPECT_TRUE(defines(usual, "GLINT_HAS_MASKED", "1"));
+    settings.energyCompensation = false;
+    settings.textureLod = TextureLod::Mip0;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    const std::string other = sceneSource({}, settings);
+    EXPECT_TRUE(defines(other, "GLINT_ENERGY_COMPENSATION", "0"));
+    EXPECT_TRUE(defines(other, "GLINT_TEXTURE_LOD_CONES", "0"));
+    EXPECT_TRUE(defines(other, "GLINT_ALPHA_TESTED", "1"));
+}
+
+}  // namespace
+}  // namespace glint

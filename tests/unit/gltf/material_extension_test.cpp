@@ -1,0 +1,335 @@
+// KHR_materials_*: factors with their ranges, textures slot by slot, and which extension wins over which.
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace glint::test {
+namespace {
+
+// A file of one material, and of two textures of one image for it.
+GltfBuilder withMaterial(Json material) {
+    GltfBuilder builder;
+    builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
+    builder.append("textures", {{"source", 0}});
+    builder.append("textures", {{"source", 0}});
+    builder.append("materials", std::move(material));
+    return builder;
+}
+
+Scene mustImport(const GltfBuilder& builder) {
+    Result<Scene> scene = import(builder);
+    if (!scene) {
+        ADD_FAILURE() << toString(scene.error());
+        return {};
+    }
+    return std::move(*scene);
+}
+
+Scene importMaterial(const std::string& extensions) {
+    return mustImport(withMaterial({{"extensions", Json::parse(extensions)}}));
+}
+
+const Material& onlyMaterial(const Scene& scene) {
+    return scene.materials.at(0);
+}
+
+TEST(GltfMaterialExtensions, HaveTheDefaultsOfTheirTexts) {
+    const Scene scene = importMaterial(R"({"KHR_materials_clearcoat": {}, "KHR_materials_sheen": {},
+        "KHR_materials_transmission": {}, "KHR_materials_volume": {}, "KHR_materials_ior": {},
+        "KHR_materials_specular": {}, "KHR_materials_iridescence": {}, "KHR_materials_anisotropy": {},
+        "KHR_materials_dispersion": {}, "KHR_materials_diffuse_transmission": {}})");
+    const Material& read = onlyMaterial(scene);
+    EXPECT_TRUE(read.clearcoat.given && read.sheen.given && read.transmission.given && read.volume.given &&
+                read.ior.given && read.specular.given && read.iridescence.given && read.anisotropy.given &&
+                read.dispersion.given && read.diffuseTransmission.given);
+    EXPECT_FALSE(read.specularGlossiness.given);
+    EXPECT_EQ(read.clearcoat.factor, 0.0F);
+    EXPECT_EQ(read.clearcoat.roughnessFactor, 0.0F);
+    EXPECT_EQ(read.clearcoat.normalScale, 1.0F);
+    EXPECT_EQ(read.sheen.colorFactor, (std::array{0.0F, 0.0F, 0.0F}));
+    EXPECT_EQ(read.sheen.roughnessFactor, 0.0F);
+    EXPECT_EQ(read.transmission.factor, 0.0F);
+    EXPECT_EQ(read.volume.thicknessFactor, 0.0F);
+    EXPECT_EQ(read.volume.attenuationDistance, 0.0F);  // infinite
+    EXPECT_EQ(read.volume.attenuationColor, (std::array{1.0F, 1.0F, 1.0F}));
+    EXPECT_EQ(read.ior.ior, 1.5F);
+    EXPECT_EQ(read.specular.factor, 1.0F);
+    EXPECT_EQ(read.specular.colorFactor, (std::array{1.0F, 1.0F, 1.0F}));
+    EXPECT_EQ(read.iridescence.factor, 0.0F);
+    EXPECT_EQ(read.iridescence.ior, 1.3F);
+    EXPECT_EQ(read.iridescence.thicknessMinimum, 100.0F);
+    EXPECT_EQ(read.iridescence.thicknessMaximum, 400.0F);
+    EXPECT_EQ(read.anisotropy.strength, 0.0F);
+    EXPECT_EQ(read.anisotropy.rotation, 0.0F);
+    EXPECT_EQ(read.dispersion.dispersion, 0.0F);
+    EXPECT_EQ(read.diffuseTransmission.factor, 0.0F);
+    EXPECT_EQ(read.diffuseTransmission.colorFactor, (std::array{1.0F, 1.0F, 1.0F}));
+    EXPECT_TRUE(read.unsupportedExtensions.empty());
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfMaterialExtensions, AreReadToTheLastValue) {
+    const Scene scene = importMaterial(R"({
+        "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25,
+            "clearcoatNormalTexture": {"index": 0, "scale": -2}},
+        "KHR_materials_sheen": {"sheenColorFactor": [0.125, 0.25, 0.5], "sheenRoughnessFactor": 0.75},
+        "KHR_materials_transmission": {"transmissionFactor": 0.875},
+        "KHR_materials_volume": {"thicknessFactor": 2.5, "attenuationDistance": 0.25,
+            "attenuationColor": [0.5, 0.25, 0]},
+        "KHR_materials_ior": {"ior": 1.25},
+        "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.5, 1, 4]},
+        "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 2,
+            "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 800},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": -1.5},
+        "KHR_materials_dispersion": {"dispersion": 2},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25,
+            "diffuseTransmissionColorFactor": [1, 0.5, 0.25]}})");
+    const Material& read = onlyMaterial(scene);
+    EXPECT_EQ(read.clearcoat.factor, 0.5F);
+    EXPECT_EQ(read.clearcoat.roughnessFactor, 0.25F);
+    EXPECT_EQ(read.clearcoat.normalScale, -2.0F);
+    EXPECT_EQ(read.sheen.colorFactor, (std::array{0.125F, 0.25F, 0.5F}));
+    EXPECT_EQ(read.sheen.roughnessFactor, 0.75F);
+    EXPECT_EQ(read.transmission.factor, 0.875F);
+    EXPECT_EQ(read.volume.thicknessFactor, 2.5F);
+    EXPECT_EQ(read.volume.attenuationDistance, 0.25F);
+    EXPECT_EQ(read.volume.attenuationColor, (std::array{0.5F, 0.25F, 0.0F}));
+    EXPECT_EQ(read.ior.ior, 1.25F);
+    EXPECT_EQ(read.specular.factor, 0.5F);
+    EXPECT_EQ(read.specular.colorFactor, (std::array{0.5F, 1.0F, 4.0F}));
+    EXPECT_EQ(read.iridescence.factor, 0.5F);
+    EXPECT_EQ(read.iridescence.ior, 2.0F);
+    EXPECT_EQ(read.iridescence.thicknessMinimum, 50.0F);
+    EXPECT_EQ(read.iridescence.thicknessMaximum, 800.0F);
+    EXPECT_EQ(read.anisotropy.strength, 0.5F);
+    EXPECT_EQ(read.anisotropy.rotation, -1.5F);
+    EXPECT_EQ(read.dispersion.dispersion, 2.0F);
+    EXPECT_EQ(read.diffuseTransmission.factor, 0.25F);
+    EXPECT_EQ(read.diffuseTransmission.colorFactor, (std::array{1.0F, 0.5F, 0.25F}));
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+// Where each slot's texture stands: the extension (or "pbrMetallicRoughness", or "") and the member.
+struct SlotPlace {
+    const char* owner;
+    const char* member;
+    TextureSlot slot;
+};
+constexpr SlotPlace kPlaces[] = {
+    {"pbrMetallicRoughness", "baseColorTexture", TextureSlot::BaseColor},
+    {"pbrMetallicRoughness", "metallicRoughnessTexture", TextureSlot::MetallicRoughness},
+    {"", "normalTexture", TextureSlot::Normal},
+    {"", "occlusionTexture", TextureSlot::Occlusion},
+    {"", "emissiveTexture", TextureSlot::Emissive},
+    {"KHR_materials_clearcoat", "clearcoatTexture", TextureSlot::Clearcoat},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", TextureSlot::ClearcoatRoughness},
+    {"KHR_materials_clearcoat", "clearcoatNormalTexture", TextureSlot::ClearcoatNormal},
+    {"KHR_materials_sheen", "sheenColorTexture", TextureSlot::SheenColor},
+    {"KHR_materials_sheen", "sheenRoughnessTexture", TextureSlot::SheenRoughness},
+    {"KHR_materials_anisotropy", "anisotropyTexture", TextureSlot::Anisotropy},
+    {"KHR_materials_specular", "specularTexture", TextureSlot::Specular},
+    {"KHR_materials_specular", "specularColorTexture", TextureSlot::SpecularColor},
+    {"KHR_materials_iridescence", "iridescenceTexture", TextureSlot::Iridescence},
+    {"KHR_materials_iridescence", "iridescenceThicknessTexture", TextureSlot::IridescenceThickness},
+    {"KHR_materials_transmission", "transmissionTexture", TextureSlot::Transmission},
+    {"KHR_materials_volume", "thicknessTexture", TextureSlot::Thickness},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", TextureSlot::DiffuseTransmission},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture",
+     TextureSlot::DiffuseTransmissionColor},
+    {"KHR_materials_pbrSpecularGlossiness", "diffuseTexture", TextureSlot::BaseColor},
+    {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture", TextureSlot::MetallicRoughness},
+};
+
+Json materialWith(const SlotPlace& place, const Json& textureInfo) {
+    Json material = Json::object();
+    const std::string owner = place.owner;
+    Json& object = owner.empty()                     ? material
+                   : owner == "pbrMetallicRoughness" ? material[owner]
+                                                     : material["extensions"][owner];
+    object[place.member] = textureInfo;
+    return material;
+}
+
+TEST(GltfMaterialExtensions, EverySlotTakesTextureSetAndTransform) {
+    const Json info = Json::parse(R"({"index": 1, "texCoord": 0, "extensions": {"KHR_texture_transform":
+        {"offset": [0.5, -1], "rotation": 0.25, "scale": [2, 3], "texCoord": 1}}})");
+    std::array<int, kTextureSlots> seen{};
+    for (const SlotPlace& place : kPlaces) {
+        SCOPED_TRACE(std::string(place.owner) + " " + place.member);
+        const Scene scene = mustImport(withMaterial(materialWith(place, info)));
+        const Material& material = onlyMaterial(scene);
+        for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+            const bool isThis = slot == static_cast<std::size_t>(place.slot);
+            EXPECT_EQ(material.textures[slot].texture, isThis ? 0 : -1) << slot;
+        }
+        const TextureInfo& read = material.texture(place.slot);
+        EXPECT_EQ(read.texCoord, 1);
+        EXPECT_TRUE(read.hasTransform);
+        EXPECT_EQ(read.transform.offset, (std::array{0.5F, -1.0F}));
+        EXPECT_EQ(read.transform.rotation, 0.25F);
+        EXPECT_EQ(read.transform.scale, (std::array{2.0F, 3.0F}));
+        EXPECT_TRUE(scene.warnings.empty());
+        ++seen[static_cast<std::size_t>(place.slot)];
+    }
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+        EXPECT_GT(seen[slot], 0) << slot;
+    }
+}
+
+TEST(GltfMaterialExtensions, EverySlotIsChecked) {
+    for (const SlotPlace& place : kPlaces) {
+        SCOPED_TRACE(std::string(place.owner) + " " + place.member);
+        const Result<Scene> outside = import(withMaterial(materialWith(place, {{"index", 2}})));
+        ASSERT_FALSE(outside.ok());
+        EXPECT_EQ(outside.error().id, "index-range");
+        EXPECT_NE(outside.error().where.find(std::string(place.member) + "/index"), std::string::npos);
+        const Result<Scene> noObject = import(withMaterial(materialWith(place, 3)));
+        ASSERT_FALSE(noObject.ok());
+        EXPECT_EQ(noObject.error().id, "json-type");
+    }
+}
+
+struct OutOfRange {
+    const char* extension;
+    const char* member;
+    Json value;
+    float used;
+    float (*read)(const Material&);
+};
+
+TEST(GltfMaterialExtensions, ClampWhatIsOutOfRangeWithAWarning) {
+    const OutOfRange cases[] = {
+        {"clearcoat", "clearcoatFactor", 1.5, 1.0F, [](const Material& m) { return m.clearcoat.factor; }},
+        {"clearcoat", "clearcoatRoughnessFactor", -1, 0.0F,
+         [](const Material& m) { return m.clearcoat.roughnessFactor; }},
+        {"sheen",
+         "sheenColorFactor",
+         {0, 2, 0},
+         1.0F,
+         [](const Material& m) { return m.sheen.colorFactor[1]; }},
+        {"sheen", "sheenRoughnessFactor", 2, 1.0F, [](const Material& m) { return m.sheen.roughnessFactor; }},
+        {"transmission", "transmissionFactor", 2, 1.0F,
+         [](const Material& m) { return m.transmission.factor; }},
+        {"volume", "thicknessFactor", -1, 0.0F, [](const Material& m) { return m.volume.thicknessFactor; }},
+        {"volume",
+         "attenuationColor",
+         {1, 1, 1.5},
+         1.0F,
+         [](const Material& m) { return m.volume.attenuationColor[2]; }},
+        {"volume", "attenuationDistance", 0, 1e-6F,
+         [](const Material& m) { return m.volume.attenuationDistance; }},
+        {"volume", "attenuationDistance", -2, 1e-6F,
+         [](const Material& m) { return m.volume.attenuationDistance; }},
+        {"ior", "ior", 0.5, 1.0F, [](const Material& m) { return m.ior.ior; }},
+        {"ior", "ior", -1, 1.0F, [](const Material& m) { return m.ior.ior; }},
+        {"specular", "specularFactor", 1.5, 1.0F, [](const Material& m) { return m.specular.factor; }},
+        {"specular",
+         "specularColorFactor",
+         {-1, 0, 0},
+         0.0F,
+         [](const Material& m) { return m.specular.colorFactor[0]; }},
+        {"iridescence", "iridescenceFactor", 2, 1.0F, [](const Material& m) { return m.iridescence.factor; }},
+        {"iridescence", "iridescenceIor", 0.9, 1.0F, [](const Material& m) { return m.iridescence.ior; }},
+        {"iridescence", "iridescenceThicknessMinimum", -1, 0.0F,
+         [](const Material& m) { return m.iridescence.thicknessMinimum; }},
+        {"iridescence", "iridescenceThicknessMaximum", -1, 0.0F,
+         [](const Material& m) { return m.iridescence.thicknessMaximum; }},
+        {"anisotropy", "anisotropyStrength", -0.5, 0.0F,
+         [](const Material& m) { return m.anisotropy.strength; }},
+        {"dispersion", "dispersion", -1, 0.0F, [](const Material& m) { return m.dispersion.dispersion; }},
+        {"diffuse_transmission", "diffuseTransmissionFactor", 2, 1.0F,
+         [](const Material& m) { return m.diffuseTransmission.factor; }},
+        {"diffuse_transmission",
+         "diffuseTransmissionColorFactor",
+         {0, 0, 2},
+         1.0F,
+         [](const Material& m) { return m.diffuseTransmission.colorFactor[2]; }},
+        {"pbrSpecularGlossiness",
+         "diffuseFactor",
+         {2, 0, 0, 1},
+         1.0F,
+         [](const Material& m) { return m.baseColorFactor[0]; }},
+        {"pbrSpecularGlossiness",
+         "specularFactor",
+         {0, 0, -1},
+         0.0F,
+         [](const Material& m) { return m.specularGlossiness.specularFactor[2]; }},
+        {"pbrSpecularGlossiness", "glossinessFactor", 2, 1.0F,
+         [](const Material& m) { return m.specularGlossiness.glossinessFactor; }},
+    };
+    for (const OutOfRange& entry : cases) {
+        SCOPED_TRACE(std::string(entry.member) + " " + entry.value.dump());
+        Json material;
+        material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = entry.value;
+        const Scene scene = mustImport(withMaterial(material));
+        EXPECT_EQ(entry.read(onlyMaterial(scene)), entry.used);
+        ASSERT_EQ(countWarnings(scene, "material-range"), 1U);
+        const Diagnostic warning = findWarning(scene, "material-range");
+        EXPECT_NE(warning.where.find(entry.member), std::string::npos) << warning.where;
+        EXPECT_FALSE(warning.hint.empty());
+        // Of the wrong type, it is refused.
+        material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = "much";
+        const Result<Scene> refused = import(withMaterial(material));
+        ASSERT_FALSE(refused.ok());
+        EXPECT_EQ(refused.error().id, "json-type");
+    }
+}
+
+TEST(GltfMaterialExtensions, TakeTheLimitsOfTheirRanges) {
+    const Scene scene = importMaterial(R"({"KHR_materials_ior": {"ior": 0},
+        "KHR_materials_iridescence": {"iridescenceIor": 1, "iridescenceThicknessMinimum": 500,
+            "iridescenceThicknessMaximum": 100},
+        "KHR_materials_volume": {"attenuationDistance": 1.7976931348623157e308}})");
+    EXPECT_EQ(onlyMaterial(scene).ior.ior, 0.0F);
+    EXPECT_EQ(onlyMaterial(scene).iridescence.thicknessMinimum, 500.0F);
+    // As good as infinite.
+    EXPECT_EQ(onlyMaterial(scene).volume.attenuationDistance, 0.0F);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfMaterialExtensions, SpecularGlossinessWinsOverMetallicRoughness) {
+    const Scene scene = mustImport(withMaterial(Json::parse(R"({
+        "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1], "metallicFactor": 1, "roughnessFactor": 0.5,
+            "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0, "texCoord": 1}},
+        "extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.25, 0.5, 0.75, 0.125],
+            "specularFactor": [0.5, 0.25, 0.125], "glossinessFactor": 0.75,
+            "diffuseTexture": {"index": 1, "texCoord": 1}}}})")));
+    const Material& read = onlyMaterial(scene);
+    EXPECT_TRUE(read.specularGlossiness.given);
+    EXPECT_EQ(read.baseColorFactor, (std::array{0.25F, 0.5F, 0.75F, 0.125F}));
+    EXPECT_EQ(read.specularGlossiness.specularFactor, (std::array{0.5F, 0.25F, 0.125F}));
+    EXPECT_EQ(read.specularGlossiness.glossinessFactor, 0.75F);
+    EXPECT_EQ(read.texture(TextureSlot::BaseColor).texCoord, 1);
+    EXPECT_EQ(read.texture(TextureSlot::MetallicRoughness).texture, -1);
+    EXPECT_EQ(read.metallicFactor, 0.0F);
+}
+
+TEST(GltfMaterialExtensions, UnlitReadsTheMetallicRoughnessBaseColor) {
+    const Scene scene = mustImport(withMaterial(Json::parse(R"({
+        "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1], "baseColorTexture": {"index": 0}},
+        "extensions": {"KHR_materials_unlit": {}, "KHR_materials_pbrSpecularGlossiness":
+            {"diffuseFactor": [0, 0, 1, 1], "diffuseTexture": {"index": 1, "texCoord": 1}}}})")));
+    const Material& read = onlyMaterial(scene);
+    EXPECT_TRUE(read.unlit);
+    EXPECT_EQ(read.baseColorFactor, (std::array{1.0F, 0.5F, 0.0F, 1.0F}));
+    EXPECT_EQ(read.texture(TextureSlot::BaseColor).texCoord, 0);
+}
+
+TEST(GltfMaterialExtensions, MayBeRequired) {
+    for (const char* name : {"anisotropy", "clearcoat", "diffuse_transmission", "dispersion",
+                             "emissive_strength", "ior", "iridescence", "pbrSpecularGlossiness", "sheen",
+                             "specular", "transmission", "unlit", "variants", "volume"}) {
+        GltfBuilder builder = withMaterial(Json::object());
+        builder.root["extensionsRequired"] = {std::string("KHR_materials_") + name};
+        builder.root["extensionsUsed"] = builder.root["extensionsRequired"];
+        const Result<Scene> scene = import(builder);
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        EXPECT_TRUE(scene->warnings.empty()) << name;
+    }
+}
+
+}  // namespace
+}  // namespace glint::test

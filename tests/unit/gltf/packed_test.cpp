@@ -1,0 +1,276 @@
+// Compressed geometry: Draco and meshopt, round trips through the libraries' encoders, and damage.
+#include "unit/gltf/only_primitive.h"
+#include "unit/gltf/packed_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <meshoptimizer.h>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+namespace {
+
+constexpr const char* kDracoPointer = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
+
+void expectError(const GltfBuilder& builder, std::string_view id, const std::string& pointer,
+                 std::string_view part = "", const ImportOptions& options = {}) {
+    const Result<Scene> scene = import(builder, options);
+    ASSERT_FALSE(scene.ok()) << id;
+    EXPECT_EQ(scene.error().id, id) << toString(scene.error());
+    EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#" + pointer)) << scene.error().where;
+    EXPECT_NE(scene.error().message.find(part), std::string::npos) << scene.error().message;
+    EXPECT_FALSE(scene.error().hint.empty());
+}
+
+Json& dracoOf(GltfBuilder& builder) {
+    return builder.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"];
+}
+
+Json& meshoptOf(GltfBuilder& builder, std::size_t view) {
+    return builder.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+}
+
+// Triangles as corners by position, rotated so that the least comes first: the same whatever the order.
+std::set<std::vector<Float3>> triangleSet(const Primitive& primitive) {
+    std::set<std::vector<Float3>> triangles;
+    for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+        std::vector<Float3> corners;
+        for (std::size_t k = i; k < i + 3; ++k) {
+            corners.push_back(primitive.positions[primitive.indices[k]]);
+        }
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        triangles.insert(corners);
+    }
+    return triangles;
+}
+
+void expectGrid(const Primitive& read) {
+    const Grid grid = makeGrid();
+    Primitive expected;
+    expected.positions = grid.positions;
+    expected.indices = grid.indices;
+    EXPECT_EQ(triangleSet(read), triangleSet(expected));
+    ASSERT_EQ(read.positions.size(), grid.positions.size());
+    ASSERT_EQ(read.normals.size(), grid.positions.size());
+    ASSERT_EQ(read.texCoords0.size(), grid.positions.size());
+    for (std::size_t i = 0; i < read.positions.size(); ++i) {
+        EXPECT_EQ(read.normals[i], (Float3{0, 0, 1}));
+        EXPECT_NEAR(read.texCoords0[i][0], read.positions[i][0] / kGridCells, 1e-4F);
+        EXPECT_NEAR(read.texCoords0[i][1], read.positions[i][1] / kGridCells, 1e-4F);
+    }
+}
+
+TEST(GltfDraco, RoundTrips) {
+    for (const DracoMethod method : {DracoMethod::Sequential, DracoMethod::Edgebreaker}) {
+        const Result<Scene> scene = import(dracoScene(method));
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
+        expectGrid(onlyPrimitive(scene));
+    }
+}
+
+TEST(GltfDraco, ReadsWhatIsNotCompressedFromItsAccessor) {
+    GltfBuilder builder = dracoScene(DracoMethod::Sequential);
+    std::vector<float> texCoords(std::size_t{2} * 25, 0.5F);
+    builder.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        builder.addAccessor<float>(texCoords, 2);
+    const Result<Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).texCoords1.at(24), (Float2{0.5F, 0.5F}));
+    dracoOf(builder)["attributes"].erase("NORMAL");
+    expectError(builder, "attribute-data", "/meshes/0/primitives/0/attributes/NORMAL");
+}
+
+TEST(GltfDraco, ExplainsWrongAttributes) {
+    GltfBuilder builder = dracoScene(DracoMethod::Sequential);
+    Json& attributes = dracoOf(builder)["attributes"];
+    const std::string pointer = std::string(kDracoPointer) + "/attributes";
+    attributes["NORMAL"] = 7;
+    expectError(builder, "draco-attribute", pointer + "/NORMAL", "7");
+    attributes["NORMAL"] = kDracoTexCoord;
+    expectError(builder, "draco-attribute", pointer + "/NORMAL", "2 components");
+    attributes["NORMAL"] = -1;
+    expectError(builder, "json-range", pointer + "/NORMAL");
+    attributes["NORMAL"] = kDracoNormal;
+    // UVs of 16 bits do not fit into bytes.
+    builder.root["accessors"][2]["componentType"] = 5121;
+    expectError(builder, "draco-attribute", pointer + "/TEXCOORD_0", "component type");
+    dracoOf(builder)["bufferView"] = 3;
+    expectError(builder, "index-range", std::string(kDracoPointer) + "/bufferView");
+    dracoOf(builder).erase("bufferView");
+    expectError(builder, "json-missing", kDracoPointer);
+}
+
+TEST(GltfDraco, ComparesCounts) {
+    GltfBuilder points = dracoScene(DracoMethod::Edgebreaker);
+    points.root["accessors"][0]["count"] = 24;
+    expectError(points, "attribute-count", "/meshes/0/primitives/0/attributes/POSITION", "25");
+    GltfBuilder triangles = dracoScene(DracoMethod::Edgebreaker);
+    triangles.root["accessors"][3]["count"] = 99;
+    const Result<Scene> scene = import(triangles);
+    EXPECT_EQ(onlyPrimitive(scene).indices.size(), 96U);
+    EXPECT_EQ(countWarnings(*scene, "draco-count"), 1U);
+}
+
+TEST(GltfDraco, ExplainsDamage) {
+    GltfBuilder truncated = dracoScene(DracoMethod::Edgebreaker);
+    truncated.root["bufferViews"][0]["byteLength"] = 60;
+    expectError(truncated, "draco-decode", kDracoPointer, "/bufferViews/0");
+    GltfBuilder foreign = dracoScene(DracoMethod::Edgebreaker);
+    foreign.buffer[0] = 'X';
+    expectError(foreign, "draco-decode", kDracoPointer, "no Draco mesh");
+    GltfBuilder version = dracoScene(DracoMethod::Edgebreaker);
+    version.buffer[6] = 9;
+    expectError(version, "draco-decode", kDracoPointer, "2.2");
+}
+
+TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
+    // Header without metadata: "DRACO", version 2.2, a mesh, the method, no flags, then the counts as varints
+    // (seven bits a byte, most significant first).
+    const auto withCounts = [](bool sequential) {
+        Bytes bytes{'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(sequential ? 0 : 1), 0, 0};
+        if (!sequential) {
+            bytes.push_back(0);
+        }
+        for (int count = 0; count < 2; ++count) {
+            bytes.insert(bytes.end(), {0xFF, 0xFF, 0xFF, 0xFF, 0x0F});
+        }
+        bytes.resize(200);
+        return bytes;
+    };
+    for (const bool sequential : {false, true}) {
+        GltfBuilder builder = dracoScene(DracoMethod::Sequential);
+        const Bytes bytes = withCounts(sequential);
+        dracoOf(builder)["bufferView"] = builder.addView(bytes.data(), bytes.size());
+        expectError(builder, "draco-size", kDracoPointer, "200 bytes");
+    }
+    expectError(dracoScene(DracoMethod::Edgebreaker), "vertex-limit", kDracoPointer, "96 elements",
+                {.maxVertices = 50});
+    expectError(dracoScene(DracoMethod::Edgebreaker), "vertex-limit",
+                "/meshes/0/primitives/0/attributes/NORMAL", "", {.maxVertices = 96 + 30});
+}
+
+TEST(GltfMeshopt, RoundTrips) {
+    const GltfBuilder builder = meshoptScene();
+    for (const std::string& text : {builder.text(), builder.glb()}) {
+        const Result<Scene> scene = importText(text);
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
+        expectGrid(onlyPrimitive(scene));
+    }
+}
+
+TEST(GltfMeshopt, ReadsTheNameOfTheKhronosExtension) {
+    GltfBuilder builder = meshoptScene();
+    builder.root["extensionsRequired"][0] = builder.root["extensionsUsed"][0] = "KHR_meshopt_compression";
+    for (Json& view : builder.root["bufferViews"]) {
+        Json extension = view["extensions"]["EXT_meshopt_compression"];
+        view["extensions"] = {{"KHR_meshopt_compression", std::move(extension)}};
+    }
+    expectGrid(onlyPrimitive(import(builder)));
+}
+
+TEST(GltfMeshopt, ReadsIndexSequences) {
+    meshopt_encodeIndexVersion(1);
+    const std::vector<std::uint32_t> indices{2, 1, 0, 0, 1, 2};
+    Bytes packed(meshopt_encodeIndexSequenceBound(indices.size(), 3));
+    packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), indices.size()));
+    for (const std::size_t stride : {2U, 4U}) {
+        GltfBuilder builder;
+        Json& primitive = builder.addTriangle();
+        addFallbackBuffer(builder, 64);
+        const int view = addPackedView(builder, packed, indices.size(), stride, "INDICES");
+        primitive["indices"] = builder.append("accessors", {{"bufferView", view},
+                                                            {"componentType", stride == 2 ? 5123 : 5125},
+                                                            {"count", indices.size()},
+                                                            {"type", "SCALAR"}});
+        EXPECT_EQ(onlyPrimitive(import(builder)).indices, indices);
+    }
+}
+
+TEST(GltfMeshopt, DecodesQuaternionsAsTangents) {
+    // A tangent of four 16-bit components has the form that the filter takes.
+    const std::vector<std::array<float, 4>> unit(3, {0.0F, 0.6F, 0.0F, 0.8F});
+    Bytes filtered(unit.size() * 8);
+    meshopt_encodeFilterQuat(filtered.data(), unit.size(), 8, 16, unit[0].data());
+    meshopt_encodeVertexVersion(0);
+    GltfBuilder builder;
+    Json& primitive = builder.addTriangle();
+    addFallbackBuffer(builder, 64);
+    const int view =
+        addPackedView(builder, packVertices(filtered.data(), 3, 8), 3, 8, "ATTRIBUTES", "QUATERNION");
+    primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    primitive["attributes"]["TANGENT"] = builder.append("accessors", {{"bufferView", view},
+                                                                      {"componentType", 5122},
+                                                                      {"count", 3},
+                                                                      {"type", "VEC4"},
+                                                                      {"normalized", true}});
+    const Result<Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).tangents.at(2), (Float4{0, 1, 0, 1}));
+}
+
+TEST(GltfMeshopt, ExplainsContradictions) {
+    const auto check = [](std::size_t view, const char* member, Json value, std::string_view id,
+                          std::string_view part) {
+        GltfBuilder builder = meshoptScene();
+        meshoptOf(builder, view)[member] = std::move(value);
+        const std::string pointer = "/bufferViews/" + std::to_string(view);
+        const bool isJson = id.starts_with("json") || id.starts_with("index");
+        expectError(builder, id, isJson ? pointer + "/extensions/EXT_meshopt_compression/" + member : pointer,
+                    part);
+    };
+    check(0, "mode", "LINES", "meshopt-layout", "LINES");
+    check(0, "filter", "COLOR", "meshopt-layout", "COLOR");
+    check(0, "byteStride", 6, "meshopt-layout", "multiple of 4");
+    check(0, "filter", "OCTAHEDRAL", "meshopt-layout", "OCTAHEDRAL");
+    check(1, "filter", "QUATERNION", "meshopt-layout", "QUATERNION");
+    check(3, "filter", "EXPONENTIAL", "meshopt-layout", "ATTRIBUTES");
+    check(3, "byteStride", 1, "meshopt-layout", "2 or 4");
+    check(3, "count", 95, "meshopt-layout", "multiple of 3");
+    check(0, "count", 24, "meshopt-layout", "300 bytes");
+    check(0, "byteStride", 260, "json-range", "");
+    check(0, "count", -1, "json-range", "");
+    check(0, "buffer", 2, "index-range", "");
+    check(0, "byteOffset", 1000000, "buffer-view-range", "");
+    check(0, "mode", "TRIANGLES", "meshopt-layout", "2 or 4");
+}
+
+TEST(GltfMeshopt, ExplainsDamage) {
+    GltfBuilder header = meshoptScene();
+    header.buffer[0] = 0;
+    expectError(header, "meshopt-decode", "/bufferViews/0", "code -1");
+    GltfBuilder cut = meshoptScene();
+    meshoptOf(cut, 0)["byteLength"] = 40;
+    expectError(cut, "meshopt-decode", "/bufferViews/0", "ends early");
+    GltfBuilder plain = meshoptScene();
+    plain.root["bufferViews"][0].erase("extensions");
+    expectError(plain, "buffer-data", "/buffers/1", "fallback");
+}
+
+TEST(GltfMeshopt, BoundsWhatItUnpacks) {
+    GltfBuilder builder = meshoptScene();
+    const std::uint64_t count = 1ULL << 40;
+    meshoptOf(builder, 0)["count"] = count;
+    builder.root["bufferViews"][0]["byteLength"] = count * 12;
+    expectError(builder, "meshopt-size", "/bufferViews/0", "no data can");
+    // Zeros pack well: the budget holds for what comes out.
+    constexpr std::size_t kCount = 10000;
+    const std::vector<std::array<float, 3>> zeros(kCount);
+    GltfBuilder large;
+    addFallbackBuffer(large, kCount * 12);
+    const int view = addPackedView(large, packVertices(zeros.data(), kCount, 12), kCount, 12, "ATTRIBUTES");
+    large.addMesh({{"attributes",
+                    {{"POSITION", large.append("accessors", {{"bufferView", view},
+                                                             {"componentType", 5126},
+                                                             {"count", kCount},
+                                                             {"type", "VEC3"}})}}}});
+    EXPECT_TRUE(import(large).ok());
+    ASSERT_LT(large.text().size(), 50000U);
+    expectError(large, "meshopt-size", "/bufferViews/0", "too much", {.maxFileBytes = 50000});
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,107 @@
+// KHR_materials_variants.
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace glint::test {
+namespace {
+
+// Three triangles: material 0 with another in both variants, material 0 with one in Night alone, and no
+// material.
+GltfBuilder withVariants() {
+    GltfBuilder builder;
+    for (const char* name : {"plain", "red", "blue"}) {
+        builder.append("materials", {{"name", name}});
+    }
+    builder.root["extensions"]["KHR_materials_variants"]["variants"] =
+        Json::parse(R"([{"name": "Day"}, {"name": "Night"}])");
+    const auto addTriangle = [&](int material, const char* mappings) {
+        Json& primitive = builder.addTriangle();
+        if (material >= 0) {
+            primitive["material"] = material;
+        }
+        primitive["extensions"]["KHR_materials_variants"]["mappings"] = Json::parse(mappings);
+    };
+    addTriangle(0, R"([{"material": 1, "variants": [0]}, {"material": 2, "variants": [1]}])");
+    addTriangle(0, R"([{"material": 2, "variants": [1]}])");
+    addTriangle(-1, R"([{"material": 1, "variants": [1, 0]}])");
+    return builder;
+}
+
+ImportOptions with(const std::string& variant) {
+    ImportOptions options;
+    options.variant = variant;
+    return options;
+}
+
+std::vector<int> materialsOf(const Scene& scene) {
+    std::vector<int> materials;
+    for (const PrimitiveInputs& inputs : planningInputs(scene)) {
+        materials.push_back(inputs.material);
+    }
+    return materials;
+}
+
+TEST(GltfVariants, DecideTheMaterialsOfPrimitives) {
+    const Result<Scene> day = import(withVariants(), with("Day"));
+    ASSERT_TRUE(day.ok()) << toString(day.error());
+    EXPECT_EQ(materialsOf(*day), (std::vector<int>{1, 0, 1}));
+    EXPECT_EQ(day->variant, "Day");
+    // No primitive is left without a material.
+    EXPECT_EQ(day->defaultMaterial, -1);
+    const Result<Scene> night = import(withVariants(), with("Night"));
+    ASSERT_TRUE(night.ok()) << toString(night.error());
+    EXPECT_EQ(materialsOf(*night), (std::vector<int>{2, 2, 1}));
+}
+
+TEST(GltfVariants, WithoutOneTheDefaultsHold) {
+    const Result<Scene> scene = import(withVariants());
+    ASSERT_TRUE(scene.ok()) << toString(scene.error());
+    EXPECT_EQ(materialsOf(*scene), (std::vector<int>{0, 0, 3}));
+    EXPECT_EQ(scene->defaultMaterial, 3);
+    EXPECT_EQ(scene->variants, (std::vector<std::string>{"Day", "Night"}));
+    EXPECT_TRUE(scene->variant.empty());
+    EXPECT_TRUE(scene->warnings.empty());
+}
+
+TEST(GltfVariants, AnUnknownNameListsThoseOfTheFile) {
+    const Result<Scene> scene = import(withVariants(), with("Nihgt"));
+    ASSERT_FALSE(scene.ok());
+    EXPECT_EQ(scene.error().id, "variant-unknown");
+    EXPECT_NE(scene.error().message.find("did you mean Night?"), std::string::npos);
+    EXPECT_NE(scene.error().hint.find("Day, Night"), std::string::npos);
+    EXPECT_TRUE(scene.error().where.ends_with("#/extensions/KHR_materials_variants/variants"));
+    GltfBuilder without;
+    without.addTriangle();
+    const Result<Scene> none = import(without, with("Day"));
+    ASSERT_FALSE(none.ok());
+    EXPECT_EQ(none.error().id, "variant-unknown");
+    EXPECT_NE(none.error().message.find("KHR_materials_variants"), std::string::npos);
+}
+
+TEST(GltfVariants, AreChecked) {
+    const auto idAfter = [](const auto& change) {
+        GltfBuilder builder = withVariants();
+        change(builder.root,
+               builder.root["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]);
+        const Result<Scene> scene = import(builder, with("Day"));
+        return scene ? std::string("imported") : scene.error().id;
+    };
+    EXPECT_EQ(idAfter([](Json&, Json& mappings) { mappings["mappings"][0]["material"] = 3; }), "index-range");
+    EXPECT_EQ(idAfter([](Json&, Json& mappings) { mappings["mappings"][0]["variants"] = {2}; }),
+              "index-range");
+    EXPECT_EQ(idAfter([](Json&, Json& mappings) { mappings["mappings"][0].erase("material"); }),
+              "json-missing");
+    EXPECT_EQ(idAfter([](Json&, Json& mappings) { mappings["mappings"] = 1; }), "json-type");
+    EXPECT_EQ(idAfter([](Json& root, Json&) {
+                  root["extensions"]["KHR_materials_variants"]["variants"][1].erase("name");
+              }),
+              "json-missing");
+    EXPECT_EQ(idAfter([](Json& root, Json&) { root["extensions"].erase("KHR_materials_variants"); }),
+              "index-range");
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,182 @@
+// How lobes and their inputs depend on each other, and on what hits keep.
+#include "unit/plan/full_material.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+TEST(LobeKey, ValuesDecideWhateverTheFileGives) {
+    Material material;
+    material.clearcoat.factor = 1.0F;
+    material.ior.ior = 2.0F;
+    material.metallicFactor = 0.0F;
+    Dropped dropped;
+    EXPECT_EQ(makeKey(material, {}, {}, &dropped), bit(Feature::Clearcoat) | bit(Feature::Ior));
+    EXPECT_TRUE(dropped.empty());
+}
+
+TEST(LobeKey, SpecularStaysWhereItsFactorIsZero) {
+    Material material = fullMaterial();
+    material.specular.factor = 0.0F;
+    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit(Feature::Specular), 0U);
+}
+
+TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
+    Material material = fullMaterial();
+    material.specularGlossiness.given = true;
+    Dropped dropped;
+    const FeatureMask key = makeKey(material, fullPrimitive(), kTested, &dropped);
+    EXPECT_EQ(key & kLobeMask, bit(Feature::SpecularGlossiness));
+    for (const std::string_view lobe : featureNames(kLobeMask)) {
+        const bool is = lobe == "unlit" || lobe == "specularGlossiness";
+        EXPECT_EQ(reasonFor(dropped, std::string(lobe)).empty(), is) << lobe;
+    }
+    for (const Feature kept : {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture,
+                               Feature::NormalTexture, Feature::EmissiveStrength, Feature::Tangents}) {
+        EXPECT_NE(key & bit(kept), 0U);
+    }
+}
+
+TEST(LobeKey, SpecularGlossinessTextureIsNeutralWhereBothFactorsAreZero) {
+    Material material = fullMaterial();
+    material.specularGlossiness = {true, {0.0F, 0.0F, 0.0F}, 0.0F};
+    const auto reads = [&] {
+        return (makeKey(material, fullPrimitive(), kTested) & bit(Feature::MetallicRoughnessTexture)) != 0;
+    };
+    EXPECT_FALSE(reads());
+    material.specularGlossiness.glossinessFactor = 0.5F;
+    EXPECT_TRUE(reads());
+    // The factors of the other workflow are not asked.
+    material.metallicFactor = 0.0F;
+    material.roughnessFactor = 0.0F;
+    EXPECT_TRUE(reads());
+}
+
+TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
+    Material material = fullMaterial();
+    material.unlit = true;
+    material.specularGlossiness.given = true;
+    Dropped dropped;
+    EXPECT_EQ(makeKey(material, fullPrimitive(), kTested, &dropped) & kLobeMask, bit(Feature::Unlit));
+    EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
+}
+
+// The coat's normal texture is read once where it is the base's to the last detail.
+TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
+    const FeatureMask shares = bit(Feature::ClearcoatSharesNormal);
+    const FeatureMask own = bit(Feature::ClearcoatNormalTexture);
+    Material equal = fullMaterial();
+    equal.texture(TextureSlot::ClearcoatNormal) = equal.texture(TextureSlot::Normal);
+    equal.clearcoat.normalScale = equal.normalScale;
+    const auto keyOf = [](const Material& material) {
+        return makeKey(material, fullPrimitive(), kTested) & (shares | own);
+    };
+    EXPECT_EQ(keyOf(equal), shares);
+    EXPECT_EQ(keyOf(fullMaterial()), own);
+    Material other = equal;
+    other.texture(TextureSlot::ClearcoatNormal).texCoord = 1;
+    EXPECT_EQ(keyOf(other), own);
+    other = equal;
+    other.texture(TextureSlot::ClearcoatNormal).transform.offset[1] = 0.5F;
+    EXPECT_EQ(keyOf(other), own);
+    other = equal;
+    other.clearcoat.normalScale = 0.5F;
+    EXPECT_EQ(keyOf(other), own);
+    // The base reads none: its scale is 0, and the coat's then is, too.
+    other = equal;
+    other.normalScale = 0.0F;
+    EXPECT_EQ(keyOf(other), own);
+    other.clearcoat.normalScale = 0.0F;
+    EXPECT_EQ(keyOf(other), 0U);
+}
+
+TEST(LobeKey, TangentsServeEachOfTheirReaders) {
+    const auto hasTangents = [](const Material& material) {
+        return (makeKey(material, fullPrimitive(), {}) & bit(Feature::Tangents)) != 0;
+    };
+    Material material;
+    EXPECT_FALSE(hasTangents(material));
+    material.anisotropy.strength = 1.0F;
+    material.roughnessFactor = 0.5F;
+    EXPECT_TRUE(hasTangents(material));
+    material = {};
+    material.clearcoat.factor = 1.0F;
+    EXPECT_FALSE(hasTangents(material));
+    material.texture(TextureSlot::ClearcoatNormal).texture = 0;
+    EXPECT_TRUE(hasTangents(material));
+}
+
+TEST(LobeKey, AnisotropyWithoutTangentsReadsTextureCoordinates) {
+    Material material;
+    material.anisotropy.strength = 1.0F;
+    material.roughnessFactor = 0.5F;
+    PrimitiveInputs primitive = fullPrimitive();
+    const FeatureMask sets = bit(Feature::TexCoord0) | bit(Feature::TexCoord1);
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, 0U);
+    primitive.hasTangents = false;
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord0));
+    primitive.hasTexCoords0 = false;
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));
+    // A texture's set is the frame's.
+    primitive.hasTexCoords0 = true;
+    material.texture(TextureSlot::Anisotropy) = {0, 1, {}, false};
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));
+}
+
+TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+        Material material = fullMaterial();
+        for (TextureInfo& info : material.textures) {
+            info.transform = {};
+            info.texCoord = 0;
+        }
+        const FeatureMask both = bit(Feature::TexCoord1) | bit(Feature::TextureTransform);
+        EXPECT_EQ(makeKey(material, fullPrimitive(), kTested) & both, 0U) << slot;
+        material.textures[slot].texCoord = 1;
+        material.textures[slot].transform.scale[0] = 2.0F;
+        EXPECT_EQ(makeKey(material, fullPrimitive(), kTested) & both, both) << slot;
+    }
+}
+
+TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
+    for (const FeatureInfo& info : featureTable()) {
+        const FeatureMask lobe = bit(info.feature) & kLobeMask;
+        if (lobe == 0 || info.feature == Feature::Unlit || info.feature == Feature::SpecularGlossiness) {
+            continue;
+        }
+        Dropped dropped;
+        const FeatureMask whole = makeKey(fullMaterial(), fullPrimitive(), kTested);
+        const FeatureMask kept =
+            makeKey(fullMaterial(), fullPrimitive(), {AlphaPolicy::Tested, kLobeMask & ~lobe}, &dropped);
+        EXPECT_EQ(kept & lobe, 0U) << info.name;
+        EXPECT_EQ(kept & ~whole, 0U) << info.name;
+        EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
+        for (const std::string_view name : featureNames(whole & ~kept)) {
+            EXPECT_NE(reasonFor(dropped, std::string(name)).find("--hit-lobes"), std::string::npos) << name;
+        }
+    }
+}
+
+TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
+    const KeyOptions none{AlphaPolicy::Tested, 0};
+    const FeatureMask core = makeKey(fullMaterial(), fullPrimitive(), none);
+    EXPECT_EQ(core & kLobeMask, 0U);
+    for (const Feature texture :
+         {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture, Feature::NormalTexture,
+          Feature::OcclusionTexture, Feature::EmissiveTexture}) {
+        EXPECT_NE(core & bit(texture), 0U);
+    }
+    EXPECT_EQ(core & (bit(Feature::ClearcoatTexture) | bit(Feature::ThicknessTexture)), 0U);
+    Material other = fullMaterial();
+    other.specularGlossiness.given = true;
+    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit(Feature::SpecularGlossiness));
+    other.unlit = true;
+    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit(Feature::Unlit));
+}
+
+}  // namespace

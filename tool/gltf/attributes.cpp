@@ -1,0 +1,231 @@
+#include "gltf/attributes.h"
+
+#include "gltf/accessor.h"
+#include "gltf/draco.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kExport = "export the mesh again";
+
+struct Reader {
+    const PrimitiveSource& source;
+    Primitive& primitive;
+    const DracoMesh* draco = nullptr;  // null for a primitive that is not compressed
+    const Json* dracoAttributes = nullptr;
+
+    Document& document() const {
+        return source.document;
+    }
+    std::string pointer(const char* attribute) const {
+        return fmt::format("{}/attributes/{}", primitive.pointer, attribute);
+    }
+};
+
+std::string dracoPointer(const Reader& reader) {
+    return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDraco);
+}
+
+// An accessor of a compressed primitive that has neither compressed data nor a buffer view would read as
+// zeros.
+bool isBare(const Document& document, int accessor) {
+    return accessor >= 0 &&
+           find(document.json()["accessors"][static_cast<std::size_t>(accessor)], "bufferView") == nullptr;
+}
+
+// The attribute's elements out of the Draco data.
+Result<FloatElements> readPacked(const Reader& reader, const char* attribute, int accessor, std::uint32_t id,
+                                 Integers integers) {
+    Document& document = reader.document();
+    const Result<ElementFormat> format = floatFormat(document, accessor);
+    if (!format) {
+        return format.error();
+    }
+    if (Status status = document.chargeVertices(reader.draco->pointCount(), reader.pointer(attribute));
+        !status) {
+        return status.error();
+    }
+    const Result<Bytes> bytes = reader.draco->attribute(
+        document, id, *format, fmt::format("{}/attributes/{}", dracoPointer(reader), attribute));
+    if (!bytes) {
+        return bytes.error();
+    }
+    return toFloats(document, accessor, integers, *bytes);
+}
+
+Result<FloatElements> readElements(const Reader& reader, const char* attribute, int accessor,
+                                   Integers integers) {
+    if (reader.draco != nullptr) {
+        if (const Json* id = find(*reader.dracoAttributes, attribute)) {
+            return readPacked(reader, attribute, accessor, id->get<std::uint32_t>(), integers);
+        }
+        if (isBare(reader.document(), accessor)) {
+            return reader.document().error("attribute-data", reader.pointer(attribute),
+                                           "is neither in the Draco data nor in a buffer view", kExport);
+        }
+    }
+    return readFloats(reader.document(), accessor, integers);
+}
+
+// Reads an attribute of `components` or fewer (at least `fewest`), the rest filled with 1; leaves `values`
+// empty where the primitive lacks it.
+template <std::size_t N>
+Status readAttribute(const Reader& reader, const char* attribute, std::size_t fewest, Integers integers,
+                     std::vector<std::array<float, N>>& values) {
+    const int accessor = attributeAccessor(reader.source, attribute);
+    if (accessor < 0) {
+        return okStatus();
+    }
+    const Document& document = reader.document();
+    const bool isPosition = static_cast<const void*>(&values) == &reader.primitive.positions;
+    const std::size_t expected = reader.draco != nullptr ? reader.draco->pointCount()
+                                 : isPosition            ? elementCount(document, accessor)
+                                                         : reader.primitive.positions.size();
+    if (elementCount(document, accessor) != expected) {
+        return document.error("attribute-count", reader.pointer(attribute),
+                              fmt::format("has {} elements, {} has {}", elementCount(document, accessor),
+                                          reader.draco != nullptr ? "the Draco data" : "POSITION", expected),
+                              kExport);
+    }
+    const Result<FloatElements> elements = readElements(reader, attribute, accessor, integers);
+    if (!elements) {
+        return elements.error();
+    }
+    if (elements->components < fewest || elements->components > N) {
+        return document.error("attribute-type", reader.pointer(attribute),
+                              fmt::format("has {} components, not {}", elements->components, N), kExport);
+    }
+    std::array<float, N> filled{};
+    filled.fill(1.0F);
+    values.assign(elements->count, filled);
+    for (std::size_t i = 0; i < elements->count; ++i) {
+        std::copy_n(&elements->values[i * elements->components], elements->components, values[i].begin());
+    }
+    return okStatus();
+}
+
+Status readColors(const Reader& reader) {
+    const int accessor = attributeAccessor(reader.source, "COLOR_0");
+    if (accessor < 0) {
+        return okStatus();
+    }
+    const auto& source = reader.document().model().accessors[static_cast<std::size_t>(accessor)];
+    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized) {
+        reader.document().warn("color-normalized", reader.pointer("COLOR_0"),
+                               "integer colours are not marked as normalised; they are read as if they were",
+                               kExport);
+    }
+    return readAttribute(reader, "COLOR_0", 3, Integers::Normalized, reader.primitive.colors);
+}
+
+Status readAttributes(const Reader& reader) {
+    Primitive& primitive = reader.primitive;
+    constexpr Integers kValues = Integers::AsValues;
+    if (Status s = readAttribute(reader, "POSITION", 3, kValues, primitive.positions); !s) {
+        return s;
+    }
+    if (Status s = readAttribute(reader, "NORMAL", 3, kValues, primitive.normals); !s) {
+        return s;
+    }
+    if (Status s = readAttribute(reader, "TEXCOORD_0", 2, kValues, primitive.texCoords0); !s) {
+        return s;
+    }
+    if (Status s = readAttribute(reader, "TEXCOORD_1", 2, kValues, primitive.texCoords1); !s) {
+        return s;
+    }
+    if (Status s = readColors(reader); !s) {
+        return s;
+    }
+    if (primitive.normals.empty() && attributeAccessor(reader.source, "TANGENT") >= 0) {
+        reader.document().warn("tangent-without-normal", reader.pointer("TANGENT"),
+                               "tangents without normals are ignored, as glTF says");
+        return okStatus();
+    }
+    return readAttribute(reader, "TANGENT", 4, kValues, primitive.tangents);
+}
+
+Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
+    Document& document = reader.document();
+    const std::size_t vertices = reader.primitive.positions.size();
+    if (reader.source.model.indices < 0) {
+        std::vector<std::uint32_t> order(vertices);
+        std::iota(order.begin(), order.end(), 0U);
+        return order;
+    }
+    Result<IndexElements> indices = readIndices(document, reader.source.model.indices);
+    if (!indices) {
+        return indices.error();
+    }
+    const std::string pointer = reader.primitive.pointer + "/indices";
+    for (std::size_t i = 0; i < indices->values.size(); ++i) {
+        const std::uint32_t index = indices->values[i];
+        if (index == indices->restart) {
+            return document.error("primitive-restart", pointer,
+                                  fmt::format("index {} is the primitive restart value {}", i, index),
+                                  "glTF has no primitive restart: export the mesh again");
+        }
+        if (index >= vertices) {
+            return document.error(
+                "index-range", pointer,
+                fmt::format("index {} is {}, but there are {} vertices", i, index, vertices), kExport);
+        }
+    }
+    return std::move(indices->values);
+}
+
+// Draco drops degenerate triangles, and not every exporter corrects the accessor then.
+void compareIndexCount(const Reader& reader, bool isList) {
+    const int accessor = reader.source.model.indices;
+    const std::size_t packed = reader.draco->indices().size();
+    if (isList && accessor >= 0 && elementCount(reader.document(), accessor) != packed) {
+        reader.document().warn(
+            "draco-count", reader.primitive.pointer + "/indices",
+            fmt::format("has {} elements, the Draco data {}; those of the Draco data are used",
+                        elementCount(reader.document(), accessor), packed),
+            kExport);
+    }
+}
+
+}  // namespace
+
+int attributeAccessor(const PrimitiveSource& source, const char* attribute) {
+    const auto found = source.model.attributes.find(attribute);
+    return found == source.model.attributes.end() ? -1 : found->second;
+}
+
+Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
+                                                bool& isList) {
+    Reader reader{source, primitive};
+    std::optional<DracoMesh> draco;
+    if (const Json* extension = findExtension(source.json, kDraco)) {
+        Result<DracoMesh> mesh = DracoMesh::decode(source.document, *extension, dracoPointer(reader));
+        if (!mesh) {
+            return mesh.error();
+        }
+        draco = std::move(*mesh);
+        reader.draco = &*draco;
+        reader.dracoAttributes = find(*extension, "attributes");
+    }
+    if (Status status = readAttributes(reader); !status) {
+        return status.error();
+    }
+    if (!draco) {
+        return readOrder(reader);
+    }
+    compareIndexCount(reader, source.model.mode == TINYGLTF_MODE_TRIANGLES);
+    isList = true;
+    return draco->indices();
+}
+
+}  // namespace glint::gltf
