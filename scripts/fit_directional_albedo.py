@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 
 UNDER, OVER, SHEEN_OVER = 2e-4, 6e-3, 1e-2  # bounds of fit - truth
 MIN_ALPHA, MIN_SHEEN_ALPHA = 1e-4, 0.07**2
-MEAN_LOW, MEAN_HIGH = 0.98, 1 + 3e-4  # bounds of (1 - mean of the fit) / (1 - fitted mean)
+MEAN_LOW, MEAN_HIGH = 0.99, 1 + 3e-4  # bounds of (1 - mean of the fit) / (1 - fitted mean)
 
 # ---- Truth
 
@@ -115,7 +115,7 @@ SHIFT_Q = [(0, 2), (0, 2.5), (0, 3.5), (1, 1), (1, 1.5), (2, 0), (2, 0.5)]
 SHEEN_N = [(0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1)]
 SHEEN_Q = [(0, 2), (0, 3), (1, 1), (1, 2), (2, 0), (2, 2)]
 SHEEN_FALL = 0.2  # of the factor exp2(-fall cos² / alpha)
-MEAN_LOSS_N = [(i, j) for i in (0, 1) for j in (2, 3, 4)]
+MEAN_LOSS_N = [(i, j) for i in (0, 1) for j in (2, 3, 4, 5)]
 MEAN_BIAS_N = [(0, j) for j in (0, 1, 2)]
 POLYNOMIAL = [(0, 0)]
 
@@ -187,7 +187,7 @@ def fit_means(loss, shift):
     alphas = np.geomspace(MIN_ALPHA, 1, 600)
     lost, bias = means(loss, shift, alphas)
     decades, one = -np.log2(alphas), np.ones(len(alphas))
-    mean_loss = fit("mean loss", decades, alphas, MEAN_LOSS_N, POLYNOMIAL, one / (1 + 2e-4), one / 0.986, 1 / lost)
+    mean_loss = fit("mean loss", decades, alphas, MEAN_LOSS_N, POLYNOMIAL, one / (1 + 2e-4), one / 0.996, 1 / lost)
     mean_bias = fit("mean bias", decades, alphas, MEAN_BIAS_N, POLYNOMIAL, np.maximum(bias - 9e-3, 3e-5), bias)
     return mean_loss, mean_bias
 

@@ -1,5 +1,5 @@
 // What the room shows. Heights are above the floor.
-#include "scene.h"
+#include "builder.h"
 #include "shapes.h"
 
 #include <glm/geometric.hpp>
@@ -12,30 +12,6 @@
 namespace gallery {
 
 namespace {
-
-constexpr unsigned kPlain = kNormals;
-constexpr unsigned kTextured = kNormals | kTexCoord0;
-constexpr unsigned kBumped = kTextured | kTangents;
-
-const glm::vec3 kX(1.0F, 0.0F, 0.0F);
-const glm::vec3 kY(0.0F, 1.0F, 0.0F);
-const glm::vec3 kZ(0.0F, 0.0F, 1.0F);
-
-glm::quat turn(float degrees, const glm::vec3& axis) {
-    return glm::angleAxis(glm::radians(degrees), axis);
-}
-
-struct Builder {
-    GltfWriter& writer;
-    const MaterialSet& materials;
-
-    // A mesh of its own, placed once.
-    void show(const std::string& name, const MeshData& mesh, unsigned attributes, int material,
-              const Placement& placement) const {
-        const int geometry = writer.addGeometry(mesh, attributes);
-        writer.addMeshNode(name, writer.addMesh(name, {{geometry, material}}), placement);
-    }
-};
 
 // The knot on its dais, before the gate.
 void addCentrepiece(const Builder& builder) {

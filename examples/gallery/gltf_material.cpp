@@ -47,6 +47,21 @@ Json pbrJson(const MaterialSpec& material) {
     return pbr;
 }
 
+Json extensionJson(const ExtensionSpec& extension) {
+    Json json = Json::object();
+    for (const auto& [name, value] : extension.values) {
+        json[name] = value;
+    }
+    for (const auto& [name, use] : extension.textures) {
+        json[name] = textureJson(use);
+        // Of the extensions' textures only clearcoat's normals have an amount.
+        if (use.amount != 1.0) {
+            json[name]["scale"] = use.amount;
+        }
+    }
+    return json;
+}
+
 }  // namespace
 
 Json toJson(const MaterialSpec& material) {
@@ -81,6 +96,9 @@ Json toJson(const MaterialSpec& material) {
     if (material.emissiveStrength) {
         json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] =
             *material.emissiveStrength;
+    }
+    for (const ExtensionSpec& extension : material.extensions) {
+        json["extensions"][extension.name] = extensionJson(extension);
     }
     return json;
 }

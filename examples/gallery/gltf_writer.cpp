@@ -173,11 +173,20 @@ int GltfWriter::addGeometry(const MeshData& mesh, unsigned attributes) {
     return static_cast<int>(geometries_.size()) - 1;
 }
 
+int GltfWriter::addVariant(const std::string& name) {
+    variants_.push_back({{"name", name}});
+    return static_cast<int>(variants_.size()) - 1;
+}
+
 int GltfWriter::addMesh(const std::string& name, const std::vector<Part>& parts) {
     Json primitives = Json::array();
     for (const Part& part : parts) {
         Json primitive = geometries_.at(static_cast<std::size_t>(part.geometry));
         primitive["material"] = part.material;
+        for (const VariantMaterial& variant : part.variants) {
+            primitive["extensions"]["KHR_materials_variants"]["mappings"].push_back(
+                {{"material", variant.material}, {"variants", {variant.variant}}});
+        }
         primitives.push_back(std::move(primitive));
     }
     meshes_.push_back({{"name", name}, {"primitives", std::move(primitives)}});
@@ -219,6 +228,9 @@ Json GltfWriter::document(const std::string& name) const {
     json["asset"] = {{"version", "2.0"}, {"generator", "Glint gallery"}};
     json["extensionsUsed"] = Json::array();
     json["extensions"]["KHR_lights_punctual"]["lights"] = lights_;
+    if (!variants_.empty()) {
+        json["extensions"]["KHR_materials_variants"]["variants"] = variants_;
+    }
     json["scene"] = 0;
     Json roots = Json::array();
     for (std::size_t node = 0; node < nodes_.size(); ++node) {

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gallery {
@@ -34,6 +35,13 @@ struct TextureUse {
     double amount = 1.0;  // scale of a normal texture, strength of an occlusion texture
 };
 
+// A material extension under the names that it has in the file.
+struct ExtensionSpec {
+    std::string name;
+    std::vector<std::pair<std::string, Json>> values = {};
+    std::vector<std::pair<std::string, TextureUse>> textures = {};
+};
+
 // What differs from glTF's defaults is written; optional members whenever they have a value.
 struct MaterialSpec {
     std::string name = {};
@@ -50,6 +58,7 @@ struct MaterialSpec {
     std::string alphaMode = "OPAQUE";
     bool doubleSided = false;
     bool unlit = false;
+    std::vector<ExtensionSpec> extensions = {};
 };
 
 // Which attributes of a MeshData are written, besides positions.
@@ -84,9 +93,17 @@ public:
     // Writes the geometry once; meshes share it.
     int addGeometry(const MeshData& mesh, unsigned attributes);
 
+    // Names a variant of the scene (KHR_materials_variants).
+    int addVariant(const std::string& name);
+
+    struct VariantMaterial {
+        int variant;
+        int material;
+    };
     struct Part {
         int geometry;
         int material;
+        std::vector<VariantMaterial> variants = {};
     };
     int addMesh(const std::string& name, const std::vector<Part>& parts);
 
@@ -118,6 +135,7 @@ private:
     Json nodes_ = Json::array();
     Json lights_ = Json::array();
     Json cameras_ = Json::array();
+    Json variants_ = Json::array();
 };
 
 // The JSON of a material.

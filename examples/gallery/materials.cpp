@@ -155,6 +155,16 @@ void addMetalMaterials(GltfWriter& writer, MaterialSet& set) {
                                              .baseColor = {0.90, 0.48, 0.34, 1.0},
                                              .roughness = 0.16,
                                              .normalTexture = {hammered}});
+    // The coat follows the dents of the base: one texture, read once.
+    set.enamel =
+        writer.addMaterial({.name = "Enamel",
+                            .baseColor = {0.02, 0.16, 0.20, 1.0},
+                            .metallic = 0.0,
+                            .roughness = 0.7,
+                            .normalTexture = {hammered},
+                            .extensions = {{"KHR_materials_clearcoat",
+                                            {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.03}},
+                                            {{"clearcoatNormalTexture", {hammered}}}}}});
     // A normal texture of scale 0 changes nothing.
     set.frame = writer.addMaterial({.name = "Gilt frame",
                                     .baseColor = {0.72, 0.50, 0.20, 1.0},
@@ -220,6 +230,7 @@ MaterialSet addMaterials(GltfWriter& writer) {
     addStoneMaterials(writer, set);
     addMetalMaterials(writer, set);
     addMotifMaterials(writer, set);
+    addLayeredMaterials(writer, set);
     return set;
 }
 

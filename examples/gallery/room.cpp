@@ -1,5 +1,5 @@
 // Floor, walls, gate, beams, sea; and the lights and cameras.
-#include "scene.h"
+#include "builder.h"
 #include "shapes.h"
 
 #include <glm/geometric.hpp>
@@ -13,17 +13,6 @@ constexpr float kHalfWidth = 5.0F;
 constexpr float kFrontZ = 6.0F;
 constexpr float kWallHeight = 4.2F;
 constexpr float kWallThickness = 0.24F;
-constexpr unsigned kPlain = kNormals;
-constexpr unsigned kTextured = kNormals | kTexCoord0;
-constexpr unsigned kBumped = kTextured | kTangents;
-
-glm::quat turn(float degrees, const glm::vec3& axis) {
-    return glm::angleAxis(glm::radians(degrees), axis);
-}
-
-const glm::vec3 kX(1.0F, 0.0F, 0.0F);
-const glm::vec3 kY(0.0F, 1.0F, 0.0F);
-
 // A camera or light at `from` that looks at `to`.
 Placement lookAt(const glm::vec3& from, const glm::vec3& to) {
     const glm::vec3 forward = glm::normalize(to - from);
@@ -96,7 +85,7 @@ void addLightsAndCameras(GltfWriter& writer) {
     writer.addLightNode({"Sun", "directional", {1.0, 0.94, 0.84}, 2.6},
                         lookAt({3.0F, 6.0F, 4.5F}, {0.0F, 0.0F, 0.0F}));
     writer.addLightNode({"Lantern light", "point", warm, 7.0}, {{-1.75F, 2.75F, -1.3F}});
-    writer.addLightNode({"Lamp light", "point", warm, 9.0}, {{3.1F, 2.2F, -2.6F}});
+    writer.addLightNode({"Lamp light", "point", warm, 9.0}, {kPaperShade});
     writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, 6.0}, {{-1.5F, 3.6F, 3.0F}});
     writer.addLightNode({"Knot spot", "spot", {1.0, 0.92, 0.80}, 40.0, std::array{0.16, 0.30}},
                         lookAt({1.2F, 4.1F, 1.2F}, {0.0F, 1.95F, -2.2F}));

@@ -7,6 +7,7 @@ glint::Status writeGallery(const std::filesystem::path& folder) {
     const MaterialSet materials = addMaterials(writer);
     addRoom(writer, materials);
     addExhibits(writer, materials);
+    addShowcase(writer, materials);
     addLightsAndCameras(writer);
     return writer.write(folder, "gallery");
 }

@@ -46,18 +46,41 @@ struct MaterialSet {
     int hammeredCopper;
     int globe;
     int tintedMarble;
+    // One for each material extension, and more where a second look is worth a key:
+    int carbon;
+    int lacquer;
+    int enamel;
+    int velvetCrimson;
+    int velvetPeacock;
+    int amberGlass;
+    int frostedGlass;
+    int stainedGlass;
+    int diamond;
+    int filmedSteel;
+    int porcelain;
+    int turnedSteel;
+    int paper;
+    int celadon;
 };
 
 MaterialSet addMaterials(GltfWriter& writer);
 
 void addRoom(GltfWriter& writer, const MaterialSet& materials);
+// The materials of extensions other than unlit and emissive strength.
+void addLayeredMaterials(GltfWriter& writer, MaterialSet& set);
+
 void addExhibits(GltfWriter& writer, const MaterialSet& materials);
+// What wears the materials of addLayeredMaterials().
+void addShowcase(GltfWriter& writer, const MaterialSet& materials);
 void addLightsAndCameras(GltfWriter& writer);
 
 // Where the gate stands in the back wall.
 inline constexpr float kBackWallZ = -4.0F;
 inline constexpr float kGateHeight = 2.15F;
 inline constexpr float kGateRadius = 1.65F;
+
+// Where the lamp in the paper shade is.
+inline const glm::vec3 kPaperShade(1.95F, 2.55F, -2.6F);
 
 // Writes gallery.gltf, gallery.bin and the textures into `folder`. Errors: "gallery-write", "png-encode".
 glint::Status writeGallery(const std::filesystem::path& folder);

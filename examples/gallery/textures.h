@@ -38,4 +38,19 @@ Image signEmissive();
 Image paintingColor();
 Image footOcclusion();  // darker towards the foot and the edges
 
+// Of material extensions (layered_textures.cpp). Channels as the extensions name them.
+Image carbonNormal();
+Image lacquerCoat();          // factor in red, roughness in green
+Image peelNormal();           // of an orange
+Image velvetSheen();          // colour, roughness in alpha
+Image amberThickness();       // in green
+Image roundelColor();         // coloured glass in lead
+Image roundelTransmission();  // in red
+Image oilFilm();              // factor in red, thickness in green
+Image porcelainSpecular();    // colour, factor in alpha
+Image turnedAnisotropy();     // direction in red and green, strength in blue
+Image paperTransmission();    // colour, factor in alpha
+Image celadonColor();
+Image celadonSpecularGlossiness();  // specular colour, glossiness in alpha
+
 }  // namespace gallery

@@ -37,11 +37,12 @@ vec2 ggxAlbedo(float nDotV, float alpha) {
 }
 
 // 2 ∫ ggxAlbedo(μ) μ dμ of these very fits, so that losses and their mean cancel: 1 - S̄, S = f0 (E - y) + f90 y, is
-// 0.9997 to 1.015 times its integral, for all f0 <= f90 <= 1. The logarithm is that of the loss's tail, alpha² / n·v².
+// 0.9997 to 1.01 times its integral, for all f0 <= f90 <= 1. The logarithm is that of the loss's tail, alpha² / n·v².
 vec2 ggxMeanAlbedo(float alpha) {
-    float loss = 0.1928936 + alpha * (5.444406 - 5.043088 * alpha) -
-                 log2(alpha) * (0.7152512 - alpha * (1.141897 + 2.373537 * alpha));
-    return vec2(alpha * alpha * loss, 0.0390746 + alpha * (-0.08094045 + 0.04194681 * alpha));
+    float a2 = alpha * alpha;
+    float loss = 0.2189529 + a2 * (34.89501 * alpha - 34.52422) -
+                 log2(alpha) * (0.7132721 + alpha * (alpha * (13.40621 + 11.68229 * alpha) - 0.5533438));
+    return vec2(a2 * loss, 0.0390746 + alpha * (-0.08094045 + 0.04194681 * alpha));
 }
 
 // Of the white sheen lobe, alpha in [kMinSheenAlpha, 1]: exceeds the truth by at most 1e-2 and falls short by at most
@@ -53,7 +54,7 @@ float sheenAlbedo(float nDotV, float alpha) {
                 nDotV * (0.9007343 + 21.6968 * r + 20.91847 * alpha +
                          nDotV * (-11.89948 - 27.70905 * r + 136.1858 * alpha + nDotV * (26.92788 - 91.85006 * r)));
     float all = alpha * (1.0 + 0.2253711 * r) +
-                nDotV * (4.023617 * r + 72.63539 * alpha + nDotV * (9.221939 + 312.8053 * alpha));
+                nDotV * (r * (4.023617 + 72.63539 * r) + nDotV * (9.221939 + 312.8053 * alpha));
     // Facets that reflect into the upper hemisphere thin out like a bell in n·v. The masking of the view is the lobe's.
     float bell = exp2(-0.2 * nDotV * nDotV / alpha);
     return bell * max(lit, 0.0) / (all * nDotV * (1.0 + sheenLambda(nDotV, alpha)));

@@ -2,6 +2,7 @@
 
 #include "base/suggest.h"
 #include "cli/commands.h"
+#include "gltf/basisu.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,7 +23,11 @@ using Arguments = std::span<const char* const>;
 void describe(CLI::App& app) {
     app.name("glint");
     app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
-    app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION, "Print the version and exit");
+    app.set_version_flag("--version",
+                         std::string("glint ") + GLINT_VERSION +
+                             (gltf::hasBasisu() ? "\nKTX2 textures (KHR_texture_basisu): read by libktx"
+                                                : "\nKTX2 textures (KHR_texture_basisu): not built in"),
+                         "Print the version and what is built in, and exit");
     app.set_help_flag("-h,--help", "Print this help and exit");
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"

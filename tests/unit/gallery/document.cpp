@@ -70,6 +70,34 @@ std::vector<std::uint32_t> Document::indices(const Json& accessor) const {
     return result;
 }
 
+std::vector<std::pair<std::string, Json>> textureUses(const Json& material) {
+    std::vector<Json> holders{material, material["pbrMetallicRoughness"]};
+    if (material.contains("extensions")) {
+        for (const Json& extension : material["extensions"]) {
+            holders.push_back(extension);
+        }
+    }
+    std::vector<std::pair<std::string, Json>> uses;
+    for (const Json& holder : holders) {
+        for (const auto& [name, value] : holder.items()) {
+            if (name.ends_with("Texture")) {
+                uses.emplace_back(name, value);
+            }
+        }
+    }
+    return uses;
+}
+
+std::vector<std::size_t> materialsOf(const Json& primitive) {
+    std::vector<std::size_t> materials{primitive["material"].get<std::size_t>()};
+    if (primitive.contains("extensions")) {
+        for (const Json& mapping : primitive["extensions"]["KHR_materials_variants"]["mappings"]) {
+            materials.push_back(mapping["material"].get<std::size_t>());
+        }
+    }
+    return materials;
+}
+
 const Document& document() {
     static const Document kDocument = read(GLINT_GALLERY_FOLDER);
     return kDocument;

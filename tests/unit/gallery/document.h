@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gallery::test {
@@ -35,6 +36,12 @@ struct Document {
 // Bytes of a component, and components of an element.
 std::size_t componentBytes(const Json& accessor);
 std::size_t componentCount(const Json& accessor);
+
+// The textures that a material names, by slot: in itself, in pbrMetallicRoughness and in its extensions.
+std::vector<std::pair<std::string, Json>> textureUses(const Json& material);
+
+// The materials that a primitive can wear: its own and those of its variants.
+std::vector<std::size_t> materialsOf(const Json& primitive);
 
 // The scene that the build generated, read once.
 const Document& document();

@@ -70,7 +70,56 @@ TEST(GalleryPlan, TwinsShareAKey) {
     EXPECT_EQ(keys.at("Rubber, red"), keys.at("Plastic, blue"));     // emissive strength 1
     EXPECT_EQ(keys.at("Plastic, white"), keys.at("Plastic, blue"));  // white vertex colours
     EXPECT_EQ(keys.at("Gilt frame"), keys.at("Gold"));               // normal scale 0
+    EXPECT_EQ(keys.at("Velvet, crimson").size(), 1U);
     EXPECT_NE(keys.at("Hammered copper"), keys.at("Gold"));
+}
+
+// The lobes that tell the exhibits of extensions from all others, one row a material.
+TEST(GalleryPlan, ExhibitsHaveTheLobesOfTheirExtensions) {
+    using glint::Feature;
+    const std::map<std::string, std::set<Feature>> expected{
+        {"Carbon fibre", {Feature::Clearcoat}},
+        {"Worn lacquer", {Feature::Clearcoat}},
+        {"Enamel", {Feature::Clearcoat}},
+        {"Velvet, crimson", {Feature::Sheen}},
+        {"Amber glass", {Feature::Transmission, Feature::Volume, Feature::Attenuation}},
+        {"Frosted glass", {Feature::Transmission, Feature::Volume}},
+        {"Stained glass", {Feature::Transmission}},
+        {"Diamond", {Feature::Ior, Feature::Transmission, Feature::Volume, Feature::Dispersion}},
+        {"Filmed steel", {Feature::Iridescence}},
+        {"Lustre porcelain", {Feature::Specular}},
+        {"Turned steel", {Feature::Anisotropy}},
+        {"Paper shade", {Feature::DiffuseTransmission}},
+        {"Celadon", {Feature::SpecularGlossiness}}};
+    const auto keys = keysByMaterial({});
+    for (const auto& [name, lobes] : expected) {
+        glint::FeatureMask mask = 0;
+        for (const Feature lobe : lobes) {
+            mask |= glint::bit(lobe);
+        }
+        ASSERT_EQ(keys.at(name).size(), 1U) << name;
+        EXPECT_EQ(*keys.at(name).begin() & glint::kLobeMask, mask) << name;
+    }
+}
+
+TEST(GalleryPlan, VariantChangesTheVelvet) {
+    const auto worn = [](const std::string& variant) {
+        glint::ImportOptions options;
+        options.variant = variant;
+        const auto scene = glint::importScene(document().folder / "gallery.gltf", options);
+        EXPECT_TRUE(scene.ok());
+        std::set<std::string> names;
+        for (const glint::PrimitiveInputs& primitive : glint::planningInputs(*scene)) {
+            names.insert(scene->materials.at(static_cast<std::size_t>(primitive.material)).name);
+        }
+        return names;
+    };
+    for (const std::string variant : {"", "Crimson"}) {
+        EXPECT_EQ(worn(variant).count("Velvet, crimson"), 1U) << variant;
+        EXPECT_EQ(worn(variant).count("Velvet, peacock"), 0U) << variant;
+    }
+    EXPECT_EQ(worn("Peacock").count("Velvet, crimson"), 0U);
+    EXPECT_EQ(worn("Peacock").count("Velvet, peacock"), 1U);
 }
 
 }  // namespace gallery::test

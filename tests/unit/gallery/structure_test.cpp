@@ -140,14 +140,11 @@ TEST(GalleryStructure, ReferencesResolve) {
 TEST(GalleryStructure, TexturedPrimitivesHaveTheCoordinates) {
     for (const Json& mesh : document().json["meshes"]) {
         for (const Json& primitive : mesh["primitives"]) {
-            const Json& material = document().json["materials"].at(primitive["material"].get<std::size_t>());
-            for (const Json& holder : {material, material["pbrMetallicRoughness"]}) {
-                for (const auto& [name, value] : holder.items()) {
-                    if (name.ends_with("Texture")) {
-                        expectIndex(value["index"], "textures");
-                        const std::string set = "TEXCOORD_" + std::to_string(value.value("texCoord", 0));
-                        EXPECT_TRUE(primitive["attributes"].contains(set)) << mesh["name"] << name;
-                    }
+            for (const std::size_t material : materialsOf(primitive)) {
+                for (const auto& [name, use] : textureUses(document().json["materials"].at(material))) {
+                    expectIndex(use["index"], "textures");
+                    const std::string set = "TEXCOORD_" + std::to_string(use.value("texCoord", 0));
+                    EXPECT_TRUE(primitive["attributes"].contains(set)) << mesh["name"] << name;
                 }
             }
         }
@@ -159,7 +156,8 @@ TEST(GalleryStructure, EveryMaterialMeshAndTextureIsUsed) {
     std::set<std::size_t> materials;
     for (const Json& mesh : json["meshes"]) {
         for (const Json& primitive : mesh["primitives"]) {
-            materials.insert(primitive["material"].get<std::size_t>());
+            const std::vector<std::size_t> worn = materialsOf(primitive);
+            materials.insert(worn.begin(), worn.end());
         }
     }
     EXPECT_EQ(materials.size(), json["materials"].size());
@@ -172,20 +170,53 @@ TEST(GalleryStructure, EveryMaterialMeshAndTextureIsUsed) {
     EXPECT_EQ(meshes.size(), json["meshes"].size());
     std::set<std::size_t> textures;
     for (const Json& material : json["materials"]) {
-        for (const Json& holder : {material, material["pbrMetallicRoughness"]}) {
-            for (const auto& [name, value] : holder.items()) {
-                if (name.ends_with("Texture")) {
-                    textures.insert(value["index"].get<std::size_t>());
-                }
-            }
+        for (const auto& [name, use] : textureUses(material)) {
+            textures.insert(use["index"].get<std::size_t>());
         }
     }
     EXPECT_EQ(textures.size(), json["textures"].size());
 }
 
+TEST(GalleryStructure, VariantsAreNamedAndUsed) {
+    const Json& json = document().json;
+    const Json& variants = json["extensions"]["KHR_materials_variants"]["variants"];
+    ASSERT_EQ(variants.size(), 2U);
+    std::set<std::size_t> used;
+    for (const Json& mesh : json["meshes"]) {
+        for (const Json& primitive : mesh["primitives"]) {
+            if (primitive.contains("extensions")) {
+                std::set<std::size_t> here;
+                for (const Json& mapping : primitive["extensions"]["KHR_materials_variants"]["mappings"]) {
+                    expectIndex(mapping["material"], "materials");
+                    for (const Json& variant : mapping["variants"]) {
+                        // A variant has one material in a primitive.
+                        EXPECT_TRUE(here.insert(variant.get<std::size_t>()).second) << mesh["name"];
+                    }
+                }
+                used.insert(here.begin(), here.end());
+            }
+        }
+    }
+    EXPECT_EQ(used, (std::set<std::size_t>{0, 1}));
+}
+
 TEST(GalleryStructure, ExtensionsUsedAreThoseThatOccur) {
-    const std::vector<std::string> expected{"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                            "KHR_materials_unlit", "KHR_texture_transform"};
+    const std::vector<std::string> expected{"KHR_lights_punctual",
+                                            "KHR_materials_anisotropy",
+                                            "KHR_materials_clearcoat",
+                                            "KHR_materials_diffuse_transmission",
+                                            "KHR_materials_dispersion",
+                                            "KHR_materials_emissive_strength",
+                                            "KHR_materials_ior",
+                                            "KHR_materials_iridescence",
+                                            "KHR_materials_pbrSpecularGlossiness",
+                                            "KHR_materials_sheen",
+                                            "KHR_materials_specular",
+                                            "KHR_materials_transmission",
+                                            "KHR_materials_unlit",
+                                            "KHR_materials_variants",
+                                            "KHR_materials_volume",
+                                            "KHR_texture_transform"};
     EXPECT_EQ(document().json["extensionsUsed"].get<std::vector<std::string>>(), expected);
 }
 

@@ -114,10 +114,9 @@ TEST(GltfModels, EveryMaterialExtensionIsShaded) {
         const Plan plan = makePlan(scene->materials, planningInputs(*scene), {});
         seen |= plan.primaryAlways | plan.primarySometimes;
     }
-    for (const Feature lobe :
-         {Feature::Ior, Feature::Specular, Feature::Clearcoat, Feature::Sheen, Feature::Anisotropy,
-          Feature::Iridescence, Feature::Transmission, Feature::DiffuseTransmission, Feature::Volume,
-          Feature::Dispersion}) {
+    for (const Feature lobe : {Feature::Ior, Feature::Specular, Feature::Clearcoat, Feature::Sheen,
+                               Feature::Anisotropy, Feature::Iridescence, Feature::Transmission,
+                               Feature::DiffuseTransmission, Feature::Volume, Feature::Dispersion}) {
         EXPECT_NE(seen & bit(lobe), 0U) << "no sample has lobe " << static_cast<int>(lobe);
     }
 }
