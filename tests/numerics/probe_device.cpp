@@ -125,7 +125,7 @@ Result<ProbePipeline> ProbeDevice::compile(const std::string& glsl, std::string_
     text.insert(firstLine == std::string::npos ? 0 : firstLine, prelude());
     text += entry(probe, inputs, outputs);
     const Result<std::vector<std::uint32_t>> words =
-        compileShader({std::string(probe), ShaderStage::Compute, text}, {});
+        compileShader({std::string(probe), ShaderStage::Compute, text, {}}, {});
     if (!words) {
         return words.error();
     }

@@ -315,6 +315,7 @@ Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 al
 }
 
 #define GIVEN_FEATURES Features(0u, 0u, 0xFFFFFFFFu, 0u, uint(i[0]), 0u)
+#define GIVEN_FEATURES_WITHOUT_SHEEN Features(0u, 0u, 0xFFFFFFFFu, 0u, uint(i[0]) & ~GLINT_SHEEN, 0u)
 #define GIVEN_BSDF(b)                                                                                       \
     Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));              \
     b.clearcoat = i[19];                                                                                    \
@@ -328,21 +329,28 @@ PROBE(EvaluateBsdf) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
     WRITE3(0, f);
-    o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
 }
 
-PROBE(EvaluateUnderSheen) {
+// The same; the scale is the peak of its microfacets.
+PROBE(EvaluateBsdfByPeak) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
     WRITE3(0, f);
     o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
 }
 
+// The scale is the material without its sheen, of which white sheen leaves as good as nothing near grazing.
+PROBE(EvaluateUnderSheen) {
+    GIVEN_BSDF(b);
+    vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
+    WRITE3(0, f);
+    o[3] = largest(evaluateBsdf(b, GIVEN_FEATURES_WITHOUT_SHEEN, VEC3(31))) + 1e-4;
+}
+
 PROBE(BsdfPdf) {
     GIVEN_BSDF(b);
     o[0] = bsdfPdf(b, GIVEN_FEATURES, VEC3(31));
-    o[1] = 1.0 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
-    o[2] = o[0] == 0.0 ? 0.0 : 1.0;
+    o[1] = bsdfPdf(b, GIVEN_FEATURES_WITHOUT_SHEEN, VEC3(31)) + 1e-4;
 }
 
 // A sample in one number of which the truth is 1: its weight as it gives it, over what value and density of its

@@ -28,7 +28,8 @@ TEST(Fresnel, DielectricsAtNormalIncidence) {
 
 TEST(Fresnel, WhatPassesIsWhatIsNotReflected) {
     for (const double eta : {0.4, 0.75, 1.0, 1.5}) {
-        for (double cosine = 0.0; cosine <= 1.0; cosine += 1.0 / 64.0) {
+        for (int step = 0; step <= 64; ++step) {
+            const double cosine = step / 64.0;
             const glm::dvec3 f0(0.04, 0.2, 0.1);
             const double reflected = glsl::largest(glsl::fresnelInterface(f0, 1.0, cosine, eta));
             EXPECT_NEAR(glsl::interfacePassed(f0, 1.0, cosine, eta), 1.0 - reflected, 1e-14)
@@ -40,7 +41,8 @@ TEST(Fresnel, WhatPassesIsWhatIsNotReflected) {
 TEST(Refraction, FollowsSnell) {
     for (const double ior : kIors) {
         for (const double eta : {ior, 1.0 / ior}) {
-            for (double sine = 0.0; sine < 1.0; sine += 1.0 / 32.0) {
+            for (int step = 0; step < 32; ++step) {
+                const double sine = step / 32.0;
                 const double sineBeyond = sine / eta;
                 glm::dvec3 l(0.0);
                 const glm::dvec3 view(sine, 0.0, std::sqrt(1.0 - sine * sine));
@@ -142,7 +144,8 @@ TEST(Volume, DispersionSpreadsByTheAbbeNumber) {
 }
 
 TEST(Film, OfNoThicknessIsTheBareSurfaceUpToSchlicksAir) {
-    for (double cosine = 0.05; cosine <= 1.0; cosine += 0.05) {
+    for (int step = 1; step <= 20; ++step) {
+        const double cosine = step / 20.0;
         for (const double f0 : {0.02, 0.04, 0.5, 0.95}) {
             const double film = glsl::iridescentFresnel(cosine, glm::dvec3(f0), 1.8, 0.0).x;
             const double bare = glsl::fresnelSchlick(glm::dvec3(f0), 1.0, cosine).x;

@@ -1,0 +1,148 @@
+#include "domains.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glint::numerics {
+
+void fillDirection(InputSource& in) {
+    in.put(in.direction());
+}
+
+void fillTransform(InputSource& in) {
+    for (int k = 0; k < 15; ++k) {
+        in.put(in.coordinate());
+    }
+}
+
+void fillCounters(InputSource& in) {
+    for (int k = 0; k < 5; ++k) {
+        in.put(std::floor(in.uniform(0.0, 65536.0)));
+    }
+}
+
+// The sum cancels but for the rounding of one factor.
+void fillSumOfProduct(InputSource& in) {
+    const auto b = static_cast<float>(in.uniform(-2.0, 2.0));
+    const auto c = static_cast<float>(in.uniform(-2.0, 2.0));
+    in.put(in.chance(0.5) ? -static_cast<double>(b) * c : in.uniform(-4.0, 4.0));
+    in.put(b);
+    in.put(c);
+}
+
+void fillProducts(InputSource& in) {
+    const auto a = static_cast<float>(in.uniform(-2.0, 2.0));
+    const auto b = static_cast<float>(in.uniform(-2.0, 2.0));
+    const auto c = static_cast<float>(in.uniform(0.1, 2.0));
+    in.put(a);
+    in.put(b);
+    in.put(c);
+    in.put(in.chance(0.5) ? static_cast<double>(a) * b / c : in.uniform(-2.0, 2.0));
+}
+
+// Two directions at right angles but for their rounding, or any two.
+void fillDirections(InputSource& in) {
+    const Vector a = in.direction();
+    const Vector b = in.direction();
+    const Vector across{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    const double length = std::sqrt(across.x * across.x + across.y * across.y + across.z * across.z);
+    in.put(a);
+    in.put(length > 1e-3 && in.chance(0.7) ? Vector{across.x / length, across.y / length, across.z / length}
+                                           : b);
+}
+
+void fillVector(InputSource& in) {
+    const Vector v = in.direction();
+    const double length = in.logUniform(1e-15, 1e15);
+    in.put({v.x * length, v.y * length, v.z * length});
+}
+
+void fillNormalTransform(InputSource& in) {
+    for (int k = 0; k < 9; ++k) {
+        in.put(in.coordinate());
+    }
+    in.put(in.direction());
+}
+
+// A triangle under a transform that turns, scales by 0.1 to 10 along each axis and moves.
+void fillPlane(InputSource& in) {
+    in.put(in.direction());
+    for (int k = 0; k < 12; ++k) {
+        in.put(in.coordinate());
+    }
+    const Vector turn = in.direction();
+    const double angle = in.uniform(0.0, 3.0);
+    const double s = std::sin(angle);
+    const double c = std::cos(angle);
+    const double n[3] = {turn.x, turn.y, turn.z};
+    const double across[3][3] = {{0.0, -n[2], n[1]}, {n[2], 0.0, -n[0]}, {-n[1], n[0], 0.0}};
+    const double scale[3] = {in.logUniform(0.1, 10.0), in.logUniform(0.1, 10.0), in.logUniform(0.1, 10.0)};
+    double rotation[3][3];
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            rotation[row][column] =
+                (row == column ? c : 0.0) + s * across[row][column] + (1.0 - c) * n[row] * n[column];
+            in.put(rotation[row][column] * scale[column]);
+        }
+        in.put(in.coordinate());
+    }
+    // Cofactors of a rotation times a scale: each column by the other two scales.
+    for (const auto& row : rotation) {
+        for (int column = 0; column < 3; ++column) {
+            in.put(row[column] * scale[(column + 1) % 3] * scale[(column + 2) % 3]);
+        }
+    }
+}
+
+void fillFootprint(InputSource& in) {
+    in.put(in.logUniform(1e-6, 1e3));
+    in.put(in.pick({-1.0, 1.0}) * in.cosine());
+}
+
+// Triangles that are no slivers, 1e-3 to 1e3 wide, with a texture that they do not squeeze into a line.
+void fillTriangle(InputSource& in) {
+    const double width = in.logUniform(1e-3, 1e3);
+    in.put(width * in.logUniform(1e-4, 1e2));
+    const double turn = in.uniform(0.2, 2.9);
+    const double height = in.uniform(0.3, 3.0);
+    const double tilt = in.uniform(0.0, 2.0 * std::numbers::pi);
+    in.put({width * std::cos(tilt), width * std::sin(tilt), 0.0});
+    in.put({width * height * std::cos(turn + tilt), width * height * std::sin(turn + tilt), 0.0});
+    const double uvWidth = in.logUniform(1e-3, 10.0);
+    in.put(uvWidth * std::cos(turn));
+    in.put(uvWidth * std::sin(turn));
+    in.put(-uvWidth * height * std::sin(turn));
+    in.put(uvWidth * height * std::cos(turn));
+    in.put(std::exp2(std::floor(in.uniform(0.0, 14.0))));
+    in.put(std::exp2(std::floor(in.uniform(0.0, 14.0))));
+}
+
+void fillLight(InputSource& in) {
+    const Vector axis = in.direction();
+    const double outer = std::cos(in.uniform(0.01, 1.5));
+    const double inner = outer + (1.0 - outer) * in.uniform();
+    const double scale = 1.0 / std::max(0.001, inner - outer);
+    const Vector position{in.uniform(-100.0, 100.0), in.uniform(-100.0, 100.0), in.uniform(-100.0, 100.0)};
+    const Vector away = in.direction();
+    const double distance = in.chance(0.05) ? in.pick({0.0, 1e-4, 1e-3}) : in.logUniform(1e-2, 1e4);
+    in.put(position);
+    in.put(in.pick({0.0, 1.0, 2.0}));
+    in.put(axis);
+    in.put(in.chance(0.5) ? 0.0 : distance * in.logUniform(0.1, 1e3));
+    for (int k = 0; k < 3; ++k) {
+        in.put(in.colour());
+    }
+    in.put(scale);
+    in.put(-outer * scale);
+    in.put({position.x + distance * away.x, position.y + distance * away.y, position.z + distance * away.z});
+}
+
+void fillSamples(InputSource& in) {
+    in.put(std::floor(in.uniform(0.0, 1e6)));
+    in.put(in.logUniform(1e-3, 1e3));
+    in.put(100000.0);
+    in.put(in.chance(0.5) ? in.pick({0.0, 1.0}) : in.logUniform(1e-4, 1.0));
+}
+
+}  // namespace glint::numerics
