@@ -85,8 +85,9 @@ std::string toText(const RenderReport& report) {
     rows.push_back({"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit)", counters.rays,
                                         counters.skippedSky, counters.skippedRough, counters.skippedUnlit)});
     if (scene.narrowedTextures > 0) {
-        rows.push_back({"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",
-                                                scene.narrowedTextures)});
+        rows.push_back(
+            {"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",
+                                     scene.narrowedTextures)});
     }
     if (counters.unknownShader > 0) {
         rows.push_back({"unknown shader", fmt::format("{} hits", counters.unknownShader)});

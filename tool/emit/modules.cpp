@@ -69,7 +69,7 @@ std::string spirvFileName(const ModuleSource& source) {
 
 Result<ModuleSource> makeModule(const PassInfo& pass, std::string name, const SourceSet& sources,
                                 const kainjow::mustache::data& context) {
-    ModuleSource module{pass.role, 0, pass.stage, std::move(name), {}};
+    ModuleSource module{pass.role, 0, pass.stage, std::move(name), {}, {}};
     std::string text;
     std::string origin(pass.source);
     if (pass.source.ends_with(kTemplateSuffix)) {
@@ -94,7 +94,7 @@ Result<ModuleSource> makeModule(const PassInfo& pass, std::string name, const So
 
 Result<CompiledModule> compileModule(ModuleSource& source, bool debugInfo) {
     Result<std::vector<std::uint32_t>> spirv =
-        compileShader({source.name, source.stage, source.glsl}, {debugInfo});
+        compileShader({source.name, source.stage, source.glsl, source.functionsApart}, {debugInfo});
     if (!spirv) {
         return spirv.error();
     }
@@ -180,6 +180,11 @@ Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Pl
             Result<ModuleSource> module = makeModule(pass, std::move(name), sources, context);
             if (!module) {
                 return module.error();
+            }
+            if (pass.role == ModuleRole::UberShade) {
+                for (const Case& shaderCase : plan.cases) {
+                    module->functionsApart.push_back("shade" + shaderCase.name);
+                }
             }
             modules.push_back(std::move(*module));
             continue;

@@ -117,7 +117,8 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
     if (!translated) {
         return translated;
     }
-    Result<std::vector<std::uint32_t>> optimized = optimizeSpirv(*translated, source.name, options.debugInfo);
+    Result<std::vector<std::uint32_t>> optimized =
+        optimizeSpirv(*translated, source.name, source.functionsApart, options.debugInfo);
     if (!optimized) {
         return optimized;
     }

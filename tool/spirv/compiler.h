@@ -15,6 +15,8 @@ struct ShaderSource {
     std::string name;  // for messages; a message about a line names the file and line of the #line directives
     ShaderStage stage = ShaderStage::Compute;
     std::string glsl;  // flattened: no #include left
+    // Functions that stay functions, each optimised on its own; everything else is inlined.
+    std::vector<std::string> functionsApart{};
 };
 
 struct ShaderCompileOptions {

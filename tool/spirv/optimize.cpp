@@ -1,8 +1,12 @@
 #include "spirv/optimize.h"
 
+#include "spirv/call_graph.h"
+
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace glint {
@@ -20,36 +24,54 @@ spvtools::MessageConsumer keepFirstError(std::string& message) {
     };
 }
 
+// Of a function at a time: what literals decide. Cheap, as it looks into no callee.
+void registerFolding(spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateSimplificationPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateBlockMergePass());
+}
+
+// One level of calls into their callers, and what that decides.
+void registerLevel(spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateMergeReturnPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateScalarReplacementPass(0))
+        .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
+        .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateSSARewritePass());
+    registerFolding(optimizer);
+    optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+}
+
 void registerPasses(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
-    // What literals decide within a function goes before anything is inlined: inlining every lobe of the BSDF to drop
-    // it afterwards takes several times as long.
-    optimizer.RegisterPass(spvtools::CreateCCPPass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateBlockMergePass())
-        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+    // What literals decide within a function goes before anything is inlined: inlining every lobe of the BSDF
+    // to drop it afterwards takes several times as long.
+    registerFolding(optimizer);
+    optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
     optimizer.RegisterPerformancePasses();
     // What the performance passes uncover late, folded once more: features are decided through two masks.
-    optimizer.RegisterPass(spvtools::CreateCCPPass())
-        .RegisterPass(spvtools::CreateSimplificationPass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateBlockMergePass())
-        .RegisterPass(spvtools::CreateVectorDCEPass())
+    registerFolding(optimizer);
+    optimizer.RegisterPass(spvtools::CreateVectorDCEPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass())
         .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
         .RegisterPass(spvtools::CreateCompactIdsPass());
 }
 
-}  // namespace
-
-Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
-                                                 const std::string& name, bool keepNames) {
+// Runs what `registerInto` asks for over `words`.
+template <typename Register>
+Status runPasses(std::vector<std::uint32_t>& words, const std::string& name, const Register& registerInto) {
     std::string message;
     spvtools::Optimizer optimizer(kTarget);
     optimizer.SetMessageConsumer(keepFirstError(message));
-    registerPasses(optimizer, keepNames);
+    registerInto(optimizer);
     spvtools::ValidatorOptions layout;
     layout.SetScalarBlockLayout(true);
     spvtools::OptimizerOptions options;
@@ -63,6 +85,78 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
             "SPIRV-Tools can't optimise the shader: " + (message.empty() ? "no reason given" : message),
             "this is a defect of Glint; please report it with the scene");
     }
+    words = std::move(optimized);
+    return okStatus();
+}
+
+std::set<std::uint32_t> idsOf(const std::vector<SpirvFunction>& functions,
+                              const std::vector<std::string>& names) {
+    std::set<std::uint32_t> ids;
+    for (const SpirvFunction& function : functions) {
+        if (std::ranges::find(names, function.name) != names.end()) {
+            ids.insert(function.id);
+        }
+    }
+    return ids;
+}
+
+// What the functions of `roots` call and have not taken in yet.
+std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
+                                const std::set<std::uint32_t>& roots) {
+    std::set<std::uint32_t> calls;
+    for (const SpirvFunction& function : functions) {
+        if (roots.contains(function.id)) {
+            calls.insert(function.calls.begin(), function.calls.end());
+        }
+    }
+    return calls;
+}
+
+// Inlines into the functions named in `apart`, a level of calls at a time, until they call nothing.
+Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
+                     const std::vector<std::string>& apart) {
+    // Deeper than any chain of calls; the performance passes take in the rest.
+    constexpr int kMaxLevels = 24;
+    for (int level = 0; level < kMaxLevels; ++level) {
+        const std::vector<SpirvFunction> functions = findFunctions(words);
+        const std::set<std::uint32_t> next = callsOf(functions, idsOf(functions, apart));
+        if (next.empty()) {
+            break;
+        }
+        std::set<std::uint32_t> others;
+        for (const SpirvFunction& function : functions) {
+            if (!next.contains(function.id)) {
+                others.insert(function.id);
+            }
+        }
+        keepApart(words, functions, others);
+        if (Status status = runPasses(words, name, registerLevel); !status) {
+            return status;
+        }
+    }
+    const std::vector<SpirvFunction> functions = findFunctions(words);
+    keepApart(words, functions, idsOf(functions, apart));
+    return okStatus();
+}
+
+}  // namespace
+
+Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
+                                                 const std::string& name,
+                                                 const std::vector<std::string>& apart, bool keepNames) {
+    std::vector<std::uint32_t> optimized = words;
+    if (!apart.empty()) {
+        if (Status status = inlineByLevel(optimized, name, apart); !status) {
+            return status.error();
+        }
+    }
+    if (Status status = runPasses(
+            optimized, name, [&](spvtools::Optimizer& optimizer) { registerPasses(optimizer, keepNames); });
+        !status) {
+        return status.error();
+    }
+    // Drivers may inline as they like.
+    keepApart(optimized, findFunctions(optimized), {});
     return optimized;
 }
 

@@ -103,7 +103,13 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
         const ShaderStage stage = module.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
                                   : module.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
                                                                                : ShaderStage::Compute;
-        const auto again = compileShader({module.name, stage, module.glsl}, {});
+        ShaderSource source{module.name, stage, module.glsl};
+        if (module.role == ModuleRole::UberShade) {
+            for (const Case& shaderCase : package.plan.cases) {
+                source.functionsApart.push_back("shade" + shaderCase.name);
+            }
+        }
+        const auto again = compileShader(source, {});
         ASSERT_TRUE(again) << toString(again.error());
         EXPECT_EQ(*again, module.spirv) << module.name;
     }

@@ -1,0 +1,108 @@
+#include "spirv/call_graph.h"
+
+#include "spirv/compiler.h"
+#include "spirv/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace glint {
+namespace {
+
+// Two cases, each a function of its own, over a chain of calls that literals cut short.
+constexpr const char* kTwoCases = R"(#version 460
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform sampler2D images[3];
+layout(set = 0, binding = 1) buffer Data { uint shaderId; uint mask; vec4 result; } data;
+
+struct Features { uint always; uint sometimes; uint mask; };
+bool has(Features f, uint bits) {
+    return (f.always & bits) != 0u || ((f.sometimes & bits) != 0u && (f.mask & bits) != 0u);
+}
+vec4 fetch(uint slot, vec2 uv) { return textureLod(images[slot], uv, 0.0); }
+vec4 coat(Features f, vec4 base) {
+    if (!has(f, 4u)) { return base; }
+    return base + fetch(2u, base.xy);
+}
+vec4 shade(Features f) {
+    vec4 sum = vec4(0.25);
+    if (has(f, 1u)) { sum += fetch(0u, sum.xy); }
+    if (has(f, 2u)) { sum *= fetch(1u, sum.yz); }
+    return coat(f, sum);
+}
+vec4 shadeFirst() { return shade(Features(1u, 0u, data.mask)); }
+vec4 shadeSecond() { return shade(Features(6u, 0u, data.mask)); }
+void main() {
+    if (data.shaderId == 0u) { data.result = shadeFirst(); } else { data.result = shadeSecond(); }
+}
+)";
+
+ShaderSource source(std::vector<std::string> apart) {
+    ShaderSource result{"two.comp", ShaderStage::Compute, kTwoCases};
+    result.functionsApart = std::move(apart);
+    return result;
+}
+
+const SpirvFunction* find(const std::vector<SpirvFunction>& functions, const std::string& name) {
+    const auto place = std::ranges::find(functions, name, &SpirvFunction::name);
+    return place == functions.end() ? nullptr : &*place;
+}
+
+TEST(CallGraph, NamesFunctionsAndWhatTheyCall) {
+    const auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true});
+    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<SpirvFunction> functions = findFunctions(*words);
+    ASSERT_EQ(functions.size(), 3U);
+    const SpirvFunction* const main = find(functions, "main");
+    const SpirvFunction* const first = find(functions, "shadeFirst");
+    const SpirvFunction* const second = find(functions, "shadeSecond");
+    ASSERT_TRUE(main != nullptr && first != nullptr && second != nullptr);
+    std::vector<std::uint32_t> calls = main->calls;
+    std::ranges::sort(calls);
+    std::vector<std::uint32_t> expected{first->id, second->id};
+    std::ranges::sort(expected);
+    EXPECT_EQ(calls, expected);
+    EXPECT_TRUE(first->calls.empty());
+    EXPECT_TRUE(second->calls.empty());
+}
+
+TEST(CallGraph, AFunctionApartHoldsWhatItsLiteralsLeave) {
+    const auto apart = compileShader(source({"shadeFirst", "shadeSecond"}), {});
+    const auto inlined = compileShader(source({}), {});
+    ASSERT_TRUE(apart && inlined);
+    EXPECT_EQ(findFunctions(*apart).size(), 3U);
+    EXPECT_EQ(findFunctions(*inlined).size(), 1U);
+    for (const auto& words : {*apart, *inlined}) {
+        const auto statistics = measureSpirv(words);
+        ASSERT_TRUE(statistics);
+        // One texture of the first case, two of the second.
+        EXPECT_EQ(statistics->textureFetches, 3U);
+    }
+}
+
+TEST(CallGraph, LeavesInliningToTheDriver) {
+    const auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {});
+    ASSERT_TRUE(words);
+    for (const SpirvFunction& function : findFunctions(*words)) {
+        EXPECT_EQ(words->at(function.controlWord), 0U);
+    }
+}
+
+TEST(CallGraph, ForbidsInliningOfThoseApart) {
+    auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true});
+    ASSERT_TRUE(words);
+    const std::vector<SpirvFunction> functions = findFunctions(*words);
+    const SpirvFunction* const first = find(functions, "shadeFirst");
+    ASSERT_NE(first, nullptr);
+    keepApart(*words, functions, {first->id});
+    constexpr std::uint32_t kDontInline = 2;
+    for (const SpirvFunction& function : functions) {
+        EXPECT_EQ(words->at(function.controlWord), function.id == first->id ? kDontInline : 0U);
+    }
+}
+
+}  // namespace
+}  // namespace glint
