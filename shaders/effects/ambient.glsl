@@ -37,8 +37,10 @@ vec3 ambientTransmission(Surface surface, Features features) {
         behind.x = skyBehind(surface, features, bsdf.eta.x).x;
         behind.z = skyBehind(surface, features, bsdf.eta.z).z;
     }
-    float reflected = largest(bsdf.f0) * (1.0 - bsdf.viewLoss - bsdf.viewBias) + bsdf.f90 * bsdf.viewBias;
-    return bsdf.transmitted * behind * max(1.0 - bsdf.viewLoss - reflected, 0.0);
+    // What the microfacets do not reflect; without compensation, less what single scattering drops.
+    float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
+    float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
+    return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
 }
 
 // mirrored and coated: shares of the sky that base and coat reflect; a traced ray brings the rest.

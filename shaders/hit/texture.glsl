@@ -40,14 +40,12 @@ void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out v
         vec3 alongV = (hit.edges[1] * uv.x - hit.edges[0] * uv.z) * sign(determinant);
         handedness = dot(cross(hit.normal, along), alongV) > 0.0 ? -1.0 : 1.0;
     }
-    vec3 inPlane = along - hit.normal * dot(hit.normal, along);
-    float squared = dot(inPlane, inPlane);
-    if (squared > 0.0 && !isinf(squared)) {
-        tangent = inPlane * inversesqrt(squared);
-        bitangent = cross(hit.normal, tangent) * handedness;
-    } else {
+    tangent = directionOr(along - hit.normal * dot(hit.normal, along), vec3(0.0));
+    if (tangent == vec3(0.0)) {
         // No direction of U on the surface: any frame will do.
         buildBasis(hit.normal, tangent, bitangent);
+    } else {
+        bitangent = cross(hit.normal, tangent) * handedness;
     }
 }
 

@@ -58,6 +58,8 @@ constexpr Probe kProbes[] = {
      .inputs = 2,
      .outputs = 1,
      .fill = fillCriticalAngle,
+     // Within 1e-8 of the critical angle it is the root of a difference of nearly 0.
+     .bounds = {1e-3, 1e-6},
      .undecidedShare = 1e-4,
      .textbook = "TextbookRefractedCosine2"},
     {.name = "DielectricF0", .function = "dielectricF0", .inputs = 1, .outputs = 1, .fill = fillIor},
@@ -195,7 +197,13 @@ constexpr Probe kProbes[] = {
      .fill = fillNormalTransform,
      .bounds = kVectorBounds,
      .hasScale = true},
-    {.name = "PlaneError", .function = "planeError", .inputs = 36, .outputs = 1, .fill = fillPlane},
+    {.name = "PlaneError",
+     .function = "planeError",
+     .inputs = 36,
+     .outputs = 1,
+     .fill = fillPlane,
+     // Itself a bound of errors, to which a thousandth more or less is nothing.
+     .bounds = {1e-3, 1e-6}},
     {.name = "ConeFootprint", .function = "coneFootprint", .inputs = 2, .outputs = 1, .fill = fillFootprint},
     {.name = "ConeLod",
      .function = "coneLod (levels)",
@@ -247,6 +255,9 @@ constexpr Probe kProbes[] = {
      .inputs = 34,
      .outputs = 3,
      .fill = fillBsdfWithoutSheen,
+     // 1e-4 but for a few of ten million inputs that see the critical angle from within, where Fresnel's
+     // slope is without bound: 1.15e-4.
+     .bounds = {2e-4, 1e-6},
      .hasScale = true},
     {.name = "EvaluateBsdf",
      .function = "evaluateBsdf, all lobes but sheen",

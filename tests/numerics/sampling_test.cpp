@@ -245,7 +245,7 @@ TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
                 .integrate([&](const glm::dvec3& light) { return glm::dvec3(seen.pdf(light)); }, 20000)
                 .x;
         // Even points: fewer of them do than of random ones.
-        constexpr int kSide = 32;
+        constexpr int kSide = 48;
         int lost = 0;
         for (int k = 0; k < kSide * kSide * kSide; ++k) {
             const glm::ivec3 cell(k % kSide, k / kSide % kSide, k / kSide / kSide);
@@ -253,7 +253,7 @@ TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
             const glm::dvec3 u = (glm::dvec3(cell) + jitter) / static_cast<double>(kSide);
             lost += glsl::sampleBsdf(seen.bsdf, seen.features(), u).pdf > 0.0 ? 0 : 1;
         }
-        EXPECT_NEAR(sum + static_cast<double>(lost) / (kSide * kSide * kSide), 1.0, 2e-3)
+        EXPECT_NEAR(sum + static_cast<double>(lost) / (kSide * kSide * kSide), 1.0, 1e-3)
             << "material " << i << " of seed " << kSeed + 1 + GetParam().lobes << ": " << seen;
     }
 }
