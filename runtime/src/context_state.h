@@ -32,7 +32,7 @@ struct DeviceLimits {
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
     std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
-    bool wideTextures = false;      // R16G16B16A16_UNORM can be sampled, filtered and blitted
+    bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
     std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
     std::string deviceName;
     std::string driverName;

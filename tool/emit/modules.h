@@ -15,8 +15,8 @@ struct ModuleSource {
     package::ModuleRole role = package::ModuleRole::Trace;
     int shaderId = 0;  // ShadeCase only
     ShaderStage stage = ShaderStage::Compute;
-    std::string name;                         // "uber.comp"
-    std::string glsl;                         // flattened
+    std::string name;                           // "uber.comp"
+    std::string glsl;                           // flattened
     std::vector<std::string> functionsApart{};  // see ShaderSource
 };
 

@@ -24,8 +24,8 @@ struct ImportOptions {
 };
 
 // Reads `path` (.gltf or .glb), its buffers and its images. Files outside the scene's folder are refused.
-// On success, Scene::warnings holds what was skipped. Error "variant-unknown" where the file lacks the variant. The error names the file and, where there is one, the
-// JSON pointer of the culprit.
+// On success, Scene::warnings holds what was skipped. Error "variant-unknown" where the file lacks the
+// variant. The error names the file and, where there is one, the JSON pointer of the culprit.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // The primitives of all meshes, mesh by mesh, as planning sees them.

@@ -134,7 +134,7 @@ struct Scene {
     std::vector<Image> images;
     std::vector<SourceFile> files;
     std::vector<std::string> variants;  // names that KHR_materials_variants gives, in the file's order
-    std::string variant;                // the one whose materials the primitives have; empty: the default ones
+    std::string variant;  // the one whose materials the primitives have; empty: the default ones
     std::vector<Diagnostic> warnings;
 };
 
