@@ -61,8 +61,10 @@ float planeError(vec3 n, TrianglePoint point, vec4 objectToWorld[3], vec3 normal
     const float kSixteenRoundings = 1.0 / 1048576.0;
     // The plane's normal in the mesh's space, in metres of the world for one of the mesh.
     vec3 r = abs(n.x * objectToWorld[0].xyz + n.y * objectToWorld[1].xyz + n.z * objectToWorld[2].xyz);
-    // Interpolation and intersection.
-    float object = dot(r, abs(point.corner) + abs(point.edge1) + abs(point.edge2));
+    // Interpolation and intersection, which mixes the axes: a triangle in the plane z = 0 is met at a rounded z, too.
+    vec3 extent = abs(point.edge1) + abs(point.edge2);
+    float largestExtent = max(extent.x, max(extent.y, extent.z));
+    float object = dot(r, abs(point.corner) + vec3(largestExtent));
     // Into the world. The terms are no smaller than their sum: this bounds the world's coordinates, too.
     vec3 terms = vec3(dot(abs(objectToWorld[0]), vec4(abs(point.position), 1.0)),
                       dot(abs(objectToWorld[1]), vec4(abs(point.position), 1.0)),

@@ -33,6 +33,7 @@ struct MeshKind {
     double spread;
     double edge1;
     double edge2;
+    bool flat = false;  // all in the plane z = 0, which has no coordinate to tell the size of errors by
 };
 
 // A float near 1e5 has a unit in the last place of 2^-7: a triangle of edge 1e-4 is a point there, one of
@@ -44,6 +45,7 @@ constexpr MeshKind kMeshes[] = {
     {"edge 1e-4, at 1", {1.0, -1.0, 1.0}, 0.005, 1e-4, 1e-4},
     {"edge 1000, at 0", {0.0, 0.0, 0.0}, 10000.0, 1000.0, 1000.0},
     {"edges 10 and 0.01, at 3", {3.0, 3.0, -3.0}, 40.0, 10.0, 0.01},
+    {"edge 1, in the plane z = 0", {0.0, 0.0, 0.0}, 20.0, 1.0, 1.0, true},
 };
 
 // A transform of the mesh's space: three rows of the linear part, and where the mesh's centre goes.
@@ -108,6 +110,9 @@ Primitive strewnTriangles(const MeshKind& kind, std::mt19937_64& random) {
         primitive.positions.push_back(toFloat(along(corner, randomDirection(random), kind.edge1)));
         primitive.positions.push_back(toFloat(along(corner, randomDirection(random), kind.edge2)));
         for (std::uint32_t k = 0; k < 3; ++k) {
+            if (kind.flat) {
+                primitive.positions[3 * i + k][2] = 0.0F;
+            }
             primitive.indices.push_back(3 * i + k);
         }
     }
