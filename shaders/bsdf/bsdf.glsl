@@ -42,10 +42,14 @@ vec3 multiScatterFresnel(Bsdf b) {
     return mean * mean * (1.0 - b.meanLoss) / (vec3(1.0) - mean * b.meanLoss);
 }
 
-// What the microfacets reflect of a uniform white sky: single scattering by E's loss and bias, and the rest of it if
-// energy compensation is on.
+// What the microfacets reflect at the first bounce of a uniform white sky, by E's loss and bias.
+vec3 singleScatterAlbedo(Bsdf b, float loss, float bias) {
+    return b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
+}
+
+// What they reflect in all: the later bounces, too, if energy compensation is on.
 vec3 specularAlbedo(Bsdf b, float loss, float bias) {
-    vec3 single = b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
+    vec3 single = singleScatterAlbedo(b, loss, bias);
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
 }
 
@@ -89,6 +93,12 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     if (hasLobe(features, GLINT_SHEEN)) {
         b.sheenAlbedo = sheenAlbedo(b.view.z, b.sheenAlpha);
     }
+}
+
+// Whether light passes without bending: then the facets that reflect and those that let through part ways, and the view
+// alone decides between the two.
+bool passesStraight(Features features, float eta) {
+    return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
 }
 
 // Whether the viewer is on the denser side of a volume's surface.
@@ -138,7 +148,7 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     float cosine;
     float lobe;
     float passed;
-    if (hasLobe(features, GLINT_VOLUME) && !refracts(eta)) {
+    if (passesStraight(features, eta)) {
         // Nothing bends, whatever the facets: as sharp as lobes get, with the view's own Fresnel.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
         passed = interfacePassed(b.f0, b.f90, b.view.z, 1.0);

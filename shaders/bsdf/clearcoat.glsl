@@ -11,17 +11,25 @@ float clearcoatPassed(float factor, float nDotV) {
     return (1.0 - factor) + factor * 0.96 * schlickRest(nDotV);
 }
 
-// The lobe without Fresnel: D V. n is unit; nDotL and nDotV are cosines to it, above 0.
-float clearcoatLobe(vec3 n, float nDotL, float nDotV, vec3 v, vec3 l, float alpha) {
+// The NDF about n, of the facet between v and l.
+float clearcoatDistribution(vec3 n, vec3 v, vec3 l, float alpha) {
     // Of the unnormalised half vector s: sine and cosine to n, times |s|.
     vec3 s = v + l;
     vec3 sine = accurateCrossOfSum(n, v, l);
-    float squared = dot(s, s);
     float cosine = dot(n, s);
     float a2 = alpha * alpha;
-    float t = (dot(sine, sine) / a2 + cosine * cosine) / squared;
-    float distribution = cosine > 0.0 ? 1.0 / (kPi * a2 * t * t) : 0.0;
-    float projectionV = sqrt(nDotV * nDotV * (1.0 - a2) + a2);
-    float projectionL = sqrt(nDotL * nDotL * (1.0 - a2) + a2);
-    return distribution * 0.5 / (nDotL * projectionV + nDotV * projectionL);
+    float t = (dot(sine, sine) / a2 + cosine * cosine) / dot(s, s);
+    return cosine > 0.0 ? 1.0 / (kPi * a2 * t * t) : 0.0;
+}
+
+// ggxProjection() by the cosine to n.
+float clearcoatProjection(float cosine, float alpha) {
+    float a2 = alpha * alpha;
+    return sqrt(cosine * cosine * (1.0 - a2) + a2);
+}
+
+// The lobe without Fresnel: D V. n is unit; nDotL and nDotV are cosines to it, above 0.
+float clearcoatLobe(vec3 n, float nDotL, float nDotV, vec3 v, vec3 l, float alpha) {
+    return clearcoatDistribution(n, v, l, alpha) * 0.5 /
+           (nDotL * clearcoatProjection(nDotV, alpha) + nDotV * clearcoatProjection(nDotL, alpha));
 }

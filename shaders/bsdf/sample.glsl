@@ -17,7 +17,7 @@ struct LobeChances {
 };
 
 LobeChances lobeChances(Bsdf b, Features features) {
-    vec3 single = b.f0 * (1.0 - b.viewLoss - b.viewBias) + vec3(b.f90 * b.viewBias);
+    vec3 single = singleScatterAlbedo(b, b.viewLoss, b.viewBias);
     vec3 all = specularAlbedo(b, b.viewLoss, b.viewBias);
     float below = max(1.0 - largest(all), 0.0);
     float microfacets = luminance(single);
@@ -68,12 +68,6 @@ vec2 facetChances(Bsdf b, Features features, float cosine, float eta) {
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
 }
 
-// Whether light passes without bending: then the facets that reflect and those that let through part ways, and the view
-// alone decides between the two.
-bool passesStraight(Features features, float eta) {
-    return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
-}
-
 // The cosine under which a facet is seen for facetChances().
 float facetCosine(Bsdf b, Features features, vec3 h, float eta) {
     return passesStraight(features, eta) ? b.view.z : clamp(dot(b.view, h), 0.0, 1.0);
@@ -95,7 +89,7 @@ float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
 // Density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     vec3 h;
-    if (!hasLobe(features, GLINT_VOLUME) || !refracts(eta)) {
+    if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
         vec3 mirrored = vec3(l.x, l.y, -l.z);
         h = normalize(b.view + mirrored);
         vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
@@ -131,20 +125,14 @@ float microfacetPdf(Bsdf b, Features features, vec3 l) {
     return pdf;
 }
 
+// Density of the coat's lobe: mirroredPdf() in the coat's frame.
 float coatPdf(Bsdf b, vec3 l) {
-    float nDotL = accurateDot(b.clearcoatNormal, l);
-    if (nDotL <= 0.0) {
+    if (accurateDot(b.clearcoatNormal, l) <= 0.0) {
         return 0.0;
     }
-    // In the coat's frame: D / (2 (n·v + projection)).
-    vec3 s = b.view + l;
-    vec3 sine = accurateCrossOfSum(b.clearcoatNormal, b.view, l);
-    float cosine = dot(b.clearcoatNormal, s);
-    float a2 = b.clearcoatAlpha * b.clearcoatAlpha;
-    float t = (dot(sine, sine) / a2 + cosine * cosine) / dot(s, s);
     float nDotV = coatViewCosine(b);
-    float projection = sqrt(nDotV * nDotV * (1.0 - a2) + a2);
-    return cosine > 0.0 ? 0.5 / (kPi * a2 * t * t * (nDotV + projection)) : 0.0;
+    return 0.5 * clearcoatDistribution(b.clearcoatNormal, b.view, l, b.clearcoatAlpha) /
+           (nDotV + clearcoatProjection(nDotV, b.clearcoatAlpha));
 }
 
 // Density, by solid angle, with which sampleBsdf() chooses l.
@@ -182,7 +170,7 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
         h = sampleVisibleNormal(b.view, vec2(kMinAlpha), u.xy);
         reflected = 2.0 * dot(b.view, h) * h - b.view;
     }
-    if (!hasLobe(features, GLINT_VOLUME) || !refracts(eta)) {
+    if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
         return reflected.z > 0.0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0.0);
     }
     vec3 refracted;
