@@ -2,6 +2,7 @@
 #include "requirements.h"
 #include "vulkan_error.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace glint {
@@ -35,6 +36,9 @@ Context::State::~State() {
 
 namespace {
 
+// Sharp down to a cosine of 1 / 16.
+constexpr float kMaxAnisotropy = 16.0F;
+
 void queryLimits(Context::State& state) {
     DeviceLimits& limits = state.limits;
     limits.accelerationStructure.sType =
@@ -58,6 +62,10 @@ void queryLimits(Context::State& state) {
     limits.maxBufferBytes = vulkan13.maxBufferSize;
     limits.maxTextures = vulkan12.maxPerStageDescriptorUpdateAfterBindSampledImages;
     limits.maxSamplers = vulkan12.maxPerStageDescriptorUpdateAfterBindSamplers;
+    // Mesa's lavapipe (25.0) has the feature, but given gradients it reads the level of the longer one.
+    if (state.handles.samplerAnisotropy && vulkan12.driverID != VK_DRIVER_ID_MESA_LLVMPIPE) {
+        limits.samplerAnisotropy = std::min(kMaxAnisotropy, limits.core.maxSamplerAnisotropy);
+    }
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
     state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);

@@ -4,6 +4,7 @@
 #include "vulkan_table.h"
 
 #include <glint/context.h>
+#include <glint/package_format.h>
 
 #include <memory>
 #include <mutex>
@@ -32,6 +33,7 @@ struct DeviceLimits {
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
     std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
+    float samplerAnisotropy = 1.0F;        // that texture samplers are made with; 1: none
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
     std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
     std::string deviceName;
@@ -54,6 +56,7 @@ struct Context::State {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     ValidationLog log;
     DeviceLimits limits;
+    std::uint32_t tracers = package::kTracerRayQuery;  // package::Tracer bits that the device has
     // In memory only; shared by the renderers of this context.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };

@@ -21,7 +21,7 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
     // The ray list has a record for every pixel, and 32 bits number them.
     if (pixels > std::numeric_limits<std::uint32_t>::max() ||
-        pixels * sizeof(gpu::RayRecord) > context.limits.maxBufferBytes) {
+        pixels * sizeof(gpu::ShadowRecord) > context.limits.maxBufferBytes) {
         return makeError("render-size", "",
                          "the rays of " + asked + " pixels do not fit a buffer of the device",
                          "render a smaller image");
@@ -70,7 +70,10 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
-    const VkDeviceSize ordered = size.ordered ? pixels : 1;
+    const VkDeviceSize hits = size.ordered ? pixels : 1;
+    // Each bucket may leave all but one slot of its last group empty.
+    const VkDeviceSize slots = hits + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+    const VkDeviceSize shadows = size.deferredShadows ? pixels : 1;
     const VkDeviceSize bucketBytes = sizeof(gpu::BucketRecord) * size.bucketCount;
     const struct {
         Buffer& target;
@@ -80,11 +83,13 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     } wanted[] = {
         {frame.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
         {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage, MemoryUse::Device},
-        {frame.hits, ordered * sizeof(gpu::HitRecord), kStorage, MemoryUse::Device},
-        {frame.orderedHits, ordered * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
+        {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
+        {frame.orderedHits, slots * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
+        {frame.shadowDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.buckets, bucketBytes, kCleared, MemoryUse::Device},
         {frame.rayDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketDispatch, sizeof(gpu::DispatchArguments) * size.bucketCount, kIndirect,
+        {frame.bucketDispatch, sizeof(gpu::DispatchArguments) * (size.bucketCount + 1), kIndirect,
          MemoryUse::Device},
         {frame.counters, kReadbackBucketOffset, kCleared, MemoryUse::Device},
         {frame.readback, kReadbackBucketOffset + bucketBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,

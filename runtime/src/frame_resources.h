@@ -24,8 +24,10 @@ struct FrameResources {
     DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
     Buffer constants;                                       // FrameConstants, host-visible
     Buffer rays;
-    Buffer hits;         // one element unless buckets are used
+    Buffer hits;         // full or packed; one element unless hits are ordered
     Buffer orderedHits;  // likewise
+    Buffer shadows;      // one element unless shadow rays are deferred
+    Buffer shadowDispatch;
     Buffer buckets;
     Buffer rayDispatch;
     Buffer bucketDispatch;
@@ -41,6 +43,9 @@ struct FrameSize {
     std::uint32_t height = 0;
     std::uint32_t bucketCount = 0;
     bool ordered = false;  // hits are stored and ordered by bucket
+    std::uint32_t bucketAlignment = 1;
+    std::uint32_t hitBytes = sizeof(gpu::HitRecord);
+    bool deferredShadows = false;
 };
 
 // Error "render-size": no pixels, or more than the device can do.

@@ -56,7 +56,8 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
-    const std::vector<gpu::MaterialRecord> materials = materialsWithSizes(package, scene.images);
+    const std::vector<gpu::MaterialRecord> materials =
+        materialsWithSizes(state.context, package, scene.images);
     if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
         return s;
     }

@@ -204,7 +204,12 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 }
 
 Status createDevice(Context::State& state) {
-    const DeviceRequirements requirements;
+    DeviceRequirements requirements;
+    VkPhysicalDeviceFeatures2 available{};
+    available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
+    requirements.features.features.samplerAnisotropy = available.features.samplerAnisotropy;
+    state.handles.samplerAnisotropy = available.features.samplerAnisotropy == VK_TRUE;
     state.handles.queueFamily = chooseQueueFamily(state);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{};

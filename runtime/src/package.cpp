@@ -50,6 +50,18 @@ bool Package::alphaTested() const {
     return state_->header.alphaTested != 0;
 }
 
+package::PackageShape Package::shape() const {
+    return shapeOf(state_->header);
+}
+
+package::HitRecordFormat Package::hitRecord() const {
+    return state_->header.hitRecord;
+}
+
+bool Package::environmentMap() const {
+    return state_->header.environmentMap != 0;
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }
@@ -90,10 +102,9 @@ std::string_view Package::string(package::StringRef ref) const {
     return {state_->strings.data() + ref.offset, ref.length};
 }
 
-std::span<const std::uint32_t> Package::spirv(package::ModuleRole role, std::uint32_t shaderId) const {
+std::span<const std::uint32_t> Package::spirv(const package::ModuleKey& key) const {
     const auto entry = std::ranges::find_if(state_->modules, [&](const package::ModuleEntry& candidate) {
-        return candidate.role == role &&
-               (role != package::ModuleRole::ShadeCase || candidate.shaderId == shaderId);
+        return package::ModuleKey{candidate.role, candidate.index, candidate.tracer} == key;
     });
     if (entry == state_->modules.end()) {
         return {};

@@ -8,28 +8,8 @@
 
 namespace glint {
 
-std::string moduleRoleName(package::ModuleRole role) {
-    static constexpr std::array kNames{"GBufferVertex", "GBufferFragment", "Lighting",  "ReflectionRays",
-                                       "RayDispatch",   "UberShade",       "Trace",     "BucketCount",
-                                       "BucketOffset",  "BucketCopy",      "ShadeMiss", "ShadeCase",
-                                       "Compose"};
-    const auto number = static_cast<std::uint32_t>(role);
-    if (number == 0 || number > kNames.size()) {
-        return "role " + std::to_string(number);
-    }
-    return kNames[number - 1];
-}
-
 namespace {
 
-using package::ModuleRole;
-
-constexpr ModuleRole kSharedRoles[] = {ModuleRole::GBufferVertex, ModuleRole::GBufferFragment,
-                                       ModuleRole::Lighting,      ModuleRole::ReflectionRays,
-                                       ModuleRole::RayDispatch,   ModuleRole::Compose};
-constexpr ModuleRole kVisibilityRoles[] = {ModuleRole::Trace, ModuleRole::BucketCount,
-                                           ModuleRole::BucketOffset, ModuleRole::BucketCopy,
-                                           ModuleRole::ShadeMiss};
 constexpr std::uint32_t kLastAlphaMode = 2;
 constexpr std::uint32_t kLastWrap = 2;
 
@@ -46,24 +26,28 @@ std::string_view text(const Package::State& state, package::StringRef ref) {
     return {state.strings.data() + ref.offset, ref.length};
 }
 
-Status checkModuleEntries(const Package::State& state, const std::string& where) {
-    std::set<std::tuple<ModuleRole, std::uint32_t>> seen;
+std::string describe(const package::ModuleKey& key) {
+    const package::RoleInfo* const info = package::findRole(key.role);
+    if (info == nullptr) {
+        return "of the unknown role " + std::to_string(static_cast<std::uint32_t>(key.role));
+    }
+    std::string name(info->name);
+    if (info->repeated != package::Repeated::Once) {
+        name.append(" ").append(std::to_string(key.index));
+    }
+    if (key.tracer == package::kTracerRayPipeline) {
+        name.append(" of the ray pipeline");
+    }
+    return name;
+}
+
+Status checkFiles(const Package::State& state, const std::string& where) {
     std::map<std::string_view, std::tuple<std::uint64_t, std::uint64_t>> files;
     for (const package::ModuleEntry& module : state.modules) {
-        const std::string name = moduleRoleName(module.role);
-        if (module.role < ModuleRole::GBufferVertex || module.role > ModuleRole::Compose) {
-            return altered(where, "a module has the unknown " + name);
-        }
         if (!inStrings(state, module.file)) {
-            return altered(where, "the file name of module " + name + " is out of range");
-        }
-        const bool isCase = module.role == ModuleRole::ShadeCase;
-        if (isCase ? module.shaderId >= state.header.caseCount : module.shaderId != 0) {
-            return altered(where, "module " + name + " has shader ID " + std::to_string(module.shaderId) +
-                                      " of " + std::to_string(state.header.caseCount));
-        }
-        if (!seen.emplace(module.role, module.shaderId).second) {
-            return altered(where, "module " + name + " is there twice");
+            return altered(where, "the file name of module " +
+                                      describe({module.role, module.index, module.tracer}) +
+                                      " is out of range");
         }
         const std::tuple contents(module.bytes, module.hash);
         if (files.emplace(text(state, module.file), contents).first->second != contents) {
@@ -73,39 +57,50 @@ Status checkModuleEntries(const Package::State& state, const std::string& where)
     return okStatus();
 }
 
-// The strategy bits say what the modules can do, no more and no less.
-Status checkStrategies(const Package::State& state, const std::string& where) {
-    const auto has = [&](ModuleRole role, std::uint32_t shaderId = 0) {
-        return std::ranges::any_of(state.modules, [&](const package::ModuleEntry& module) {
-            return module.role == role && module.shaderId == shaderId;
-        });
+// The header says what the modules can do, no more and no less.
+Status checkModules(const Package::State& state, const std::string& where) {
+    std::set<package::ModuleKey> present;
+    for (const package::ModuleEntry& module : state.modules) {
+        const package::ModuleKey key{module.role, module.index, module.tracer};
+        if (!present.insert(key).second) {
+            return altered(where, "module " + describe(key) + " is there twice");
+        }
+    }
+    const std::vector<package::ModuleKey> required = package::requiredModules(shapeOf(state.header));
+    for (const package::ModuleKey& key : required) {
+        if (present.erase(key) == 0) {
+            return altered(where, "the package lacks its module " + describe(key));
+        }
+    }
+    if (!present.empty()) {
+        return altered(where, "there is a module " + describe(*present.begin()) +
+                                  ", which the package's settings do not call for");
+    }
+    return checkFiles(state, where);
+}
+
+Status checkHeader(const Package::State& state, const std::string& where) {
+    const package::PackageHeader& header = state.header;
+    const auto outside = [&](const char* what, std::uint32_t value) {
+        return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
     };
-    const std::uint32_t strategies = state.header.strategies;
-    constexpr std::uint32_t kKnown = package::kStrategyUber | package::kStrategyVisibility;
-    if (strategies == 0 || (strategies & ~kKnown) != 0) {
-        return altered(where, "the strategy bits " + std::to_string(strategies) + " are unknown");
+    if (header.strategies == 0 || header.strategies > package::kAllStrategies) {
+        return outside("the set of strategies", header.strategies);
     }
-    for (const ModuleRole role : kSharedRoles) {
-        if (!has(role)) {
-            return altered(where, "the package lacks its module " + moduleRoleName(role));
-        }
+    if (header.tracers == 0 || header.tracers > package::kAllTracers) {
+        return outside("the set of tracers", header.tracers);
     }
-    if (has(ModuleRole::UberShade) != ((strategies & package::kStrategyUber) != 0)) {
-        return altered(where, "the modules do not agree with the strategy uber");
+    if (header.alphaTested > 1) {
+        return outside("the alpha policy", header.alphaTested);
     }
-    const bool visibility = (strategies & package::kStrategyVisibility) != 0;
-    for (const ModuleRole role : kVisibilityRoles) {
-        if (has(role) != visibility) {
-            return altered(where,
-                           "module " + moduleRoleName(role) + " does not agree with the strategy visibility");
-        }
+    if (header.shadows > package::ShadowPlacement::Deferred) {
+        return outside("the placement of shadow rays", static_cast<std::uint32_t>(header.shadows));
     }
-    const auto shadeCases = static_cast<std::size_t>(
-        std::ranges::count(state.modules, ModuleRole::ShadeCase, &package::ModuleEntry::role));
-    // IDs are unique and below the count by now: as many modules as cases is one for each.
-    if (shadeCases != (visibility ? state.header.caseCount : 0)) {
-        return altered(where, "there are " + std::to_string(shadeCases) + " shading modules for " +
-                                  std::to_string(state.header.caseCount) + " cases");
+    if (header.hitRecord > package::HitRecordFormat::Packed) {
+        return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
+    }
+    if (header.environmentMap > 1) {
+        return outside("the kind of sky", header.environmentMap);
     }
     return okStatus();
 }
@@ -200,12 +195,12 @@ Status checkTextures(const Package::State& state, const std::string& where) {
 
 }  // namespace
 
+package::PackageShape shapeOf(const package::PackageHeader& header) {
+    return {header.strategies, header.tracers, header.shadows, header.alphaTested != 0, header.caseCount};
+}
+
 Status checkTables(const Package::State& state, const std::string& where) {
-    if (state.header.alphaTested > 1) {
-        return altered(where, "the alpha policy " + std::to_string(state.header.alphaTested) + " is unknown");
-    }
-    for (const auto check :
-         {checkCases, checkModuleEntries, checkStrategies, checkPrimitives, checkTextures}) {
+    for (const auto check : {checkHeader, checkCases, checkModules, checkPrimitives, checkTextures}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

@@ -4,6 +4,7 @@
 #include "interop/scene.h"
 
 #include <glint/package.h>
+#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>
@@ -31,8 +32,7 @@ struct Package::State {
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };
 
-// "Trace", "ShadeCase"; "role 99" for a value that this version does not know.
-std::string moduleRoleName(package::ModuleRole role);
+package::PackageShape shapeOf(const package::PackageHeader& header);
 
 // Reads the header, the section table and the spans out of state.tables. `where` is the file's name.
 // Errors: "package-foreign" (no package), "package-version", "package-truncated", "package-altered".

@@ -104,6 +104,11 @@ private:
         vk_.CmdFillBuffer(commands_, state_.frame.counters.handle.get(), 0,
                           starts ? VK_WHOLE_SIZE : gpu::kCounterNonFinite * sizeof(std::uint32_t), 0);
         vk_.CmdFillBuffer(commands_, state_.frame.buckets.handle.get(), 0, VK_WHOLE_SIZE, 0);
+        if (state_.choice.strategy == package::kStrategySortedUber) {
+            // Slots between buckets hold no hit.
+            vk_.CmdFillBuffer(commands_, state_.frame.orderedHits.handle.get(), 0, VK_WHOLE_SIZE,
+                              gpu::kNoHit);
+        }
         if (!frame.reflections) {
             const VkClearColorValue black{};
             const VkImageSubresourceRange range = wholeImage();
@@ -160,14 +165,18 @@ private:
         endPass();
     }
 
-    void bindCompute(VkPipeline pipeline) {
-        vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    const PassPipeline& pass(ModuleRole role) const {
+        return state_.pipelines.passes.at(role);
+    }
+
+    void bindPass(const PassPipeline& pass) {
+        vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline);
         push();
     }
 
     void dispatchPixels(const std::string& name, ModuleRole role) {
         beginPass(name);
-        bindCompute(state_.pipelines.passes.at(role));
+        bindPass(pass(role));
         constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
         vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
                         (state_.size.height + kTile - 1) / kTile, 1);
@@ -176,48 +185,75 @@ private:
 
     void dispatchOnce(const std::string& name, ModuleRole role) {
         beginPass(name);
-        bindCompute(state_.pipelines.passes.at(role));
+        bindPass(pass(role));
         vk_.CmdDispatch(commands_, 1, 1, 1);
         endPass();
         barrier(kComputeToCompute);
     }
 
-    void dispatchRays(const std::string& name, ModuleRole role) {
+    // Over a list whose length the device knows: entry `index` of the arguments.
+    void dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,
+                      std::uint32_t index) {
         beginPass(name);
-        bindCompute(state_.pipelines.passes.at(role));
-        vk_.CmdDispatchIndirect(commands_, state_.frame.rayDispatch.handle.get(), 0);
+        bindPass(pass);
+        vk_.CmdDispatchIndirect(commands_, arguments.handle.get(), index * sizeof(gpu::DispatchArguments));
         endPass();
+    }
+
+    void dispatchRays(const std::string& name, ModuleRole role) {
+        dispatchList(name, pass(role), state_.frame.rayDispatch, 0);
         barrier(kComputeToCompute);
     }
 
-    void dispatchBucket(const std::string& name, VkPipeline pipeline, std::uint32_t bucket) {
-        beginPass(name);
-        pushed_.bucket = bucket;
-        bindCompute(pipeline);
-        vk_.CmdDispatchIndirect(commands_, state_.frame.bucketDispatch.handle.get(),
-                                bucket * sizeof(gpu::DispatchArguments));
-        endPass();
+    void recordOrder() {
+        dispatchRays("trace", ModuleRole::Trace);
+        dispatchRays("count", ModuleRole::BucketCount);
+        dispatchOnce("offset", ModuleRole::BucketOffset);
+        dispatchRays("copy", ModuleRole::BucketCopy);
+        if (state_.choice.checksOrder) {
+            dispatchRays("check order", ModuleRole::OrderCheck);
+        }
+    }
+
+    void recordBuckets() {
+        // Buckets write different pixels: they need no order among themselves.
+        const Buffer& arguments = state_.frame.bucketDispatch;
+        pushed_.bucket = 0;
+        dispatchList("shade miss", pass(ModuleRole::ShadeMiss), arguments, 0);
+        for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
+            pushed_.bucket = 1 + shaderId;
+            dispatchList("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId], arguments,
+                         1 + shaderId);
+        }
+        barrier(kComputeToCompute);
     }
 
     void recordReflections() {
         dispatchPixels("reflection rays", ModuleRole::ReflectionRays);
         barrier(kComputeToCompute);
         dispatchOnce("ray dispatch", ModuleRole::RayDispatch);
-        if (state_.strategy == package::kStrategyUber) {
-            dispatchRays("uber", ModuleRole::UberShade);
-            return;
+        switch (state_.choice.strategy) {
+            case package::kStrategyUber:
+                dispatchRays("uber", ModuleRole::UberShade);
+                break;
+            case package::kStrategySortedUber:
+                recordOrder();
+                dispatchList("sorted uber", pass(ModuleRole::SortedShade), state_.frame.bucketDispatch,
+                             state_.size.bucketCount);
+                barrier(kComputeToCompute);
+                break;
+            case package::kStrategyHitShaders:
+                dispatchRays("hit shaders", ModuleRole::HitTrace);
+                break;
+            default:
+                recordOrder();
+                recordBuckets();
         }
-        dispatchRays("trace", ModuleRole::Trace);
-        dispatchRays("count", ModuleRole::BucketCount);
-        dispatchOnce("offset", ModuleRole::BucketOffset);
-        dispatchRays("copy", ModuleRole::BucketCopy);
-        // Buckets write different pixels: they need no order among themselves.
-        dispatchBucket("shade miss", state_.pipelines.passes.at(ModuleRole::ShadeMiss), 0);
-        for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
-            dispatchBucket("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId],
-                           1 + shaderId);
+        if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
+            dispatchOnce("shadow dispatch", ModuleRole::ShadowDispatch);
+            dispatchList("shadow", pass(ModuleRole::ShadowTrace), state_.frame.shadowDispatch, 0);
+            barrier(kComputeToCompute);
         }
-        barrier(kComputeToCompute);
     }
 
     void copyCounters() {

@@ -76,11 +76,11 @@ Result<VkPipeline> createCompute(Context::State& context, std::span<const std::u
 
 // Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
 Result<VkPipeline> createGBuffer(Context::State& context, const Package& package, Pipelines& pipelines) {
-    Result<UniqueShaderModule> vertex = createModule(context, package.spirv(ModuleRole::GBufferVertex));
+    Result<UniqueShaderModule> vertex = createModule(context, package.spirv({ModuleRole::GBufferVertex}));
     if (!vertex) {
         return vertex.error();
     }
-    Result<UniqueShaderModule> fragment = createModule(context, package.spirv(ModuleRole::GBufferFragment));
+    Result<UniqueShaderModule> fragment = createModule(context, package.spirv({ModuleRole::GBufferFragment}));
     if (!fragment) {
         return fragment.error();
     }
@@ -148,23 +148,32 @@ Result<VkPipeline> createGBuffer(Context::State& context, const Package& package
     return pipeline;
 }
 
-std::vector<ModuleRole> computeRoles(package::Strategy strategy) {
-    std::vector<ModuleRole> roles{ModuleRole::Lighting, ModuleRole::ReflectionRays, ModuleRole::RayDispatch,
-                                  ModuleRole::Compose};
-    if (strategy == package::kStrategyUber) {
-        roles.push_back(ModuleRole::UberShade);
-    } else {
-        roles.insert(roles.end(), {ModuleRole::Trace, ModuleRole::BucketCount, ModuleRole::BucketOffset,
-                                   ModuleRole::BucketCopy, ModuleRole::ShadeMiss});
-    }
-    return roles;
+bool isGraphics(const package::RoleInfo& info) {
+    return info.kind == package::ShaderKind::Vertex || info.kind == package::ShaderKind::Fragment;
 }
 
-Status createCases(Context::State& context, const Package& package, Pipelines& pipelines) {
+// Whether the choice runs a module that its shape has.
+bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const package::ModuleKey& key) {
+    if (info.repeated == package::Repeated::ByOrdering) {
+        return key.index == static_cast<std::uint32_t>(choice.ordering);
+    }
+    return key.role != ModuleRole::OrderCheck || choice.checksOrder;
+}
+
+// Every compute pass and case of the choice.
+Status createComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
+                           Pipelines& pipelines) {
+    package::PackageShape shape = package.shape();
+    shape.strategies = choice.strategy;
+    shape.tracers = choice.tracer;
     // The loader gives entries that name one file the same words.
     std::map<const std::uint32_t*, VkPipeline> byWords;
-    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
-        const std::span<const std::uint32_t> words = package.spirv(ModuleRole::ShadeCase, shaderId);
+    for (const package::ModuleKey& key : package::requiredModules(shape)) {
+        const package::RoleInfo& info = *package::findRole(key.role);
+        if (isGraphics(info) || key.tracer == package::kTracerRayPipeline || !runs(choice, info, key)) {
+            continue;
+        }
+        const std::span<const std::uint32_t> words = package.spirv(key);
         auto known = byWords.find(words.data());
         if (known == byWords.end()) {
             Result<VkPipeline> pipeline = createCompute(context, words, pipelines);
@@ -173,14 +182,21 @@ Status createCases(Context::State& context, const Package& package, Pipelines& p
             }
             known = byWords.emplace(words.data(), *pipeline).first;
         }
-        pipelines.cases.push_back(known->second);
+        PassPipeline pass;
+        pass.pipeline = known->second;
+        if (key.role == ModuleRole::ShadeCase) {
+            pipelines.cases.push_back(pass);
+        } else {
+            pipelines.passes[key.role] = pass;
+        }
     }
     return okStatus();
 }
 
 }  // namespace
 
-Result<Pipelines> createPipelines(Context::State& context, const Package& package, package::Strategy strategy,
+Result<Pipelines> createPipelines(Context::State& context, const Package& package,
+                                  const PipelineChoice& choice,
                                   std::span<const VkDescriptorSetLayout> setLayouts) {
     const auto start = std::chrono::steady_clock::now();
     Pipelines pipelines;
@@ -192,17 +208,8 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
         return gbuffer.error();
     }
     pipelines.gbuffer = *gbuffer;
-    for (const ModuleRole role : computeRoles(strategy)) {
-        Result<VkPipeline> pipeline = createCompute(context, package.spirv(role), pipelines);
-        if (!pipeline) {
-            return pipeline.error();
-        }
-        pipelines.passes[role] = *pipeline;
-    }
-    if (strategy == package::kStrategyVisibility) {
-        if (Status status = createCases(context, package, pipelines); !status) {
-            return status.error();
-        }
+    if (Status status = createComputePasses(context, package, choice, pipelines); !status) {
+        return status.error();
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();

@@ -1,5 +1,6 @@
 // Renderer: creation, frame constants, results.
 #include "camera.h"
+#include "renderer_choice.h"
 #include "renderer_state.h"
 #include "vulkan_error.h"
 
@@ -29,8 +30,16 @@ Status checkFrame(const FrameOptions& frame) {
                              "give three finite numbers of at least 0");
         }
     }
-    if (!std::isfinite(frame.maxReflectionRoughness)) {
-        return makeError("frame-options", "", "maxReflectionRoughness is not finite", "use 0 to 1");
+    if (!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness)) {
+        return makeError("frame-options", "", "a limit of roughness is not finite", "use 0 to 1");
+    }
+    if (!(frame.maxSampleRadiance > 0.0F)) {
+        return makeError("frame-options", "", "maxSampleRadiance is not above 0",
+                         "use a luminance, or infinity for no limit");
+    }
+    if (!std::isfinite(frame.screenThickness) || frame.screenThickness < 0.0F) {
+        return makeError("frame-options", "", "screenThickness is negative or not finite",
+                         "use a share of the distance, such as 0.02");
     }
     return okStatus();
 }
@@ -43,7 +52,13 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.seed = options.seed;
     constants.lightCount = state.scene.lightCount;
     constants.bucketCount = state.size.bucketCount;
+    constants.bucketAlignment = state.size.bucketAlignment;
+    constants.mirrorRoughness = options.mirrorRoughness;
     constants.maxReflectionRoughness = options.reflections ? options.maxReflectionRoughness : kNoReflections;
+    constants.maxSampleRadiance = options.maxSampleRadiance;
+    constants.binning = static_cast<std::uint32_t>(options.binning);
+    constants.screenSteps = options.screenSteps;
+    constants.screenThickness = options.screenThickness;
     constants.skyZenith = toVec3(options.sky.zenith);
     constants.skyHorizon = toVec3(options.sky.horizon);
     constants.skyGround = toVec3(options.sky.ground);
@@ -54,6 +69,9 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     const FrameResources& frame = state.frame;
     constants.rays = frame.rays.address;
     constants.hits = frame.hits.address;
+    constants.packedHits = frame.hits.address;
+    constants.shadows = frame.shadows.address;
+    constants.shadowDispatch = frame.shadowDispatch.address;
     constants.orderedHits = frame.orderedHits.address;
     constants.buckets = frame.buckets.address;
     constants.rayDispatch = frame.rayDispatch.address;
@@ -65,18 +83,6 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
 Diagnostic notRecorded() {
     return makeError("frame-not-recorded", "", "no frame has been recorded",
                      "record a frame, submit it and wait for it first");
-}
-
-Status checkStrategy(const Package& package, package::Strategy strategy) {
-    const bool known = strategy == package::kStrategyUber || strategy == package::kStrategyVisibility;
-    if (known && package.supports(strategy)) {
-        return okStatus();
-    }
-    const char* name = strategy == package::kStrategyUber ? "uber" : "visibility";
-    return makeError("package-strategy", "",
-                     known ? std::string("the package has no modules for the strategy ") + name
-                           : std::string("RendererOptions::strategy is not one strategy"),
-                     "compile the package with that --strategy, or render with the one that it has");
 }
 
 // The accumulated image, into memory that the host reads.
@@ -123,11 +129,11 @@ Result<LinearImage> readBack(Renderer::State& state, CommandRunner& runner) {
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
                                                    const RendererOptions& options) {
     Context::State& contextState = context.state();
-    if (Status status = checkStrategy(package, options.strategy); !status) {
-        return status.error();
+    Result<PipelineChoice> choice = choosePipelines(contextState, package, options);
+    if (!choice) {
+        return choice.error();
     }
-    const bool ordered = options.strategy == package::kStrategyVisibility;
-    const FrameSize size{options.width, options.height, package.bucketCount(), ordered};
+    const FrameSize size = frameSize(package, *choice, options);
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
     }
@@ -136,7 +142,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return timer.error();
     }
     auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
-    state->strategy = options.strategy;
+    state->choice = *choice;
     state->size = size;
     for (const package::CaseEntry& entry : package.cases()) {
         state->caseNames.emplace_back(package.string(entry.name));
@@ -145,7 +151,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return status.error();
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
-    Result<Pipelines> pipelines = createPipelines(contextState, package, options.strategy, layouts);
+    Result<Pipelines> pipelines = createPipelines(contextState, package, *choice, layouts);
     if (!pipelines) {
         return pipelines.error();
     }
@@ -175,7 +181,8 @@ VkImageView Renderer::outputView() const {
     return state_->frame.images[gpu::kBindingAccumulated].view.get();
 }
 
-Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount) {
+Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount,
+                                     const std::function<Status()>& afterSample) {
     if (sampleCount == 0) {
         return makeError("frame-options", "", "0 samples make no image", "render at least one sample");
     }
@@ -193,6 +200,9 @@ Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sa
             return status.error();
         }
         if (Status status = runner->submitAndWait(); !status) {
+            return status.error();
+        }
+        if (Status status = afterSample ? afterSample() : okStatus(); !status) {
             return status.error();
         }
     }
@@ -227,6 +237,10 @@ Result<FrameCounters> Renderer::counters() {
     counters.skippedSky = values[gpu::kCounterSkippedSky];
     counters.skippedRough = values[gpu::kCounterSkippedRough];
     counters.skippedUnlit = values[gpu::kCounterSkippedUnlit];
+    counters.skippedBlack = values[gpu::kCounterSkippedBlack];
+    counters.screenHits = values[gpu::kCounterScreenHits];
+    counters.shadowRays = values[gpu::kCounterShadowRays];
+    counters.orderErrors = values[gpu::kCounterOrderErrors];
     counters.unknownShader = values[gpu::kCounterUnknownShader];
     counters.nonFinite = values[gpu::kCounterNonFinite];
     if (state_->size.ordered) {

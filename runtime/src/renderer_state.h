@@ -22,7 +22,7 @@ struct Renderer::State {
 
     Context::State& context;
     GpuScene::State& scene;
-    package::Strategy strategy = package::kStrategyVisibility;
+    PipelineChoice choice;
     FrameSize size;
     std::vector<std::string> caseNames;
     Timer timer;
@@ -34,7 +34,7 @@ struct Renderer::State {
 };
 
 // Passes of a frame at most: the fixed ones of the longer strategy, and one a case.
-inline constexpr std::uint32_t kMaxFixedPasses = 16;
+inline constexpr std::uint32_t kMaxFixedPasses = 24;
 
 // Records all passes of a frame whose constants are in state.frame.constants.
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame);

@@ -51,6 +51,12 @@ VkFilter filter(std::uint32_t linear) {
     return linear != 0 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
 }
 
+// Where a file asks for nearest texels, or for no mips, it gets those.
+float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry) {
+    const bool isTrilinear = entry.minification != 0 && entry.mipmapped != 0 && entry.mip != 0;
+    return isTrilinear ? context.limits.samplerAnisotropy : 1.0F;
+}
+
 Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry) {
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
@@ -67,6 +73,8 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
         info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
         info.maxLod = 0.25F;
     }
+    info.maxAnisotropy = anisotropyOf(context, entry);
+    info.anisotropyEnable = info.maxAnisotropy > 1.0F ? VK_TRUE : VK_FALSE;
     VkSampler sampler = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateSampler(context.handles.device, &info, nullptr, &sampler);
     if (result != VK_SUCCESS) {
@@ -116,16 +124,20 @@ std::uint32_t countNarrowed(const Context::State& context, std::span<const packa
         }));
 }
 
-std::vector<gpu::MaterialRecord> materialsWithSizes(const Package& package,
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const Package& package,
                                                     std::span<const ImageView> images) {
     std::vector<gpu::MaterialRecord> materials(package.materials().begin(), package.materials().end());
     const std::span<const package::TextureEntry> textures = package.textures();
+    const std::span<const package::SamplerEntry> samplers = package.samplers();
     for (gpu::MaterialRecord& material : materials) {
         for (gpu::TextureRecord& record : material.textures) {
             if (record.textureIndex < textures.size()) {
                 const ImageView& image = images[textures[record.textureIndex].image];
                 record.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
             }
+            record.anisotropy = record.samplerIndex < samplers.size()
+                                    ? anisotropyOf(context, samplers[record.samplerIndex])
+                                    : 1.0F;
         }
     }
     return materials;

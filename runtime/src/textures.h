@@ -24,10 +24,10 @@ Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryP
 std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
                             std::span<const ImageView> images);
 
-// The package's materials with the sizes of their textures, which level of detail needs: a size query in a
-// shader is a fetch of its own, and lavapipe answers it for one lane where the index differs. Requires an
-// image for each texture.
-std::vector<gpu::MaterialRecord> materialsWithSizes(const Package& package,
+// The package's materials with the sizes of their textures and the anisotropy of their samplers, which
+// texture gradients need: a size query in a shader is a fetch of its own, and lavapipe answers it for one
+// lane where the index differs. Requires an image for each texture.
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const Package& package,
                                                     std::span<const ImageView> images);
 
 // One sampler a SamplerEntry; at least one. Error "scene-samplers".

@@ -112,7 +112,9 @@ bool seenFromWithin(Bsdf b, Features features) {
 float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) {
     if (seenFromWithin(b, features)) {
         // Total reflection is no part of E: what the smooth interface lets through, both ways.
-        return interfacePassed(b.f0, b.f90, b.view.z, b.eta.y) * interfacePassed(b.f0, b.f90, lightCosine, b.eta.y);
+        vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
+        vec2 light2 = exactSquare(vec2(lightCosine, 0.0));
+        return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
     }
     if (GLINT_ENERGY_COMPENSATION == 0) {
         return 1.0 - fresnel;
@@ -125,15 +127,20 @@ float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) 
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 
-// Reflected by the base, times n·l; l.z > 0.
-vec3 baseReflection(Bsdf b, Features features, vec3 l) {
+// Fresnel of the facet between view and light, and its normal.
+vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
     // |v + l| is twice the cosine of v and h, and keeps its digits where facets are seen from the side.
     vec3 sum = b.view + l;
     float size = sqrt(dot(sum, sum));
-    vec3 h = sum / size;
-    float cosine = min(0.5 * size, 1.0);
-    bool inside = seenFromWithin(b, features);
-    vec3 fresnel = inside ? fresnelInterface(b.f0, b.f90, cosine, b.eta.y) : fresnelSchlick(b.f0, b.f90, cosine);
+    h = sum / size;
+    return seenFromWithin(b, features) ? fresnelInterface(b.f0, b.f90, halfCosine2(b.view, l), b.eta.y)
+                                       : fresnelSchlick(b.f0, b.f90, min(0.5 * size, 1.0));
+}
+
+// Reflected by the base, times n·l; l.z > 0.
+vec3 baseReflection(Bsdf b, Features features, vec3 l) {
+    vec3 h;
+    vec3 fresnel = facetFresnel(b, features, l, h);
     vec3 specular = fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
     if (GLINT_ENERGY_COMPENSATION != 0) {
         float lightLoss = lobeAlbedo(b, features, l.z).x;
@@ -151,13 +158,13 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     if (passesStraight(features, eta)) {
         // Nothing bends, whatever the facets: as sharp as lobes get, with the view's own Fresnel.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
-        passed = interfacePassed(b.f0, b.f90, b.view.z, 1.0);
+        passed = schlickPassed(b.f0, b.f90, b.view.z);
     } else if (hasLobe(features, GLINT_VOLUME)) {
         lobe = refractedTransmission(b.view, l, b.alpha, eta, cosine);
-        passed = interfacePassed(b.f0, b.f90, cosine, 1.0);
+        passed = schlickPassed(b.f0, b.f90, cosine);
     } else {
         lobe = thinTransmission(b.view, l, b.alpha, cosine);
-        passed = interfacePassed(b.f0, b.f90, cosine, 1.0);
+        passed = schlickPassed(b.f0, b.f90, cosine);
     }
     return lobe * passed;
 }

@@ -21,12 +21,22 @@ float sumError(float a, float b, float sum) {
     return error;
 }
 
-// a + b c as if rounded once, or nearly so, where the sum cancels.
-float addProduct(float a, float b, float c) {
+// a + b as a float and its error.
+vec2 exactSum(float a, float b) {
+    precise float sum = a + b;
+    return vec2(sum, sumError(a, b, sum));
+}
+
+// a + b c as a float and its error.
+vec2 exactAddProduct(float a, float b, float c) {
     precise float product = b * c;
     precise float sum = a + product;
-    precise float result = sum + (sumError(a, product, sum) + productError(b, c, product));
-    return result;
+    return exactSum(sum, sumError(a, product, sum) + productError(b, c, product));
+}
+
+// a + b c as if rounded once, or nearly so, where the sum cancels.
+float addProduct(float a, float b, float c) {
+    return exactAddProduct(a, b, c).x;
 }
 
 // a b - c d with full relative precision: Kahan's difference of products.
@@ -37,19 +47,24 @@ float differenceOfProducts(float a, float b, float c, float d) {
     return result;
 }
 
-// Squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law; negative beyond the
-// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest.
-float refractedCosine2(float cosine, float eta) {
-    precise float cosine2 = cosine * cosine;
-    precise float eta2 = eta * eta;
-    precise float sum = cosine2 + eta2;
-    precise float errors = sumError(cosine2, eta2, sum) + productError(cosine, cosine, cosine2) +
-                           productError(eta, eta, eta2);
-    return ((sum - 1.0) + errors) / eta2;
+// The square of x.x + x.y, the second a rounding error of the first, as a float and its error.
+vec2 exactSquare(vec2 x) {
+    precise float square = x.x * x.x;
+    return vec2(square, productError(x.x, x.x, square) + 2.0 * x.x * x.y);
 }
 
-// dot(a, b), accurate where it nears 0.
-float accurateDot(vec3 a, vec3 b) {
+// Squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law; negative beyond the
+// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest: so much
+// that the squared cosine of the near side comes with its error.
+float refractedCosine2(vec2 cosine2, float eta) {
+    vec2 eta2 = exactSquare(vec2(eta, 0.0));
+    vec2 sum = exactSum(cosine2.x, eta2.x);
+    precise float result = ((sum.x - 1.0) + (sum.y + cosine2.y + eta2.y)) / eta2.x;
+    return result;
+}
+
+// dot(a, b) as a float and its error.
+vec2 exactDot(vec3 a, vec3 b) {
     precise float x = a.x * b.x;
     precise float y = a.y * b.y;
     precise float z = a.z * b.z;
@@ -57,7 +72,25 @@ float accurateDot(vec3 a, vec3 b) {
     precise float sum = xy + z;
     precise float errors = sumError(x, y, xy) + sumError(xy, z, sum) + productError(a.x, b.x, x) +
                            productError(a.y, b.y, y) + productError(a.z, b.z, z);
-    return sum + errors;
+    return exactSum(sum, errors);
+}
+
+// dot(a, b), accurate where it nears 0.
+float accurateDot(vec3 a, vec3 b) {
+    return exactDot(a, b).x;
+}
+
+// The squared cosine of a, or of b, and their half vector, with its error: a quarter of |a + b|². a and b are unit.
+vec2 halfCosine2(vec3 a, vec3 b) {
+    vec2 x = exactSum(a.x, b.x);
+    vec2 y = exactSum(a.y, b.y);
+    vec2 z = exactSum(a.z, b.z);
+    vec2 x2 = exactSquare(x);
+    vec2 y2 = exactSquare(y);
+    vec2 z2 = exactSquare(z);
+    vec2 xy = exactSum(x2.x, y2.x);
+    vec2 sum = exactSum(xy.x, z2.x);
+    return 0.25 * exactSum(sum.x, sum.y + xy.y + x2.y + y2.y + z2.y);
 }
 
 // cross(n, a + b), accurate where a + b nears n: the sine between a normal and an unnormalised half vector.

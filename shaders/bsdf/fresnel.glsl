@@ -35,27 +35,30 @@ vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
-// The same at an interface of relative index eta = n_t / n_i. Where light leaves the denser side Schlick's cosine is
+// The same at an interface of relative index eta = n_t / n_i, of the squared cosine and its error. Where light leaves the denser side Schlick's cosine is
 // that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and beyond the critical angle all of it
 // is reflected, whatever f90.
-vec3 fresnelInterface(vec3 f0, float f90, float cosine, float eta) {
+vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
-        return fresnelSchlick(f0, f90, cosine);
+        return fresnelSchlick(f0, f90, sqrt(cosine2.x));
     }
-    float refracted2 = refractedCosine2(cosine, eta);
+    float refracted2 = refractedCosine2(cosine2, eta);
     return refracted2 > 0.0 ? fresnelSchlick(f0, f90, sqrt(refracted2)) : vec3(1.0);
 }
 
-// What such an interface lets through of the channel that it reflects most: 1 - largest(fresnelInterface()), with its
-// digits where little passes. f90 is at least f0.
-float interfacePassed(vec3 f0, float f90, float cosine, float eta) {
-    if (eta < 1.0) {
-        cosine = sqrt(max(refractedCosine2(cosine, eta), 0.0));
-        if (cosine <= 0.0) {
-            return 0.0;
-        }
-    }
+// What a surface lets through of the channel that it reflects most: 1 - largest(fresnelSchlick()), with its digits where
+// little passes. f90 is at least f0.
+float schlickPassed(vec3 f0, float f90, float cosine) {
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
+}
+
+// The same of an interface: 1 - largest(fresnelInterface()).
+float interfacePassed(vec3 f0, float f90, vec2 cosine2, float eta) {
+    if (eta >= 1.0) {
+        return schlickPassed(f0, f90, sqrt(cosine2.x));
+    }
+    float refracted2 = refractedCosine2(cosine2, eta);
+    return refracted2 > 0.0 ? schlickPassed(f0, f90, sqrt(refracted2)) : 0.0;
 }
 
 // The f0 with which Schlick's approximation gives `reflectance` at `cosine`. Within 1e-4 of grazing the division says

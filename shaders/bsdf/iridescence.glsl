@@ -26,7 +26,7 @@ vec3 filmSensitivity(float pathDifference, vec3 turns) {
 // stands unrolled: two orders of interference.
 vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness) {
     float ior = mix(1.0, filmIor, smoothstep(0.0, 0.03, thickness));
-    float refracted2 = refractedCosine2(cosine, ior);
+    float refracted2 = refractedCosine2(exactSquare(vec2(cosine, 0.0)), ior);
     if (refracted2 <= 0.0) {
         return vec3(1.0);
     }

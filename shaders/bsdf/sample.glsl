@@ -55,22 +55,23 @@ LobeChances lobeChances(Bsdf b, Features features) {
                        : LobeChances(0.0, 1.0, 0.0, 0.0);
 }
 
-// Chances that a facet reflects (x) and that it lets through (y), seen under `cosine`.
-vec2 facetChances(Bsdf b, Features features, float cosine, float eta) {
+// Chances that a facet reflects (x) and that it lets through (y), by the squared cosine under which it is seen, with the
+// error of the square.
+vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return vec2(1.0, 0.0);
     }
     bool inside = hasLobe(features, GLINT_VOLUME) && eta < 1.0 && refracts(eta);
-    vec3 fresnel = inside ? fresnelInterface(b.f0, b.f90, cosine, eta) : fresnelSchlick(b.f0, b.f90, cosine);
-    float reflected = luminance(fresnel);
-    float passed = luminance(b.transmitted) * interfacePassed(b.f0, b.f90, cosine, inside ? eta : 1.0);
+    float apparent = inside ? eta : 1.0;
+    float reflected = luminance(fresnelInterface(b.f0, b.f90, cosine2, apparent));
+    float passed = luminance(b.transmitted) * interfacePassed(b.f0, b.f90, cosine2, apparent);
     float both = reflected + passed;
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
 }
 
-// The cosine under which a facet is seen for facetChances().
-float facetCosine(Bsdf b, Features features, vec3 h, float eta) {
-    return passesStraight(features, eta) ? b.view.z : clamp(dot(b.view, h), 0.0, 1.0);
+// The squared cosine that decides between reflection and passage: of the facet, `facet2`, unless light goes straight on.
+vec2 decidingCosine2(Bsdf b, Features features, vec2 facet2, float eta) {
+    return passesStraight(features, eta) ? exactSquare(vec2(b.view.z, 0.0)) : facet2;
 }
 
 // The index of one of three colours; only dispersion tells them apart.
@@ -88,30 +89,29 @@ float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
 
 // Density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
-    vec3 h;
     if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
         vec3 mirrored = vec3(l.x, l.y, -l.z);
-        h = normalize(b.view + mirrored);
+        vec3 h = normalize(b.view + mirrored);
         vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
-        return facetChances(b, features, facetCosine(b, features, h, eta), eta).y *
+        return facetChances(b, features, decidingCosine2(b, features, halfCosine2(b.view, mirrored), eta), eta).y *
                mirroredPdf(b.view, h, alpha);
     }
-    float spread;
-    if (!refractionHalfVector(b.view, l, eta, h, spread)) {
+    RefractingFacet facet;
+    if (!refractionHalfVector(b.view, l, eta, facet)) {
         return 0.0;
     }
-    float cosine = min(dot(b.view, h), 1.0);
-    return facetChances(b, features, cosine, eta).y * visibleNormalPdf(b.view, h, b.alpha) * spread *
-           -dot(l, h);
+    return facetChances(b, features, exactSquare(vec2(facet.cosineV, 0.0)), eta).y *
+           visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
 }
 
 float microfacetPdf(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
         vec3 h = normalize(b.view + l);
-        float chance = facetChances(b, features, facetCosine(b, features, h, b.eta.y), b.eta.y).x;
+        vec2 facet2 = halfCosine2(b.view, l);
+        float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;
         if (hasLobe(features, GLINT_DISPERSION)) {
-            chance = (facetChances(b, features, facetCosine(b, features, h, b.eta.x), b.eta.x).x + chance +
-                      facetChances(b, features, facetCosine(b, features, h, b.eta.z), b.eta.z).x) / 3.0;
+            chance = (facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.x), b.eta.x).x + chance +
+                      facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.z), b.eta.z).x) / 3.0;
         }
         return chance * mirroredPdf(b.view, h, b.alpha);
     }
@@ -157,24 +157,41 @@ vec3 sampleCosine(vec2 u) {
     return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(1.0 - u.x, 0.0)));
 }
 
+// The mirror image of v by a facet.
+vec3 reflectAbout(vec3 v, vec3 h) {
+    return 2.0 * dot(v, h) * h - v;
+}
+
 // A facet of the base, and where it sends the view: u.z chooses the colour, then between reflection and passage.
 vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u.xy);
     float eta = sampledIndex(b, features, u.z);
     float chooser = hasLobe(features, GLINT_DISPERSION) ? fract(3.0 * u.z) : u.z;
-    vec3 reflected = 2.0 * dot(b.view, h) * h - b.view;
-    if (chooser < facetChances(b, features, facetCosine(b, features, h, eta), eta).x) {
+    vec3 reflected = reflectAbout(b.view, h);
+    vec2 facet2 = exactSquare(exactDot(b.view, h));
+    if (chooser < facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x) {
         return reflected.z > 0.0 ? reflected : vec3(0.0);
     }
     if (passesStraight(features, eta)) {
         h = sampleVisibleNormal(b.view, vec2(kMinAlpha), u.xy);
-        reflected = 2.0 * dot(b.view, h) * h - b.view;
+        reflected = reflectAbout(b.view, h);
     }
     if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
         return reflected.z > 0.0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0.0);
     }
     vec3 refracted;
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
+}
+
+// A direction that the coat reflects the view to; 0 where it points below the base, where the coat has no density.
+vec3 sampleCoat(Bsdf b, vec2 u) {
+    vec3 tangent;
+    vec3 bitangent;
+    buildBasis(b.clearcoatNormal, tangent, bitangent);
+    vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
+    vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u);
+    vec3 l = reflectAbout(b.view, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
+    return l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
 }
 
 // A direction for the prepared view; u is uniform in [0, 1)³.
@@ -189,15 +206,7 @@ BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
     } else if (chooser < chances.microfacets + chances.diffuse + chances.passed) {
         l = sampleCosine(u.xy) * vec3(1.0, 1.0, -1.0);
     } else {
-        vec3 tangent;
-        vec3 bitangent;
-        buildBasis(b.clearcoatNormal, tangent, bitangent);
-        vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
-        vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u.xy);
-        vec3 facet = tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z;
-        l = 2.0 * dot(b.view, facet) * facet - b.view;
-        // Below the coat there is no density of its own.
-        l = l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
+        l = sampleCoat(b, u.xy);
     }
     BsdfSample result = BsdfSample(l, vec3(0.0), 0.0);
     if (l.z == 0.0) {

@@ -11,25 +11,40 @@ bool refracts(float eta) {
 
 // The direction of v's light beyond a facet h: Snell's law. False where all of it is reflected.
 bool refractDirection(vec3 v, vec3 h, float eta, out vec3 l) {
-    float cosine = accurateDot(v, h);
-    float refracted2 = refractedCosine2(cosine, eta);
+    vec2 cosine = exactDot(v, h);
+    float refracted2 = refractedCosine2(exactSquare(cosine), eta);
     if (refracted2 <= 0.0) {
         l = vec3(0.0);
         return false;
     }
-    l = normalize(h * (cosine / eta - sqrt(refracted2)) - v / eta);
+    l = normalize(h * (cosine.x / eta - sqrt(refracted2)) - v / eta);
     return true;
 }
 
-// The facet that sends v's light to l, and eta² / (v·h + eta l·h)², which turns densities of facets into densities of
-// directions by |l·h|. False where no facet does.
-bool refractionHalfVector(vec3 v, vec3 l, float eta, out vec3 h, out float spread) {
-    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface.
-    vec3 sum = vec3(addProduct(v.x, eta, l.x), addProduct(v.y, eta, l.y), addProduct(v.z, eta, l.z));
+// The facet that sends v's light to l, by Snell's law.
+struct RefractingFacet {
+    vec3 h;         // unit
+    float cosineV;  // v·h
+    float cosineL;  // -l·h
+    float spread;   // eta² / (v·h + eta l·h)², which turns densities of facets into densities of directions by |l·h|
+};
+
+// False where no facet does.
+bool refractionHalfVector(vec3 v, vec3 l, float eta, out RefractingFacet facet) {
+    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface, and its products with v
+    // and l where the facet is seen from the side.
+    vec2 x = exactAddProduct(v.x, eta, l.x);
+    vec2 y = exactAddProduct(v.y, eta, l.y);
+    vec2 z = exactAddProduct(v.z, eta, l.z);
+    vec3 sum = vec3(x.x, y.x, z.x);
+    vec3 errors = vec3(x.y, y.y, z.y);
     float squared = dot(sum, sum);
-    h = sum * (inversesqrt(squared) * (sum.z < 0.0 ? -1.0 : 1.0));
-    spread = eta * eta / squared;
-    return squared > 0.0 && dot(v, h) > 0.0 && dot(l, h) < 0.0;
+    float scale = inversesqrt(squared) * (sum.z < 0.0 ? -1.0 : 1.0);
+    facet.h = sum * scale;
+    facet.cosineV = min((accurateDot(v, sum) + dot(v, errors)) * scale, 1.0);
+    facet.cosineL = min(-(accurateDot(l, sum) + dot(l, errors)) * scale, 1.0);
+    facet.spread = eta * eta / squared;
+    return squared > 0.0 && facet.cosineV > 0.0 && facet.cosineL > 0.0;
 }
 
 // Transmitted by a thin wall: reflection, mirrored to the far side (KHR_materials_transmission). Times |n·l|, without
@@ -48,16 +63,14 @@ float thinTransmission(vec3 v, vec3 l, vec2 alpha, out float cosine) {
 // the compression of radiance by eta² is left out, as what comes in goes out again. cosine: to the facet, on the less
 // dense side, which is that of Schlick's approximation.
 float refractedTransmission(vec3 v, vec3 l, vec2 alpha, float eta, out float cosine) {
-    vec3 h;
-    float spread;
+    RefractingFacet facet;
     cosine = 1.0;
-    if (!refractionHalfVector(v, l, eta, h, spread)) {
+    if (!refractionHalfVector(v, l, eta, facet)) {
         return 0.0;
     }
-    float cosineV = min(dot(v, h), 1.0);
-    float cosineL = min(-dot(l, h), 1.0);
-    cosine = eta < 1.0 ? cosineL : cosineV;
-    return 4.0 * ggxVisibility(l, v, alpha) * ggxDistribution(h, alpha) * cosineV * cosineL * spread * -l.z;
+    cosine = eta < 1.0 ? facet.cosineL : facet.cosineV;
+    return 4.0 * ggxVisibility(l, v, alpha) * ggxDistribution(facet.h, alpha) * facet.cosineV * facet.cosineL *
+           facet.spread * -l.z;
 }
 
 // What a length of absorbing medium lets through (Beer and Lambert): KHR_materials_volume. absorption is per metre.

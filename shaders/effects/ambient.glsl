@@ -43,12 +43,14 @@ vec3 ambientTransmission(Surface surface, Features features) {
     return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
 }
 
-// mirrored and coated: shares of the sky that base and coat reflect; a traced ray brings the rest.
+// mirrored and coated: shares of the sky that base and coat reflect at the first bounce; a traced ray brings the rest.
 vec3 ambientLight(Surface surface, Features features, vec3 view, float mirrored, float coated) {
     vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    vec3 reflected = albedo - first * (1.0 - mirrored);
     float below = max(1.0 - largest(albedo), 0.0);
     vec3 front = surface.bsdf.diffuse * below * skyIrradianceOverPi(surface.normal) +
-                 albedo * mirrored * skyAround(ambientMirror(surface, features, view), surface.roughness);
+                 reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);
     vec3 back = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION)) {
         back += ambientTransmission(surface, features);

@@ -1,11 +1,10 @@
-// The reflection effect: which surfaces trace a ray, and which ray.
+// The reflection effect: which surfaces trace a ray, which ray, and what it counts.
+#include "bsdf/sample.glsl"
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
+#include "hit/hit.glsl"
+#include "hit/sequence.glsl"
 #include "hit/surface.glsl"
-
-// Roughness of a pixel that reflects nothing: no surface, or an unlit one.
-const float kNoReflection = -1.0;
-const float kUnlitSurface = -2.0;
 
 // How much of a surface's reflection its ray brings; the sky stands in for the rest. Falls to 0 over the last fifth
 // below the roughness limit, so that no edge shows where a texture crosses it; at the limit a ray is still worth sending.
@@ -18,37 +17,27 @@ float tracedShare(float roughness) {
     return 1.0 - fade * fade * (3.0 - 2.0 * fade);
 }
 
-// What a pixel's one ray brings: the reflection of the base, of the coat, or of both where their normals agree.
-struct TracedLobe {
-    vec3 normal;
-    float roughness;
-    vec3 weight;
-    float base;  // share of the base's reflection that the ray brings
-    float coat;
+// What the rays of a surface bring, on average over its samples.
+struct TracedLobes {
+    float base;  // share of the base's reflection at the first bounce; the sky stands in for the rest
+    float coat;  // likewise
 };
 
-TracedLobe tracedLobe(Surface surface, Features features) {
-    float base = tracedShare(surface.roughness);
-    TracedLobe lobe = TracedLobe(surface.normal, surface.roughness, vec3(0.0), base, 0.0);
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        float coatRoughness = sqrt(surface.bsdf.clearcoatAlpha);
-        float coat = tracedShare(coatRoughness);
-        float coatWeight = coat * coatReflectance(surface, features);
-        bool together = surface.bsdf.clearcoatNormal.z > 0.99999;  // a quarter of a degree
-        bool coatOnly = !together && coatWeight > base * luminance(baseReflectance(surface, features));
-        lobe.coat = together || coatOnly ? coat : 0.0;
-        if (coatOnly) {
-            lobe.base = 0.0;
-            lobe.normal = toWorld(surface, surface.bsdf.clearcoatNormal);
-            lobe.roughness = coatRoughness;
-        } else if (together) {
-            lobe.roughness = min(surface.roughness, coatRoughness);
-        }
-        lobe.weight = vec3(lobe.coat * coatReflectance(surface, features));
-    }
-    lobe.weight += lobe.base * baseReflectance(surface, features);
-    return lobe;
+TracedLobes tracedLobes(Surface surface, Features features) {
+    float coat = hasLobe(features, GLINT_CLEARCOAT) ? tracedShare(sqrt(surface.bsdf.clearcoatAlpha)) : 0.0;
+    return TracedLobes(tracedShare(surface.roughness), coat);
 }
+
+bool isMirror(float roughness) {
+    return roughness <= GLINT_FRAME.mirrorRoughness;
+}
+
+// One ray of a surface: the radiance that it finds counts `weight` times.
+struct ReflectionSample {
+    vec3 direction;  // world, unit
+    vec3 weight;
+    uint outcome;    // kRaySent, or why there is no ray
+};
 
 // The mirror direction about the shading normal. Where that points below the geometric surface it is lifted to leave
 // it, by at least 1e-3 (a tenth of a degree), so that no ray starts into its own surface.
@@ -56,4 +45,103 @@ vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
     vec3 direction = reflect(incoming, normal);
     float height = dot(direction, geometricNormal);
     return normalize(direction + geometricNormal * max(1e-3 - height, 0.0));
+}
+
+// Share of a uniform white sky that the base reflects at the first bounce, through coat and sheen.
+vec3 firstBounce(Surface surface, Features features) {
+    return singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
+           baseShare(surface, features);
+}
+
+// The base's lobe, l.z > 0: first bounce, times n·l, through coat and sheen.
+vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
+    Bsdf b = surface.bsdf;
+    vec3 h;
+    vec3 fresnel = facetFresnel(b, features, l, h);
+    pdf = mirroredPdf(b.view, h, b.alpha);
+    return fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
+           baseShare(surface, features);
+}
+
+// The coat's lobe, times n·l.
+float coatLobe(Surface surface, Features features, vec3 l, out float pdf) {
+    Bsdf b = surface.bsdf;
+    float nDotL = accurateDot(b.clearcoatNormal, l);
+    pdf = coatPdf(b, l);
+    return nDotL > 0.0 ? coatReflectance(surface, features) * nDotL *
+                             clearcoatLobe(b.clearcoatNormal, nDotL, coatViewCosine(b), b.view, l, b.clearcoatAlpha)
+                       : 0.0;
+}
+
+// A ray in the mirror direction about `normal`, whatever its pdf.
+ReflectionSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
+    return ReflectionSample(mirrorDirection(-hit.view, normal, hit.geometricNormal), weight,
+                            luminance(weight) > 0.0 ? kRaySent : kRayBlack);
+}
+
+// Pairs of dimensions of the sequence.
+const uint kPairDirection = 0u;
+const uint kPairLobe = 1u;
+
+// A direction of the glossy lobes by one-sample multiple importance sampling (Veach 1997, balance heuristic): `chance` is
+// that of the coat, 0 or 1 where the other lobe has no density here.
+ReflectionSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, float chance, bool coat,
+                              vec2 u) {
+    Bsdf b = surface.bsdf;
+    vec3 l = coat ? sampleCoat(b, u) : reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u));
+    vec3 world = toWorld(surface, l);
+    ReflectionSample result = ReflectionSample(normalize(world), vec3(0.0), kRayBlack);
+    if (l.z <= 0.0 || dot(world, hit.geometricNormal) <= 0.0) {
+        return result;
+    }
+    float pdf = 0.0;
+    if (chance < 1.0) {
+        float basePdf;
+        result.weight += traced.base * baseLobe(surface, features, l, basePdf);
+        pdf += (1.0 - chance) * basePdf;
+    }
+    if (chance > 0.0) {
+        float ofCoat;
+        result.weight += vec3(traced.coat * coatLobe(surface, features, l, ofCoat));
+        pdf += chance * ofCoat;
+    }
+    if (pdf > 0.0 && luminance(result.weight) > 0.0) {
+        result.weight /= pdf;
+        result.outcome = kRaySent;
+    }
+    return result;
+}
+
+// The ray of one sample. Below the mirror limit a lobe reflects exactly; between the limits by visible normals.
+ReflectionSample sampleReflection(Hit hit, Surface surface, Features features, TracedLobes traced) {
+    vec3 base = traced.base * firstBounce(surface, features);
+    float coat = traced.coat * coatReflectance(surface, features);
+    if (traced.base <= 0.0 && traced.coat <= 0.0) {
+        return ReflectionSample(vec3(0.0), vec3(0.0), kRayRough);
+    }
+    bool baseMirror = isMirror(surface.roughness);
+    bool coatMirror = true;
+    float chance = 0.0;
+    if (hasLobe(features, GLINT_CLEARCOAT) && coat > 0.0) {
+        vec3 normal = toWorld(surface, surface.bsdf.clearcoatNormal);
+        coatMirror = isMirror(sqrt(surface.bsdf.clearcoatAlpha));
+        if (baseMirror && coatMirror && surface.bsdf.clearcoatNormal.z > 0.99999) {
+            // Within a quarter of a degree: one ray brings both.
+            return mirrorSample(hit, surface.normal, base + vec3(coat));
+        }
+        chance = coat / (coat + luminance(base));
+    }
+    bool choosesCoat = chance > 0.0 && sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x <
+                                           chance;
+    if (choosesCoat ? coatMirror : baseMirror) {
+        vec3 normal = choosesCoat ? toWorld(surface, surface.bsdf.clearcoatNormal) : surface.normal;
+        return mirrorSample(hit, normal, choosesCoat ? vec3(coat / chance) : base / (1.0 - chance));
+    }
+    vec2 u = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
+    // A mirror has no density that a glossy direction could share.
+    bool alone = chance > 0.0 && baseMirror != coatMirror;
+    ReflectionSample result =
+        glossySample(hit, surface, features, traced, alone ? (choosesCoat ? 1.0 : 0.0) : chance, choosesCoat, u);
+    result.weight /= alone ? (choosesCoat ? chance : 1.0 - chance) : 1.0;
+    return result;
 }

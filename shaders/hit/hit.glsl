@@ -18,7 +18,7 @@ struct Hit {
     vec4 tangent;    // world; w is the sign of the bitangent
     vec3 edges[2];   // world: from the first vertex to the second and third
     vec4 uvEdges[2]; // by UV set: (Δu, Δv) along each edge
-    float footprint; // width of the ray cone on the surface, metres
+    vec4 footprint;  // axes of the ray cone's ellipse, across the ray and along it, in units of the edges
     float scale;     // metres of the world in one of the mesh
 };
 
@@ -26,6 +26,15 @@ struct Hit {
 vec3 rayOrigin(Hit hit, vec3 direction) {
     float side = dot(hit.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
     return hit.position + side * hit.clearance * hit.geometricNormal;
+}
+
+// A point of a triangle, world.
+vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
+    vec3 p0 = geometry.positions.data[geometry.indices.data[3u * primitive]];
+    vec3 p1 = geometry.positions.data[geometry.indices.data[3u * primitive + 1u]];
+    vec3 p2 = geometry.positions.data[geometry.indices.data[3u * primitive + 2u]];
+    return transformPoint(GLINT_FRAME.instances.data[geometry.instanceIndex].objectToWorld,
+                          p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
 // Attributes are fetched where `features` may need them. rayDirection is unit; coneWidth is that of the ray cone at
@@ -97,7 +106,10 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
                     weights.z * geometry.colors.data[corner.z];
     }
 
-    hit.footprint = coneFootprint(coneWidth, dot(hit.geometricNormal, rayDirection));
+    vec3 across;
+    vec3 along;
+    coneAxes(coneWidth, rayDirection, hit.geometricNormal, across, along);
+    hit.footprint = vec4(inEdges(across, hit.edges[0], hit.edges[1]), inEdges(along, hit.edges[0], hit.edges[1]));
     hit.scale = 1.0;
     if (hasLobe(features, GLINT_ATTENUATION)) {
         // Root mean square over the axes.

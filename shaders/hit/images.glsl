@@ -3,7 +3,7 @@
 
 layout(set = kSetFrame, binding = kBindingSurface, rg32ui) uniform readonly uimage2D surfaceImage;
 layout(set = kSetFrame, binding = kBindingRadiance, rgba32f) uniform image2D radianceImage;
-layout(set = kSetFrame, binding = kBindingNormalRoughness, rgba32f) uniform image2D normalRoughnessImage;
+layout(set = kSetFrame, binding = kBindingReflectionRay, rgba32f) uniform image2D reflectionRayImage;
 layout(set = kSetFrame, binding = kBindingPosition, rgba32f) uniform image2D positionImage;
 layout(set = kSetFrame, binding = kBindingReflectance, rgba32f) uniform image2D reflectanceImage;
 layout(set = kSetFrame, binding = kBindingReflection, rgba32f) uniform image2D reflectionImage;

@@ -7,8 +7,16 @@ uint pcgHash(uint value) {
     return (word >> 22u) ^ word;
 }
 
-// Uniform in [0, 1), 24 bits. The same for a pixel, sample, seed and dimension whatever the strategy.
-float randomUnit(uint pixel, uint sampleIndex, uint seed, uint dimension) {
-    uint bits = pcgHash(pixel + pcgHash(sampleIndex + pcgHash(dimension + pcgHash(seed))));
+uint hashOf(uint a, uint b, uint c) {
+    return pcgHash(a + pcgHash(b + pcgHash(c)));
+}
+
+// 24 bits as a number in [0, 1).
+float unitOf(uint bits) {
     return float(bits >> 8) * (1.0 / 16777216.0);
+}
+
+// Uniform in [0, 1). The same for a pixel, sample, seed and dimension whatever the strategy.
+float randomUnit(uint pixel, uint sampleIndex, uint seed, uint dimension) {
+    return unitOf(pcgHash(pixel + hashOf(sampleIndex, dimension, seed)));
 }

@@ -2,6 +2,9 @@
 #include "hit/hit.glsl"
 
 #define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
+#define GLINT_SAMPLER(record)                                      \
+    sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
+              sceneSamplers[nonuniformEXT((record).samplerIndex)])
 
 // Whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
@@ -20,12 +23,11 @@ vec4 sampleSlot(Hit hit, uint slot, Features features) {
         uvEdges = vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy),
                        dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
     }
-    float lod = GLINT_TEXTURE_LOD_CONES != 0
-                    ? coneLod(hit.footprint, hit.edges[0], hit.edges[1], uvEdges, record.texels)
-                    : 0.0;
-    return textureLod(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
-                                sceneSamplers[nonuniformEXT(record.samplerIndex)]),
-                      uv, lod);
+    if (GLINT_TEXTURE_LOD_CONES == 0) {
+        return textureLod(GLINT_SAMPLER(record), uv, 0.0);
+    }
+    vec4 gradients = coneGradients(hit.footprint, uvEdges, record.texels, record.anisotropy);
+    return textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
 }
 
 // Tangent and bitangent at the hit: from the TANGENT attribute, or from the derivatives of position by the UV set that

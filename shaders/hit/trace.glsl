@@ -1,12 +1,25 @@
-// Ray queries, in the shape that mobile compilers make fast: one proceed for each initialise, called unconditionally,
-// opaque, no AABBs. Only a package that tests alpha loops over candidates.
-#extension GL_EXT_ray_query : require
-#extension GL_EXT_ray_flags_primitive_culling : require
-
+// Tracing rays: by ray queries, or by a ray tracing pipeline.
 #include "hit/alpha.glsl"
 #include "hit/constants.glsl"
+#include "hit/payload.glsl"
+#include "hit/stage.glsl"
+#include "hit/tlas.glsl"
 
-layout(set = kSetScene, binding = kBindingTlas) uniform accelerationStructureEXT sceneTlas[];
+HitRecord missRecord(RayRecord ray, uint rayIndex) {
+    return HitRecord(ray.pixel, kMissGeometry, 0u, ray.direction.x, ray.direction.y, ray.direction.z, 0.0, rayIndex);
+}
+
+HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
+    return HitRecord(ray.pixel, found.geometry, found.primitive, found.barycentrics.x, found.barycentrics.y,
+                     found.distance, ray.coneWidth + ray.coneSpread * found.distance, rayIndex);
+}
+
+#if GLINT_TRACER == 1
+
+// In the shape that mobile compilers make fast: one proceed for each initialise, called unconditionally, opaque, no
+// AABBs. Only a package that tests alpha loops over candidates.
+#extension GL_EXT_ray_query : require
+#extension GL_EXT_ray_flags_primitive_culling : require
 
 #if GLINT_ALPHA_TESTED
 const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
@@ -25,35 +38,22 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 #define GLINT_PROCEED(query) rayQueryProceedEXT(query)
 #endif
 
-// The closest hit of a ray of the list. Back faces of single-sided geometry let it pass, as they do in the raster
-// pass.
+// The closest hit of a ray of the list. Back faces of single-sided geometry let it pass, as they do in the raster pass.
 HitRecord traceRay(RayRecord ray, uint rayIndex) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex],
                           kOpacityFlags | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu, ray.origin, 0.0,
                           ray.direction, kFarDistance);
     GLINT_PROCEED(query);
-    HitRecord hit;
-    hit.pixel = ray.pixel;
-    hit.ray = rayIndex;
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
-        hit.geometry = kMissGeometry;
-        hit.primitive = 0u;
-        hit.barycentricU_orDirectionX = ray.direction.x;
-        hit.barycentricV_orDirectionY = ray.direction.y;
-        hit.distance_orDirectionZ = ray.direction.z;
-        hit.coneWidth = 0.0;
-        return hit;
+        return missRecord(ray, rayIndex);
     }
-    vec2 barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
-    hit.geometry = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
-                        rayQueryGetIntersectionGeometryIndexEXT(query, true));
-    hit.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-    hit.barycentricU_orDirectionX = barycentrics.x;
-    hit.barycentricV_orDirectionY = barycentrics.y;
-    hit.distance_orDirectionZ = rayQueryGetIntersectionTEXT(query, true);
-    hit.coneWidth = ray.coneWidth + ray.coneSpread * hit.distance_orDirectionZ;
-    return hit;
+    return hitRecord(ray, rayIndex,
+                     TracePayload(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
+                                       rayQueryGetIntersectionGeometryIndexEXT(query, true)),
+                                  uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
+                                  rayQueryGetIntersectionBarycentricsEXT(query, true),
+                                  rayQueryGetIntersectionTEXT(query, true)));
 }
 
 // Whether nothing stands between `origin` and a light. Both sides of a surface cast shadows.
@@ -64,3 +64,35 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     GLINT_PROCEED(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
+
+#elif GLINT_RAY_GENERATION
+
+#ifndef GLINT_TRACE_LOCATION
+#define GLINT_TRACE_LOCATION 0  // of the payload; and the number of its miss shader
+#endif
+
+layout(location = GLINT_TRACE_LOCATION) rayPayloadEXT TracePayload traced;
+
+#if GLINT_ALPHA_TESTED
+const uint kOpacityFlags = gl_RayFlagsNoneEXT;
+#else
+const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
+#endif
+
+// As above.
+HitRecord traceRay(RayRecord ray, uint rayIndex) {
+    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu, 0u, 0u,
+                GLINT_TRACE_LOCATION, ray.origin, 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
+    return traced.geometry == kMissGeometry ? missRecord(ray, rayIndex) : hitRecord(ray, rayIndex, traced);
+}
+
+bool isVisible(vec3 origin, vec3 direction, float distance) {
+    // What a ray that hits leaves as it is.
+    traced.geometry = 0u;
+    traceRayEXT(sceneTlas[pushed.tlasIndex],
+                kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, 0u,
+                GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
+    return traced.geometry == kMissGeometry;
+}
+
+#endif

@@ -14,8 +14,13 @@ GLINT_CONSTANT(kMaxRayGroupsX, 32768u);
 // Threads of the single workgroup that scans the buckets.
 GLINT_CONSTANT(kScanGroupSize, 256u);
 
+// Buckets that the ordering by local histograms holds in shared memory: 4 KiB of the 16 that Vulkan guarantees.
+GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
+
 // HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);
+// FrameConstants::orderedHits: a slot that no hit has.
+GLINT_CONSTANT(kNoHit, 0xFFFFFFFFu);
 // GBuffer: geometry index of a pixel without a surface.
 GLINT_CONSTANT(kNoSurface, 0xFFFFFFFFu);
 
@@ -40,12 +45,34 @@ struct HitRecord {
     uint ray;         // RayRecord index
 };
 
-// VkDispatchIndirectCommand, padded to 16 bytes.
+// The same in 16 bytes. A miss is 0xFFFFFFFF in its second word, which no hit can have.
+struct PackedHitRecord {
+    uint pixel;
+    uint geometry24_coneLog8;           // 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0: none
+    uint primitive_orDirectionOctX;     // of a miss: bits of a float
+    uint barycentrics2x16_orDirectionOctY;  // unorm; likewise
+};
+
+// A shadow ray that waits, with the light that it brings if nothing is in its way. 48 bytes.
+struct ShadowRecord {
+    vec3 origin;
+    uint pixel;  // x + y * width
+    vec3 direction;  // unit
+    float distance;  // metres
+    vec3 light;
+    uint pad;
+};
+
+// VkDispatchIndirectCommand and VkTraceRaysIndirectCommandKHR for the same list. 32 bytes.
 struct DispatchArguments {
-    uint x;
+    uint x;  // workgroups
     uint y;
     uint z;
     uint elementCount;  // threads that have work
+    uint traceWidth;  // = elementCount
+    uint traceHeight;
+    uint traceDepth;
+    uint pad;
 };
 
 // Bucket of a hit: 0 a miss, 1 + shaderId otherwise.
@@ -61,6 +88,8 @@ GLINT_INTEROP_END
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { HitRecord data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray { ShadowRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DispatchArray { DispatchArguments data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BucketArray { BucketRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer CounterArray { uint data[]; };
@@ -74,9 +103,19 @@ GLINT_CONSTANT(kCounterRays, 0u);          // rays appended to the list
 GLINT_CONSTANT(kCounterSkippedSky, 1u);    // pixels without a surface
 GLINT_CONSTANT(kCounterSkippedRough, 2u);  // surfaces above the roughness limit
 GLINT_CONSTANT(kCounterSkippedUnlit, 3u);  // unlit surfaces
-GLINT_CONSTANT(kCounterUnknownShader, 4u); // hits whose shader ID no case has
-GLINT_CONSTANT(kCounterNonFinite, 5u);     // pixels whose sample was no number: taken as black
-GLINT_CONSTANT(kCounterCount, 6u);
+GLINT_CONSTANT(kCounterSkippedBlack, 4u);  // surfaces whose sample reflects no light, or points into the surface
+GLINT_CONSTANT(kCounterScreenHits, 5u);    // reflections found in screen space
+GLINT_CONSTANT(kCounterShadowRays, 6u);    // deferred shadow rays
+GLINT_CONSTANT(kCounterUnknownShader, 7u); // hits whose shader ID no case has
+GLINT_CONSTANT(kCounterOrderErrors, 8u);   // found by the check of the order: lost, doubled or misplaced hits
+GLINT_CONSTANT(kCounterNonFinite, 9u);     // pixels whose sample was no number: taken as black
+GLINT_CONSTANT(kCounterCount, 10u);
+
+// FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
+GLINT_CONSTANT(kBinningNone, 0u);
+GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
+GLINT_CONSTANT(kBinningOctahedral, 2u);  // cells of the octahedral map of the direction: 8 x 8 bins
+GLINT_CONSTANT(kMaxDirectionBins, 64u);
 
 // One frame of one sample.
 struct FrameConstants {
@@ -95,20 +134,31 @@ struct FrameConstants {
     uint seed;
     uint lightCount;
     uint bucketCount;  // 1 + cases
+    uint bucketAlignment;  // buckets begin at multiples of it in the ordered list
+    float mirrorRoughness;  // surfaces smoother than this reflect as mirrors
     float maxReflectionRoughness;  // surfaces rougher than this send no ray
+    float maxSampleRadiance;  // what a reflection brings at most, luminance; infinite: no limit
+    uint binning;  // kBinning*
+    uint screenSteps;  // steps of the march in screen space; 0: none
+    float screenThickness;  // how far behind the depth of a pixel its surface is taken to reach, share of its depth
     vec3 skyZenith;    // radiance, cd/m² in the units of the lights
     vec3 skyHorizon;
     vec3 skyGround;
+    vec3 skyHarmonics[9];  // environment map: irradiance over π by real spherical harmonics, cosine lobe folded in
+    float environmentLevels;  // mip levels of the environment map: roughness 0 to 1
     GLINT_ADDRESS(Geometry) geometries;
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
     GLINT_ADDRESS(Ray) rays;
     GLINT_ADDRESS(Hit) hits;
-    GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket
+    GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
+    GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
     GLINT_ADDRESS(Bucket) buckets;       // bucketCount
     GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
-    GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount
+    GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
+    GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
+    GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays
     GLINT_ADDRESS(Counter) counters;         // kCounterCount
 };
 
@@ -136,14 +186,29 @@ GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 // Descriptor set 1: the images of a frame, all storage images.
 GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);          // rg32ui: geometry, primitive; also a colour attachment
-GLINT_CONSTANT(kBindingRadiance, 1u);         // rgba32f: light that leaves the primary surface, reflection apart
-GLINT_CONSTANT(kBindingNormalRoughness, 2u);  // rgba32f: shading normal, roughness (negative: no reflection)
+GLINT_CONSTANT(kBindingRadiance, 1u);         // rgba32f: light that leaves the primary surface, reflection apart; distance along the camera's axis, 0: none
+GLINT_CONSTANT(kBindingReflectionRay, 2u);    // rgba32f: direction of the reflection ray, kRay* as bits
 GLINT_CONSTANT(kBindingPosition, 3u);         // rgba32f: ray origin off the surface; geometric normal, octahedral, bits 2x16snorm
 GLINT_CONSTANT(kBindingReflectance, 4u);      // rgba32f: weight of the traced reflection
-GLINT_CONSTANT(kBindingReflection, 5u);       // rgba32f: radiance that the traced ray brings
+GLINT_CONSTANT(kBindingReflection, 5u);       // rgba32f: radiance that the ray brings; kPath* as a float
 GLINT_CONSTANT(kBindingAccumulated, 6u);      // rgba32f: mean over samples so far, linear
 GLINT_CONSTANT(kBindingResidual, 7u);         // rgba32f: what rounding keeps out of that mean
 GLINT_CONSTANT(kFrameImageCount, 8u);
+// And of the same set:
+GLINT_CONSTANT(kBindingEnvironment, 8u);  // sampler2D: the environment map
+
+// Whether a pixel sends a reflection ray, or why not.
+GLINT_CONSTANT(kRaySent, 0u);
+GLINT_CONSTANT(kRayNoSurface, 1u);
+GLINT_CONSTANT(kRayUnlit, 2u);
+GLINT_CONSTANT(kRayRough, 3u);
+GLINT_CONSTANT(kRayBlack, 4u);
+
+// How a pixel came to its reflection.
+GLINT_CONSTANT(kPathNone, 0u);    // no ray
+GLINT_CONSTANT(kPathScreen, 1u);  // found in screen space
+GLINT_CONSTANT(kPathHit, 2u);     // a ray that hit
+GLINT_CONSTANT(kPathMiss, 3u);    // a ray that left the scene
 
 GLINT_INTEROP_END
 #endif

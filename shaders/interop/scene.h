@@ -75,7 +75,9 @@ struct TextureRecord {
     uint texCoord;      // 0 or 1
     vec3 rowU;
     vec3 rowV;
-    vec2 texels;  // size of mip 0; 0 in a package, as only the runtime sees the image
+    // 0 in a package, as only the runtime sees image and device.
+    vec2 texels;       // size of mip 0
+    float anisotropy;  // up to which the sampler filters; 1: not at all
 };
 
 // One layout for every permutation; what a key lacks is never read.

@@ -10,6 +10,7 @@
 
 namespace glint::gpu {
 using uint = std::uint32_t;
+// NOLINTBEGIN(readability-identifier-naming): these are names of GLSL.
 struct vec2 {
     float x, y;
 };
@@ -22,6 +23,7 @@ struct vec4 {
 struct uvec2 {
     std::uint32_t x, y;
 };
+// NOLINTEND(readability-identifier-naming)
 }  // namespace glint::gpu
 
 // A pointer on the device: the address of an array of T.

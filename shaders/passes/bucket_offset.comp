@@ -27,14 +27,19 @@ void main() {
         uint bucket = first + gl_LocalInvocationIndex;
         bool inside = bucket < GLINT_FRAME.bucketCount;
         uint count = inside ? GLINT_FRAME.buckets.data[bucket].count : 0u;
-        uint inclusive = scanWorkgroup(count);
+        uint alignment = GLINT_FRAME.bucketAlignment;
+        uint room = (count + alignment - 1u) / alignment * alignment;
+        uint inclusive = scanWorkgroup(room);
         if (inside) {
-            uint begin = carry + inclusive - count;
+            uint begin = carry + inclusive - room;
             GLINT_FRAME.buckets.data[bucket].begin = begin;
             GLINT_FRAME.buckets.data[bucket].cursor = begin;
             GLINT_FRAME.bucketDispatch.data[bucket] = listDispatch(count);
         }
         carry += partialSums[kScanGroupSize - 1u];
         barrier();
+    }
+    if (gl_LocalInvocationIndex == 0u) {
+        GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount] = listDispatch(carry);
     }
 }

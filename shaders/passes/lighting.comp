@@ -11,7 +11,7 @@
 #include "hit/shade.glsl"
 #include "hit/trace.glsl"
 
-layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
+GLINT_PIXEL_WORKGROUP
 
 Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
     InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
@@ -42,17 +42,16 @@ vec3 directLight(Hit hit, Surface surface, Features features) {
 }
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
+    uvec2 pixel = GLINT_PIXEL_OF_THREAD;
     if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.height) {
         return;
     }
     ivec2 place = ivec2(pixel);
     uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
     CameraRay ray = cameraRay(pixel);
-    vec3 radiance = skyRadiance(ray.direction);
-    vec4 normalRoughness = vec4(0.0, 0.0, 0.0, kNoReflection);
+    vec4 radianceDepth = vec4(skyRadiance(ray.direction), 0.0);
     vec4 position = vec4(0.0);
-    vec3 reflectance = vec3(0.0);
+    ReflectionSample reflection = ReflectionSample(vec3(0.0), vec3(0.0), kRayNoSurface);
 
     if (surfaceId.x != kNoSurface) {
         GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
@@ -60,21 +59,21 @@ void main() {
         Hit hit = primaryHit(geometry, surfaceId.y, ray, pixel.x + pixel.y * GLINT_FRAME.width, features);
         vec3 origin = rayOrigin(hit, hit.geometricNormal);
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
+        radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
         if (hasLobe(features, GLINT_UNLIT)) {
-            radiance = baseColor(hit, features).rgb;
-            normalRoughness = vec4(hit.normal, kUnlitSurface);
+            radianceDepth.rgb = baseColor(hit, features).rgb;
+            reflection.outcome = kRayUnlit;
         } else {
             Surface surface = evaluateSurface(hit, features);
-            TracedLobe lobe = tracedLobe(surface, features);
-            radiance = surface.emission + directLight(hit, surface, features) +
-                       ambientLight(surface, features, hit.view, 1.0 - lobe.base, 1.0 - lobe.coat);
-            normalRoughness = vec4(lobe.normal, lobe.roughness);
-            reflectance = lobe.weight;
+            TracedLobes traced = tracedLobes(surface, features);
+            radianceDepth.rgb = surface.emission + directLight(hit, surface, features) +
+                                ambientLight(surface, features, hit.view, 1.0 - traced.base, 1.0 - traced.coat);
+            reflection = sampleReflection(hit, surface, features, traced);
         }
     }
-    imageStore(radianceImage, place, vec4(radiance, 1.0));
-    imageStore(normalRoughnessImage, place, normalRoughness);
+    imageStore(radianceImage, place, radianceDepth);
+    imageStore(reflectionRayImage, place, vec4(reflection.direction, uintBitsToFloat(reflection.outcome)));
     imageStore(positionImage, place, position);
-    imageStore(reflectanceImage, place, vec4(reflectance, 0.0));
+    imageStore(reflectanceImage, place, vec4(reflection.weight, 0.0));
     imageStore(reflectionImage, place, vec4(0.0));
 }

@@ -1,10 +1,9 @@
 #version 460
-// Appends a mirror ray to the list for every pixel that reflects. One atomic a subgroup. The list holds a ray for every
+// Appends the ray of every pixel that sends one to the list. One atomic a subgroup. The list holds a ray for every
 // pixel, so it can't overflow.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
-#include "effects/reflection.glsl"
 #include "hit/camera.glsl"
 #include "hit/images.glsl"
 
@@ -27,28 +26,26 @@ void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     bool inside = pixel.x < GLINT_FRAME.width && pixel.y < GLINT_FRAME.height;
     ivec2 place = ivec2(min(pixel, uvec2(GLINT_FRAME.width - 1u, GLINT_FRAME.height - 1u)));
-    vec4 normalRoughness = imageLoad(normalRoughnessImage, place);
-
-    bool surface = inside && normalRoughness.w != kNoReflection;
-    bool unlit = surface && normalRoughness.w == kUnlitSurface;
-    bool traced = surface && !unlit && tracedShare(normalRoughness.w) > 0.0;
-    countInSubgroup(kCounterSkippedSky, inside && !surface);
-    countInSubgroup(kCounterSkippedUnlit, unlit);
-    countInSubgroup(kCounterSkippedRough, surface && !unlit && !traced);
+    vec4 reflectionRay = imageLoad(reflectionRayImage, place);
+    uint outcome = floatBitsToUint(reflectionRay.w);
+    countInSubgroup(kCounterSkippedSky, inside && outcome == kRayNoSurface);
+    countInSubgroup(kCounterSkippedUnlit, inside && outcome == kRayUnlit);
+    countInSubgroup(kCounterSkippedRough, inside && outcome == kRayRough);
+    countInSubgroup(kCounterSkippedBlack, inside && outcome == kRayBlack);
+    bool traced = inside && outcome == kRaySent;
     uint slot = countInSubgroup(kCounterRays, traced);
     if (!traced) {
         return;
     }
 
-    vec4 position = imageLoad(positionImage, place);
-    vec3 geometricNormal = octahedralDecode(unpackSnorm2x16(floatBitsToUint(position.w)));
+    vec3 origin = imageLoad(positionImage, place).xyz;
     CameraRay camera = cameraRay(pixel);
     RayRecord ray;
-    ray.origin = position.xyz;
+    ray.origin = origin;
     ray.pixel = pixel.x + pixel.y * GLINT_FRAME.width;
-    ray.direction = mirrorDirection(camera.direction, normalRoughness.xyz, geometricNormal);
+    ray.direction = reflectionRay.xyz;
     // A flat mirror continues the pixel's cone.
-    ray.coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(position.xyz, camera.origin);
+    ray.coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(origin, camera.origin);
     ray.coneSpread = GLINT_FRAME.pixelSpread;
     GLINT_FRAME.rays.data[slot] = ray;
 }

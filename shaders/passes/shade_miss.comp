@@ -3,8 +3,9 @@
 #include "effects/sky.glsl"
 #include "hit/images.glsl"
 #include "hit/list.glsl"
+#include "hit/record.glsl"
 
-layout(local_size_x = kRayGroupSize) in;
+GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
@@ -12,13 +13,14 @@ void main() {
     if (index >= bucket.count) {
         return;
     }
-    HitRecord hit = GLINT_FRAME.hits.data[GLINT_FRAME.orderedHits.data[bucket.begin + index]];
+    HitRecord hit = storedHit(GLINT_FRAME.orderedHits.data[bucket.begin + index]);
     vec3 radiance = vec3(1.0, 0.0, 1.0);
+    uint path = kPathHit;
     if (hit.geometry == kMissGeometry) {
-        radiance = skyRadiance(vec3(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY,
-                                    hit.distance_orDirectionZ));
+        radiance = skyRadiance(missDirection(hit));
+        path = kPathMiss;
     } else {
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
     }
-    imageStore(reflectionImage, pixelCoordinates(hit.pixel), vec4(radiance, 1.0));
+    imageStore(reflectionImage, pixelCoordinates(hit.pixel), vec4(radiance, float(path)));
 }

@@ -5,13 +5,14 @@
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
 #include "hit/list.glsl"
+#include "hit/record.glsl"
 #include "hit/trace.glsl"
 
-layout(local_size_x = kRayGroupSize) in;
+GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        GLINT_FRAME.hits.data[index] = traceRay(GLINT_FRAME.rays.data[index], index);
+        storeHit(index, traceRay(GLINT_FRAME.rays.data[index], index));
     }
 }

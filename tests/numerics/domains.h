@@ -16,6 +16,7 @@ void fillDirections(InputSource& in);
 void fillVector(InputSource& in);
 void fillNormalTransform(InputSource& in);
 void fillPlane(InputSource& in);
+void fillConeOnPlane(InputSource& in);
 void fillFootprint(InputSource& in);
 void fillTriangle(InputSource& in);
 void fillLight(InputSource& in);

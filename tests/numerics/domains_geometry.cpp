@@ -5,6 +5,31 @@
 #include <numbers>
 
 namespace glint::numerics {
+namespace {
+
+// The plane through the origin at right angles to a unit vector.
+class Plane {
+public:
+    explicit Plane(const Vector& n) {
+        // Of the axes, the one that n is least along.
+        const double least = std::min({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+        u_ = std::abs(n.x) == least   ? Vector{0.0, n.z, -n.y}
+             : std::abs(n.y) == least ? Vector{-n.z, 0.0, n.x}
+                                      : Vector{n.y, -n.x, 0.0};
+        const double length = std::hypot(u_.x, u_.y, u_.z);
+        u_ = {u_.x / length, u_.y / length, u_.z / length};
+        v_ = {n.y * u_.z - n.z * u_.y, n.z * u_.x - n.x * u_.z, n.x * u_.y - n.y * u_.x};
+    }
+    Vector at(double u, double v) const {
+        return {u * u_.x + v * v_.x, u * u_.y + v * v_.y, u * u_.z + v * v_.z};
+    }
+
+private:
+    Vector u_;
+    Vector v_;
+};
+
+}  // namespace
 
 void fillDirection(InputSource& in) {
     in.put(in.direction());
@@ -95,27 +120,57 @@ void fillPlane(InputSource& in) {
     }
 }
 
-void fillFootprint(InputSource& in) {
-    in.put(in.logUniform(1e-6, 1e3));
-    in.put(in.pick({-1.0, 1.0}) * in.cosine());
+// A ray and a normal under every angle, from along each other to at right angles.
+void fillConeOnPlane(InputSource& in) {
+    const Vector n = in.direction();
+    const Plane plane(n);
+    const double cosine = in.pick({-1.0, 1.0}) * in.cosine();
+    const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
+    const double turn = in.uniform(0.0, 2.0 * std::numbers::pi);
+    const Vector across = plane.at(sine * std::cos(turn), sine * std::sin(turn));
+    in.put({across.x + cosine * n.x, across.y + cosine * n.y, across.z + cosine * n.z});
+    in.put(n);
 }
 
-// Triangles that are no slivers, 1e-3 to 1e3 wide, with a texture that they do not squeeze into a line.
+// A vector in the plane of a triangle that is no sliver, from 1e-12 to 1e12 wide.
 void fillTriangle(InputSource& in) {
-    const double width = in.logUniform(1e-3, 1e3);
-    in.put(width * in.logUniform(1e-4, 1e2));
-    const double turn = in.uniform(0.2, 2.9);
-    const double height = in.uniform(0.3, 3.0);
+    const Plane plane(in.direction());
+    const double width = in.logUniform(1e-12, 1e12);
+    const double length = width * in.logUniform(1e-4, 1e2);
+    const double turn = in.uniform(0.0, 2.0 * std::numbers::pi);
+    in.put(plane.at(length * std::cos(turn), length * std::sin(turn)));
     const double tilt = in.uniform(0.0, 2.0 * std::numbers::pi);
-    in.put({width * std::cos(tilt), width * std::sin(tilt), 0.0});
-    in.put({width * height * std::cos(turn + tilt), width * height * std::sin(turn + tilt), 0.0});
+    const double corner = tilt + in.uniform(0.2, 2.9);
+    const double height = width * in.uniform(0.3, 3.0);
+    in.put(plane.at(width * std::cos(tilt), width * std::sin(tilt)));
+    in.put(plane.at(height * std::cos(corner), height * std::sin(corner)));
+}
+
+// An ellipse up to 100 times as long as wide on a triangle that is no sliver, with a texture that it does not
+// squeeze into a line.
+void fillFootprint(InputSource& in) {
+    const double corner = in.uniform(0.2, 2.9);
+    const double height = in.uniform(0.3, 3.0);
+    const double axis = in.uniform(0.0, 2.0 * std::numbers::pi);
+    const double width = in.logUniform(1e-4, 1e2);
+    const double length = width * in.logUniform(1.0, 100.0);
+    // By Cramer's rule in the edges (1, 0) and height (cos corner, sin corner).
+    const auto putInEdges = [&](double x, double y) {
+        in.put(x - y * std::cos(corner) / std::sin(corner));
+        in.put(y / (height * std::sin(corner)));
+    };
+    putInEdges(-width * std::sin(axis), width * std::cos(axis));
+    putInEdges(length * std::cos(axis), length * std::sin(axis));
     const double uvWidth = in.logUniform(1e-3, 10.0);
+    const double turn = in.uniform(0.0, 2.0 * std::numbers::pi);
+    const double uvCorner = turn + in.pick({-1.0, 1.0}) * in.uniform(0.2, 2.9);
     in.put(uvWidth * std::cos(turn));
     in.put(uvWidth * std::sin(turn));
-    in.put(-uvWidth * height * std::sin(turn));
-    in.put(uvWidth * height * std::cos(turn));
+    in.put(uvWidth * height * std::cos(uvCorner));
+    in.put(uvWidth * height * std::sin(uvCorner));
     in.put(std::exp2(std::floor(in.uniform(0.0, 14.0))));
     in.put(std::exp2(std::floor(in.uniform(0.0, 14.0))));
+    in.put(in.pick({1.0, 2.0, 8.0, 16.0}));
 }
 
 void fillLight(InputSource& in) {

@@ -83,12 +83,32 @@ PROBE(PlaneError) {
 
 // hit/lod.glsl
 
-PROBE(ConeFootprint) {
-    o[0] = coneFootprint(i[0], i[1]);
+// Of a cone of width 1, the axis along the ray over its length. The closer the ellipse is to a circle, the less its
+// axes are decided, and matter.
+PROBE(ConeAxes) {
+    vec3 across;
+    vec3 along;
+    coneAxes(1.0, VEC3(0), VEC3(3), across, along);
+    vec3 unit = along * max(abs(accurateDot(VEC3(0), VEC3(3))), 0.01);
+    WRITE3(0, across);
+    WRITE3(3, unit);
+    o[6] = 1.0 / max(length(accurateCrossOfSum(VEC3(0), VEC3(3), vec3(0.0))), 1e-7);
 }
 
-PROBE(ConeLod) {
-    o[0] = coneLod(i[0], VEC3(1), VEC3(4), VEC4(7), VEC2(11));
+PROBE(InEdges) {
+    vec2 found = inEdges(VEC3(0), VEC3(3), VEC3(6));
+    o[0] = found.x;
+    o[1] = found.y;
+    o[2] = max(abs(found.x), abs(found.y));
+}
+
+PROBE(ConeGradients) {
+    vec4 g = coneGradients(VEC4(0), VEC4(4), VEC2(8), i[10]);
+    o[0] = g.x;
+    o[1] = g.y;
+    o[2] = g.z;
+    o[3] = g.w;
+    o[4] = max(max(abs(g.x), abs(g.y)), max(abs(g.z), abs(g.w)));
 }
 
 // hit/punctual.glsl
@@ -144,9 +164,14 @@ PROBE(AccurateDot) {
     o[0] = accurateDot(VEC3(0), VEC3(3));
 }
 
+PROBE(HalfCosine2) {
+    vec2 squared = halfCosine2(VEC3(0), VEC3(3));
+    o[0] = squared.x + squared.y;
+}
+
 // Near 0 its root, the cosine, is what counts.
 PROBE(RefractedCosine2) {
-    float squared = refractedCosine2(i[0], i[1]);
+    float squared = refractedCosine2(exactSquare(vec2(i[0], 0.0)), i[1]);
     o[0] = sqrt(max(squared, 0.0));
     o[1] = squared > 0.0 ? 1.0 : 0.0;
 }
@@ -163,13 +188,13 @@ PROBE(FresnelSchlick) {
 }
 
 PROBE(FresnelInterface) {
-    vec3 f = fresnelInterface(VEC3(0), i[3], i[4], i[5]);
+    vec3 f = fresnelInterface(VEC3(0), i[3], exactSquare(vec2(i[4], 0.0)), i[5]);
     WRITE3(0, f);
-    o[3] = i[5] < 1.0 && refractedCosine2(i[4], i[5]) <= 0.0 ? 1.0 : 0.0;
+    o[3] = i[5] < 1.0 && refractedCosine2(exactSquare(vec2(i[4], 0.0)), i[5]) <= 0.0 ? 1.0 : 0.0;
 }
 
 PROBE(InterfacePassed) {
-    o[0] = interfacePassed(VEC3(0), i[3], i[4], i[5]);
+    o[0] = interfacePassed(VEC3(0), i[3], exactSquare(vec2(i[4], 0.0)), i[5]);
     o[1] = o[0] > 0.0 ? 1.0 : 0.0;
 }
 
@@ -247,10 +272,9 @@ PROBE(RefractDirection) {
 PROBE(RefractedTransmission) {
     float cosine;
     o[0] = refractedTransmission(VEC3(0), VEC3(3), VEC2(6), i[8], cosine);
-    vec3 h;
-    float spread;
-    bool refracted = refractionHalfVector(VEC3(0), VEC3(3), i[8], h, spread);
-    o[1] = refracted ? o[0] / max(-dot(VEC3(3), h) * dot(VEC3(0), h), 1e-12) : 0.0;
+    RefractingFacet facet;
+    bool refracted = refractionHalfVector(VEC3(0), VEC3(3), i[8], facet);
+    o[1] = refracted ? o[0] / max(facet.cosineL * facet.cosineV, 1e-12) : 0.0;
     o[2] = refracted ? 1.0 : 0.0;
 }
 

@@ -128,6 +128,28 @@ PROBE(TextbookClearcoatLobe) {
     o[1] = lit ? 1.0 : 0.0;
 }
 
+// Akenine-Möller et al. 2021, on anisotropic lookups: both axes by projection, divided by what of them is at right
+// angles to the ray.
+PROBE(TextbookConeAxes) {
+    vec3 direction = VEC3(0);
+    vec3 n = VEC3(3);
+    vec3 along = direction - dot(n, direction) * n;
+    along = along / length(along - dot(direction, along) * direction) * max(abs(dot(n, direction)), 0.01);
+    vec3 across = cross(n, along);
+    across = across / length(across - dot(direction, across) * direction);
+    WRITE3(0, across);
+    WRITE3(3, along);
+    o[6] = 0.0;
+}
+
+// Squares of the area, unscaled.
+PROBE(TextbookInEdges) {
+    vec3 normal = cross(VEC3(3), VEC3(6));
+    o[0] = dot(cross(VEC3(0), VEC3(6)), normal) / dot(normal, normal);
+    o[1] = dot(cross(VEC3(3), VEC3(0)), normal) / dot(normal, normal);
+    o[2] = 0.0;
+}
+
 // The sum, divided once.
 PROBE(TextbookRunningMean) {
     float sum = 0.0;

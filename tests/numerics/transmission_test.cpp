@@ -12,6 +12,11 @@ namespace {
 constexpr std::array kIors{1.0, 1.0 + 1e-7, 1.0001, 1.01, 1.33, 1.5, 2.42, 3.0};
 constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
 
+// With the error of the square, as the functions of an interface take it.
+glm::dvec2 squared(double cosine) {
+    return glsl::exactSquare(glm::dvec2(cosine, 0.0));
+}
+
 TEST(Fresnel, SchlickHasItsEnds) {
     const glm::dvec3 f0(0.04, 0.5, 1.0);
     EXPECT_EQ(glsl::fresnelSchlick(f0, 1.0, 1.0), f0);
@@ -31,8 +36,8 @@ TEST(Fresnel, WhatPassesIsWhatIsNotReflected) {
         for (int step = 0; step <= 64; ++step) {
             const double cosine = step / 64.0;
             const glm::dvec3 f0(0.04, 0.2, 0.1);
-            const double reflected = glsl::largest(glsl::fresnelInterface(f0, 1.0, cosine, eta));
-            EXPECT_NEAR(glsl::interfacePassed(f0, 1.0, cosine, eta), 1.0 - reflected, 1e-14)
+            const double reflected = glsl::largest(glsl::fresnelInterface(f0, 1.0, squared(cosine), eta));
+            EXPECT_NEAR(glsl::interfacePassed(f0, 1.0, squared(cosine), eta), 1.0 - reflected, 1e-14)
                 << "eta " << eta << ", cosine " << cosine;
         }
     }
@@ -67,11 +72,11 @@ TEST(Refraction, EndsAtTheCriticalAngle) {
             const double passing = critical * (1.0 + step);
             const double reflecting = critical * (1.0 - step);
             const glm::dvec3 f0(glsl::dielectricF0(ior));
-            EXPECT_GT(glsl::refractedCosine2(passing, eta), 0.0) << ior << ' ' << step;
-            EXPECT_LT(glsl::refractedCosine2(reflecting, eta), 0.0) << ior << ' ' << step;
-            EXPECT_LT(glsl::fresnelInterface(f0, 1.0, passing, eta).x, 1.0) << ior << ' ' << step;
-            EXPECT_EQ(glsl::fresnelInterface(f0, 1.0, reflecting, eta).x, 1.0) << ior << ' ' << step;
-            EXPECT_EQ(glsl::interfacePassed(f0, 1.0, reflecting, eta), 0.0) << ior << ' ' << step;
+            EXPECT_GT(glsl::refractedCosine2(squared(passing), eta), 0.0) << ior << ' ' << step;
+            EXPECT_LT(glsl::refractedCosine2(squared(reflecting), eta), 0.0) << ior << ' ' << step;
+            EXPECT_LT(glsl::fresnelInterface(f0, 1.0, squared(passing), eta).x, 1.0) << ior << ' ' << step;
+            EXPECT_EQ(glsl::fresnelInterface(f0, 1.0, squared(reflecting), eta).x, 1.0) << ior << ' ' << step;
+            EXPECT_EQ(glsl::interfacePassed(f0, 1.0, squared(reflecting), eta), 0.0) << ior << ' ' << step;
             glm::dvec3 l(0.0);
             EXPECT_TRUE(
                 glsl::refractDirection({std::sqrt(1.0 - passing * passing), 0.0, passing}, kUp, eta, l));

@@ -21,9 +21,12 @@ Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const Loade
     if (!text) {
         return text.error();
     }
-    const SourceSet sources = makeSourceSet(scene, loaded.compiled().plan, {});
+    const Result<SourceSet> sources = makeSourceSet(scene, loaded.compiled().plan, {});
+    if (!sources) {
+        return sources.error();
+    }
     const Result<std::string> glsl =
-        flatten(shader, std::string(text->begin(), text->end()), sources.lookup(), FlattenSide::Glsl);
+        flatten(shader, std::string(text->begin(), text->end()), sources->lookup(), FlattenSide::Glsl);
     if (!glsl) {
         return glsl.error();
     }

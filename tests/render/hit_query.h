@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// What the kernel hit_values.comp writes for each hit: 23 words.
+// What the kernel hit_values.comp writes for each hit: 26 words.
 struct Values {
     Float3 position;
     Float3 geometricNormal;
@@ -19,7 +19,8 @@ struct Values {
     Float3 tangent;
     float tangentSign;
     float clearance;
-    float lod;
+    Float2 gradientAcross;  // (du, dv) by each axis of the footprint, of a texture of 1024 x 512 texels
+    Float2 gradientAlong;
     std::uint32_t freeAbove;
     std::uint32_t freeBelow;
 };
@@ -29,6 +30,7 @@ struct Query {
     Float2 barycentrics{};
     Float3 direction{0.0F, 0.0F, -1.0F};
     float coneWidth = 0.0F;
+    float anisotropy = 1.0F;
 };
 
 // In the order of the queries; empty where the scene could not be loaded, and the test has failed then.

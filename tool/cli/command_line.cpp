@@ -140,6 +140,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addCompile(app, chosen);
     addExplain(app, chosen);
     addInspect(app, chosen);
+    addLint(app, chosen);
     addRender(app, chosen);
     addCompare(app, chosen);
 

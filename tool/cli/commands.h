@@ -10,6 +10,7 @@ namespace glint {
 void addCompile(CLI::App& app, Action& chosen);
 void addExplain(CLI::App& app, Action& chosen);
 void addInspect(CLI::App& app, Action& chosen);
+void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
 

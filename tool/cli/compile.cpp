@@ -4,8 +4,10 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/held_signals.h"
+#include "cli/plan_choice.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "cli/tracing_options.h"
 #include "emit/json.h"
 #include "gltf/import.h"
 
@@ -26,11 +28,10 @@ using Clock = std::chrono::steady_clock;
 struct CompileArguments {
     std::string scene;
     std::string output;
-    std::string strategy = "all";
+    TracingArguments tracing;
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;
-    std::int64_t maxShaders = 0;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
     bool debugInfo = false;
@@ -56,17 +57,14 @@ struct Outcome {
     }
 };
 
-CompileSettings settingsOf(const CompileArguments& arguments) {
+CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) {
     const auto emits = [&](const char* what) {
         return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
     };
     CompileSettings settings;
-    settings.strategies = arguments.strategy == "uber"         ? package::kStrategyUber
-                          : arguments.strategy == "visibility" ? package::kStrategyVisibility
-                                                               : settings.strategies;
-    settings.plan = arguments.plan.options();
+    arguments.tracing.apply(settings);
+    settings.plan = std::move(plan);
     arguments.accuracy.apply(settings);
-    settings.maxShaders = static_cast<int>(arguments.maxShaders);
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
@@ -79,8 +77,8 @@ std::map<int, const CompiledModule*> caseModules(const CompiledPackage* package)
     std::map<int, const CompiledModule*> modules;
     if (package != nullptr) {
         for (const CompiledModule& module : package->modules) {
-            if (module.role == package::ModuleRole::ShadeCase) {
-                modules[module.shaderId] = &module;
+            if (module.key.role == package::ModuleRole::ShadeCase) {
+                modules[static_cast<int>(module.key.index)] = &module;
             }
         }
     }
@@ -96,6 +94,8 @@ Json shadersToJson(const Outcome& outcome) {
                    {"always", featuresToJson(shader.always)},
                    {"sometimes", featuresToJson(shader.sometimes)},
                    {"keys", shader.keys.size()},
+                   {"share", shareToJson(shader.share)},
+                   {"reason", toString(shader.reason)},
                    {"materials", materialsToJson(outcome.scene, shader.materials)}};
         const auto found = modules.find(shader.shaderId);
         if (found != modules.end()) {
@@ -159,11 +159,9 @@ int fail(const Console& console, const Diagnostic& error) {
 }
 
 int planOnly(const Console& console, const CompileArguments& arguments, const Scene& scene,
-             Clock::time_point start) {
-    const CompileSettings settings = settingsOf(arguments);
-    const Plan plan = makePlan(scene.materials, planningInputs(scene), settings.plan);
-    const std::optional<std::string> excess = describeExcess(plan, settings.plan.merge, settings.maxShaders);
-    if (settings.maxShaders > 0 && excess) {
+             const PlanOptions& options, Clock::time_point start) {
+    const Plan plan = makePlan(scene.materials, planningInputs(scene), options);
+    if (const std::optional<std::string> excess = describeExcess(plan, options)) {
         return fail(console, makeError("max-shaders", scene.path, *excess));
     }
     tell(console, Outcome{arguments, scene, plan}, start);
@@ -181,21 +179,28 @@ int compile(const Console& console, const CompileArguments& arguments) {
     console.progress("reading " + arguments.scene);
     ImportOptions import;
     import.variant = arguments.variant;
-    const Result<Scene> scene = importScene(arguments.scene, import);
+    Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         return fail(console, scene.error());
     }
+    Result<PlanChoice> plan = choosePlan(arguments.plan, *scene);
+    if (!plan) {
+        return fail(console, plan.error());
+    }
+    scene->warnings.insert(scene->warnings.end(), plan->warnings.begin(), plan->warnings.end());
     console.report(scene->warnings);
+    console.report(plan->notes);
     if (arguments.warningsAsErrors && !scene->warnings.empty()) {
         return fail(console,
                     makeError("werror", arguments.scene, "has warnings, and --werror makes them errors",
                               "mend them, or leave out --werror"));
     }
     if (arguments.dryRun) {
-        return planOnly(console, arguments, *scene, start);
+        return planOnly(console, arguments, *scene, plan->options, start);
     }
     console.progress("compiling " + arguments.scene);
-    const Result<CompiledPackage> package = compilePackage(*scene, settingsOf(arguments));
+    const Result<CompiledPackage> package =
+        compilePackage(*scene, settingsOf(arguments, std::move(plan->options)));
     if (!package) {
         return fail(console, package.error());
     }
@@ -208,15 +213,10 @@ int compile(const Console& console, const CompileArguments& arguments) {
 }
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
-    addChoice(command, "--strategy", arguments.strategy, {"uber", "visibility", "all"},
-              "which passes the package can run:\nuber: one shader traces and shades; visibility: hits\n"
-              "are ordered by shader first; all: both")
-        .group("Shaders");
+    addTracingLists(command, arguments.tracing);
     addPlanOptions(command, arguments.plan);
+    addProfileInput(command, arguments.plan);
     addAccuracyOptions(command, arguments.accuracy);
-    addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
-               "fail if the scene needs more shaders;\n0: no limit")
-        .group("Shaders");
     addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
         .group("Shaders");
 }
@@ -252,6 +252,7 @@ void addCompile(CLI::App& app, Action& chosen) {
         if (arguments->output.empty() && !arguments->dryRun) {
             throw CLI::RequiredError("-o DIR (or --dry-run)");
         }
+        settleProfile(arguments->plan);
         chosen = [arguments](const Console& console) { return compile(console, *arguments); };
     });
 }

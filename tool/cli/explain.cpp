@@ -2,8 +2,10 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/plan_choice.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/json.h"
 #include "gltf/import.h"
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -104,9 +107,13 @@ Json toJson(const Planned& planned, int material) {
         keys.push_back(Json{{"mask", fmt::format("0x{:016x}", key->mask)},
                             {"features", featuresToJson(key->mask)},
                             {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
+                            {"share", shareToJson(key->share)},
                             {"case",
                              {{"id", shader.shaderId},
                               {"name", shader.name},
+                              {"keys", shader.keys.size()},
+                              {"share", shareToJson(shader.share)},
+                              {"reason", toString(shader.reason)},
                               {"always", featuresToJson(shader.always)},
                               {"sometimes", featuresToJson(shader.sometimes)}}},
                             {"primitives", primitivesOf(planned, *key, material)}});
@@ -119,6 +126,20 @@ Json toJson(const Planned& planned, int material) {
             {"name", materialName(planned.scene, material)},
             {"keys", keys},
             {"dropped", dropped}};
+}
+
+std::string whyText(const Case& shader) {
+    const std::size_t keys = shader.keys.size();
+    return fmt::format("{}: {}{}", toString(shader.reason), explain(shader.reason),
+                       keys > 1 ? fmt::format(" ({} keys)", keys) : std::string());
+}
+
+std::string sharesText(const Planned& planned, const Key& key, const Case& shader) {
+    const bool counted = planned.options.merge == MergePolicy::Profile;
+    const std::string ofCase =
+        shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
+    return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
+                       counted ? "as counted" : "expected from areas");
 }
 
 std::string toText(const Planned& planned, int material) {
@@ -141,6 +162,8 @@ std::string toText(const Planned& planned, int material) {
             }
         }
         rows.push_back({"    case", fmt::format("{} {}", shader.shaderId, shader.name)});
+        rows.push_back({"    why", whyText(shader)});
+        rows.push_back({"    hits", sharesText(planned, *key, shader)});
         rows.push_back({"    branches on", featureList(shader.sometimes)});
         rows.push_back({"    primitives", primitives.front() + more});
     }
@@ -199,8 +222,18 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(materials.error());
         return kExitFailed;
     }
-    Planned planned{*scene, planningInputs(*scene), arguments.plan.options(), {}};
+    Result<PlanChoice> choice = choosePlan(arguments.plan, *scene);
+    if (!choice) {
+        console.report(choice.error());
+        return kExitFailed;
+    }
+    console.report(choice->warnings);
+    console.report(choice->notes);
+    Planned planned{*scene, planningInputs(*scene), std::move(choice->options), {}};
     planned.plan = makePlan(scene->materials, planned.inputs, planned.options);
+    if (const std::optional<std::string> excess = describeExcess(planned.plan, planned.options)) {
+        console.report(makeWarning("max-shaders", scene->path, *excess));
+    }
 
     if (arguments.json) {
         Json list = Json::array();
@@ -238,8 +271,10 @@ void addExplain(CLI::App& app, Action& chosen) {
             "only this one; a number counts from 0 (default: all)");
     addVariant(command, arguments->variant);
     addPlanOptions(command, arguments->plan);
+    addProfileInput(command, arguments->plan);
     addFlag(command, "--json", arguments->json, "print as JSON").group("Report");
     command.callback([arguments, &chosen] {
+        settleProfile(arguments->plan);
         chosen = [arguments](const Console& console) { return explain(console, *arguments); };
     });
 }

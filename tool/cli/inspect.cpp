@@ -42,7 +42,8 @@ struct Contents {
 Result<Contents> gather(const Package& package, const Manifest& manifest) {
     Contents contents{package, manifest, {}, {}};
     for (const package::ModuleEntry& entry : package.modules()) {
-        const Result<SpirvStatistics> statistics = measureSpirv(package.spirv(entry.role, entry.shaderId));
+        const Result<SpirvStatistics> statistics =
+            measureSpirv(package.spirv({entry.role, entry.index, entry.tracer}));
         if (!statistics) {
             return statistics.error();
         }
@@ -58,17 +59,6 @@ std::string nameOf(const Contents& contents, std::uint32_t material) {
     const auto found = contents.manifest.materialNames.find(material);
     return found != contents.manifest.materialNames.end() ? found->second
                                                           : fmt::format("material {}", material);
-}
-
-std::vector<std::string> strategies(const Package& package) {
-    std::vector<std::string> names;
-    if (package.supports(package::kStrategyUber)) {
-        names.emplace_back("uber");
-    }
-    if (package.supports(package::kStrategyVisibility)) {
-        names.emplace_back("visibility");
-    }
-    return names;
 }
 
 // Modules that share a file count once.
@@ -88,9 +78,10 @@ std::uint64_t spirvBytes(const Contents& contents, std::size_t& files) {
 Json modulesToJson(const Contents& contents) {
     Json list = Json::array();
     for (const Module& module : contents.modules) {
-        const bool isCase = module.entry->role == ModuleRole::ShadeCase;
-        list.push_back(Json{{"role", std::string(toString(module.entry->role))},
-                            {"shaderId", isCase ? Json(module.entry->shaderId) : Json(nullptr)},
+        const package::RoleInfo& info = *package::findRole(module.entry->role);
+        const bool isCase = info.repeated == package::Repeated::ByCase;
+        list.push_back(Json{{"role", std::string(info.name)},
+                            {"shaderId", isCase ? Json(module.entry->index) : Json(nullptr)},
                             {"file", std::string(contents.package.string(module.entry->file))},
                             {"bytes", module.entry->bytes},
                             {"instructions", module.statistics.instructions},
@@ -130,7 +121,10 @@ Json toJson(const Contents& contents, const std::string& folder) {
     return {{"package", folder},
             {"version", package::kVersion},
             {"tool", contents.manifest.toolVersion},
-            {"strategies", strategies(package)},
+            {"strategies", strategyNames(package.shape().strategies)},
+            {"tracers", tracerNames(package.shape().tracers)},
+            {"shadows", std::string(package::nameOf(package.shape().shadows))},
+            {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
             {"merge", contents.manifest.merge},
             {"alpha", package.alphaTested() ? "tested" : "opaque"},
             {"variant", contents.manifest.variant.empty() ? Json(nullptr) : Json(contents.manifest.variant)},
@@ -170,12 +164,15 @@ std::string moduleTable(const Contents& contents) {
     std::vector<std::vector<std::string>> rows{
         {"module", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
     for (const Module& module : contents.modules) {
-        const bool isCase = module.entry->role == ModuleRole::ShadeCase;
-        const std::string id = isCase ? fmt::format(" {}", module.entry->shaderId) : std::string();
+        const package::RoleInfo& info = *package::findRole(module.entry->role);
+        const std::string which =
+            info.repeated == package::Repeated::ByCase ? fmt::format(" {}", module.entry->index)
+            : info.repeated == package::Repeated::ByOrdering
+                ? fmt::format(" {}", package::nameOf(static_cast<package::Ordering>(module.entry->index)))
+                : std::string();
         rows.push_back(
-            {std::string(toString(module.entry->role)) + id,
-             std::string(contents.package.string(module.entry->file)), fmt::format("{}", module.entry->bytes),
-             fmt::format("{}", module.statistics.instructions),
+            {std::string(info.name) + which, std::string(contents.package.string(module.entry->file)),
+             fmt::format("{}", module.entry->bytes), fmt::format("{}", module.statistics.instructions),
              fmt::format("{}", module.statistics.textureFetches),
              fmt::format("{}", module.statistics.rayQueries), fmt::format("{}", module.statistics.branches)});
     }
@@ -193,7 +190,10 @@ std::string toText(const Contents& contents, const std::string& folder) {
     const std::string summary = formatFields(
         {{"package", folder},
          {"made by", fmt::format("glint {}, format {}", contents.manifest.toolVersion, package::kVersion)},
-         {"strategies", join(strategies(package))},
+         {"strategies", join(strategyNames(package.shape().strategies))},
+         {"tracers", join(tracerNames(package.shape().tracers))},
+         {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
+         {"hit record", std::string(package::nameOf(package.hitRecord()))},
          {"merge", contents.manifest.merge},
          {"alpha", package.alphaTested() ? "tested" : "opaque"},
          {"variant", contents.manifest.variant.empty() ? "-" : contents.manifest.variant},

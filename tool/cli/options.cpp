@@ -84,6 +84,32 @@ std::string furtherLobes() {
     return text;
 }
 
+constexpr MergePolicy kMergePolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                          MergePolicy::Auto, MergePolicy::Profile};
+constexpr std::string_view kProfilePrefix = "profile:";
+
+// A choice, or profile:FILE.
+CLI::Option& addMerge(CLI::App& command, std::string& value) {
+    const std::vector<std::string> choices{"none", "family", "all", "auto", "profile"};
+    CLI::Option* option =
+        command
+            .add_option("--merge", value,
+                        fmt::format("which permutations share a shader:\n"
+                                    "none: every permutation its own; family: those with the\n"
+                                    "same lobes; all: one shader; auto: by a cost model, within\n"
+                                    "--max-shaders; profile: those with many counted hits their\n"
+                                    "own, the others merged (default: {})",
+                                    value))
+            ->type_name("none|family|all|auto|profile[:FILE]");
+    return check(option, [choices](const std::string& text) {
+        const bool isKnown = std::find(choices.begin(), choices.end(), text) != choices.end();
+        const bool namesFile = text.starts_with(kProfilePrefix) && text.size() > kProfilePrefix.size();
+        return isKnown || namesFile ? std::string()
+                                    : fmt::format("{} is none of {} or profile:FILE{}", quoted(text),
+                                                  fmt::join(choices, ", "), suggestion(text, choices));
+    });
+}
+
 }  // namespace
 
 CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
@@ -165,9 +191,12 @@ CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, c
 
 PlanOptions PlanArguments::options() const {
     PlanOptions plan;
-    plan.merge = merge == "none"  ? MergePolicy::None
-                 : merge == "all" ? MergePolicy::All
-                                  : MergePolicy::Family;
+    for (const MergePolicy policy : kMergePolicies) {
+        if (merge == toString(policy)) {
+            plan.merge = policy;
+        }
+    }
+    plan.maxShaders = static_cast<int>(maxShaders);
     plan.keys.alpha = alpha == "tested" ? AlphaPolicy::Tested : AlphaPolicy::Opaque;
     plan.keys.keptLobes = 0;
     for (const std::string& name : hitLobes) {
@@ -177,10 +206,11 @@ PlanOptions PlanArguments::options() const {
 }
 
 std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments) {
-    CLI::Option& merge = addChoice(command, "--merge", arguments.merge, {"none", "family", "all"},
-                                   "which permutations share a shader:\n"
-                                   "none: every permutation its own; family: those with the\n"
-                                   "same lobes; all: one shader");
+    CLI::Option& merge = addMerge(command, arguments.merge);
+    CLI::Option& limit = addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
+                                    "fail if the scene needs more shaders, but\n"
+                                    "--merge auto and profile make no more;\n"
+                                    "0: no limit, but 32 for those two");
     CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"opaque", "tested"},
                                    "alpha masks of hits; opaque: ignored;\ntested: each candidate is tested");
     CLI::Option& lobes = addChoices(command, "--hit-lobes", arguments.hitLobes, hitLobeChoices(),
@@ -189,10 +219,33 @@ std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& argum
                                     "specularGlossiness, ior, specular; others:\n" +
                                         furtherLobes());
     lobes.type_name("all|base|LIST");
-    for (CLI::Option* option : {&merge, &alpha, &lobes}) {
+    for (CLI::Option* option : {&merge, &limit, &alpha, &lobes}) {
         option->group("Shaders");
     }
-    return {&merge, &alpha, &lobes};
+    return {&merge, &limit, &alpha, &lobes};
+}
+
+void addProfileInput(CLI::App& command, PlanArguments& arguments) {
+    addText(command, "--profile", arguments.profile, "FILE",
+            "hits that `glint render --profile FILE` counted,\nfor --merge profile")
+        .group("Shaders");
+}
+
+void settleProfile(PlanArguments& arguments) {
+    if (arguments.merge.starts_with(kProfilePrefix)) {
+        if (!arguments.profile.empty()) {
+            throw CLI::ValidationError("--merge", "names a profile, and --profile another: give one of them");
+        }
+        arguments.profile = arguments.merge.substr(kProfilePrefix.size());
+        arguments.merge = "profile";
+    }
+    if (arguments.merge == "profile" && arguments.profile.empty()) {
+        throw CLI::ValidationError(
+            "--merge", "profile needs the hits that `glint render --profile FILE` counted: profile:FILE");
+    }
+    if (arguments.merge != "profile" && !arguments.profile.empty()) {
+        throw CLI::ValidationError("--profile", "is for --merge profile, not for --merge " + arguments.merge);
+    }
 }
 
 void AccuracyArguments::apply(CompileSettings& settings) const {

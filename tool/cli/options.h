@@ -47,10 +47,18 @@ struct PlanArguments {
     std::string merge = "family";
     std::string alpha = "opaque";
     std::vector<std::string> hitLobes{"all"};
+    std::int64_t maxShaders = 0;
+    std::string profile;  // file of hit counts that --merge profile reads
+    // Everything but the hits of a profile, which choosePlan() reads.
     PlanOptions options() const;
 };
 // Returns the options, for commands that must know which are given.
 std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments);
+// --profile FILE, for commands that read profiles.
+void addProfileInput(CLI::App& command, PlanArguments& arguments);
+// Takes FILE out of `--merge profile:FILE`. Throws a CLI::ParseError where the policy and the profile
+// disagree.
+void settleProfile(PlanArguments& arguments);
 
 // How exact shaders are: the same options for every command that compiles.
 struct AccuracyArguments {

@@ -2,9 +2,12 @@
 #include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/plan_choice.h"
 #include "cli/render_input.h"
+#include "cli/render_profile.h"
 #include "cli/render_report.h"
 #include "cli/scene_view.h"
+#include "cli/tracing_options.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
 #include "image/tone.h"
@@ -17,6 +20,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,7 +35,8 @@ constexpr double kMaxExposure = 32.0;
 struct RenderArguments {
     std::string scene;
     std::string output;
-    std::string strategy = "visibility";
+    TracingArguments tracing;
+    FrameArguments frame;
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;
@@ -41,11 +46,10 @@ struct RenderArguments {
     std::int64_t seed = 0;
     std::string camera;
     std::string exposure = "auto";
-    bool noReflections = false;
-    double maxRoughness = 0.3;
     std::string sun = "auto";
     bool validate = false;
     std::string stats;
+    std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
     bool json = false;
 };
@@ -66,7 +70,7 @@ bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
 }
 
 package::Strategy strategyOf(const RenderArguments& arguments) {
-    return arguments.strategy == "uber" ? package::kStrategyUber : package::kStrategyVisibility;
+    return strategyNamed(arguments.tracing.strategies.front());
 }
 
 SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
@@ -78,7 +82,8 @@ SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
 }
 
 // The package that is asked for, checked, or one that is made now; fills in what the report says of it.
-Result<Package> obtainPackage(const RenderArguments& arguments, const Scene& scene, RenderReport& report) {
+Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan, const Scene& scene,
+                              RenderReport& report) {
     if (!arguments.package.empty()) {
         Result<Package> package = Package::load(arguments.package);
         if (!package) {
@@ -89,12 +94,12 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const Scene& sce
     }
     const Clock::time_point start = Clock::now();
     CompileSettings settings;
-    settings.strategies = strategyOf(arguments);
-    settings.plan = arguments.plan.options();
+    arguments.tracing.apply(settings);
+    settings.plan = plan;
     arguments.accuracy.apply(settings);
     Result<Package> package = compileTemporary(scene, settings);
     report.compileMs = millisecondsSince(start);
-    report.merge = arguments.plan.merge;
+    report.merge = std::string(toString(plan.merge));
     return package;
 }
 
@@ -103,6 +108,22 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
     return Context::createHeadless(options);
+}
+
+RendererOptions rendererOptions(const RenderArguments& arguments, const RenderReport& report) {
+    RendererOptions options;
+    options.strategy = strategyOf(arguments);
+    options.width = report.width;
+    options.height = report.height;
+    // A package may have the one tracer only.
+    if (arguments.package.empty()) {
+        options.tracer = options.strategy == package::kStrategyHitShaders
+                             ? package::kTracerRayPipeline
+                             : tracerNamed(arguments.tracing.tracers.front());
+    }
+    options.checkOrder = arguments.validate;
+    arguments.frame.apply(options);
+    return options;
 }
 
 // Renders, and fills in what was measured.
@@ -115,7 +136,7 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
     }
     report.sceneStatistics = (*scene)->statistics();
     const Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context, package, **scene, {strategyOf(arguments), report.width, report.height});
+        Renderer::create(context, package, **scene, rendererOptions(arguments, report));
     if (!renderer) {
         return renderer.error();
     }
@@ -123,11 +144,20 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
 
     FrameOptions frame;
     frame.camera = camera;
-    frame.maxReflectionRoughness = static_cast<float>(arguments.maxRoughness);
-    frame.reflections = !arguments.noReflections;
+    arguments.frame.apply(frame);
     frame.seed = report.seed;
     const Clock::time_point start = Clock::now();
-    Result<LinearImage> image = (*renderer)->render(frame, report.samples);
+    const auto addHits = [&]() -> Status {
+        const Result<FrameCounters> counters = (*renderer)->counters();
+        if (!counters) {
+            return counters.error();
+        }
+        report.addHits(*counters);
+        return okStatus();
+    };
+    const bool countsHits = !arguments.profileOutput.empty();
+    Result<LinearImage> image =
+        (*renderer)->render(frame, report.samples, countsHits ? addHits : std::function<Status()>());
     report.renderMs = millisecondsSince(start);
     if (!image) {
         return image;
@@ -181,7 +211,7 @@ Status writeResults(const RenderArguments& arguments, const LinearImage& image, 
 
 // Everything between the scene and the files.
 Status render(const Console& console, const RenderArguments& arguments, const Scene& scene,
-              RenderReport& report) {
+              const PlanOptions& plan, RenderReport& report) {
     const SceneViewData data = sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     const Result<CameraChoice> camera = chooseCamera(scene, data, arguments.camera, aspect);
@@ -197,7 +227,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
     console.progress("compiling " + arguments.scene);
-    const Result<Package> package = obtainPackage(arguments, scene, report);
+    const Result<Package> package = obtainPackage(arguments, plan, scene, report);
     if (!package) {
         return package.error();
     }
@@ -210,21 +240,30 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
         return image.error();
     }
     warnOfNonFinite(console, report);
-    return valid ? writeResults(arguments, *image, report) : valid;
+    Status done = valid ? writeResults(arguments, *image, report) : valid;
+    if (!done || arguments.profileOutput.empty()) {
+        return done;
+    }
+    std::vector<Diagnostic> warnings;
+    done = writeProfile(arguments.profileOutput, scene, plan, report.hits, warnings);
+    console.report(warnings);
+    return done;
 }
 
 int run(const Console& console, const RenderArguments& arguments) {
     RenderReport report;
     report.scene = arguments.scene;
     report.image = arguments.output;
-    report.strategy = arguments.strategy;
+    report.strategy = arguments.tracing.strategies.front();
     report.samples = static_cast<std::uint32_t>(arguments.samples);
     report.seed = static_cast<std::uint32_t>(arguments.seed);
     parseSize(arguments.size, report.width, report.height);
 
     Status status = checkOutputFile(arguments.output);
-    if (status && !arguments.stats.empty()) {
-        status = checkOutputFile(arguments.stats);
+    for (const std::string& file : {arguments.stats, arguments.profileOutput}) {
+        if (status && !file.empty()) {
+            status = checkOutputFile(file);
+        }
     }
     if (!status) {
         console.report(status.error());
@@ -240,7 +279,14 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    status = render(console, arguments, *scene, report);
+    const Result<PlanChoice> plan = choosePlan(arguments.plan, *scene);
+    if (!plan) {
+        console.report(plan.error());
+        return kExitFailed;
+    }
+    console.report(plan->warnings);
+    console.report(plan->notes);
+    status = render(console, arguments, *scene, plan->options, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;
@@ -279,10 +325,6 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             },
             ""))
         ->group(group);
-    addFlag(command, "--no-reflections", arguments.noReflections, "send no reflection rays").group(group);
-    addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
-            "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
-        .group(group);
     addChoice(command, "--sun", arguments.sun, {"auto", "on", "off"},
               "add a directional light; auto: if the scene has no light")
         .group(group);
@@ -296,6 +338,11 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
         .group("Device");
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addText(command, "--profile", arguments.profileOutput, "FILE.json",
+            "count the hits of every permutation, for the option\n"
+            "--merge profile of compile; needs --merge none (here\n"
+            "the default then) and --strategy visibility")
+        .group("Report");
     addFlag(command, "--json", arguments.json, "print times and counters as JSON").group("Report");
 }
 
@@ -313,15 +360,17 @@ void addRender(CLI::App& app, Action& chosen) {
                    "linear, 32-bit float")
         .required();
     addPictureOptions(command, *arguments);
-    addChoice(command, "--strategy", arguments->strategy, {"uber", "visibility"}, "how hits are shaded")
-        .group("Shaders");
+    addFrameOptions(command, arguments->frame);
+    const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
     std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);
     for (CLI::Option* option : addAccuracyOptions(command, arguments->accuracy)) {
         decided.push_back(option);
     }
+    decided.insert(decided.end(), placed.begin(), placed.end());
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
-            "(excludes --merge, --alpha, --hit-lobes,\n--energy-compensation and --texture-lod)")
+            "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod "
+            "and --profile)")
         .group("Shaders");
     addDeviceOptions(command, *arguments);
     command.callback([arguments, decided, &chosen] {
@@ -330,6 +379,10 @@ void addRender(CLI::App& app, Action& chosen) {
                 throw CLI::ExcludesError(option->get_name(), "--package");
             }
         }
+        settleProfileOutput(arguments->profileOutput, arguments->package,
+                            arguments->tracing.strategies.front(), decided.front()->count() > 0,
+                            arguments->plan);
+        settleProfile(arguments->plan);
         chosen = [arguments](const Console& console) { return run(console, *arguments); };
     });
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace glint {
 
 namespace {
@@ -18,6 +20,14 @@ std::string milliseconds(double value) {
 }
 
 }  // namespace
+
+void RenderReport::addHits(const FrameCounters& sample) {
+    // The first bucket is for misses.
+    hits.resize(std::max(hits.size(), sample.bucketCounts.empty() ? 0 : sample.bucketCounts.size() - 1));
+    for (std::size_t bucket = 1; bucket < sample.bucketCounts.size(); ++bucket) {
+        hits[bucket - 1] += sample.bucketCounts[bucket];
+    }
+}
 
 Json toJson(const RenderReport& report) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
@@ -59,6 +69,10 @@ Json toJson(const RenderReport& report) {
               {"skippedSky", counters.skippedSky},
               {"skippedRough", counters.skippedRough},
               {"skippedUnlit", counters.skippedUnlit},
+              {"skippedBlack", counters.skippedBlack},
+              {"screenHits", counters.screenHits},
+              {"shadowRays", counters.shadowRays},
+              {"orderErrors", counters.orderErrors},
               {"unknownShader", counters.unknownShader},
               {"nonFinite", counters.nonFinite},
               {"buckets", counters.bucketCounts}}}};
@@ -82,8 +96,10 @@ std::string toText(const RenderReport& report) {
     }
     rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
     rows.push_back({"render", milliseconds(report.renderMs)});
-    rows.push_back({"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit)", counters.rays,
-                                        counters.skippedSky, counters.skippedRough, counters.skippedUnlit)});
+    rows.push_back(
+        {"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit, {} black, {} in screen space)",
+                             counters.rays, counters.skippedSky, counters.skippedRough, counters.skippedUnlit,
+                             counters.skippedBlack, counters.screenHits)});
     if (scene.narrowedTextures > 0) {
         rows.push_back(
             {"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",

@@ -30,9 +30,12 @@ struct RenderReport {
     std::uint32_t cases = 0;
     GpuScene::Statistics sceneStatistics;
     double pipelineCreationMs = 0.0;
-    double renderMs = 0.0;           // wall clock, all samples and the read-back
-    std::vector<PassTiming> passes;  // of the last sample
-    FrameCounters counters;          // of the last sample; nonFinite: of all
+    double renderMs = 0.0;            // wall clock, all samples and the read-back
+    std::vector<PassTiming> passes;   // of the last sample
+    FrameCounters counters;           // of the last sample; nonFinite: of all
+    std::vector<std::uint64_t> hits;  // by shader ID, of all samples that were given to addHits()
+
+    void addHits(const FrameCounters& sample);
 };
 
 Json toJson(const RenderReport& report);

@@ -42,11 +42,14 @@ void addModuleFiles(CompiledPackage& package, bool emitGlsl) {
 }
 
 Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& settings) {
-    constexpr std::uint32_t kKnown = package::kStrategyUber | package::kStrategyVisibility;
-    if (settings.strategies == 0 || (settings.strategies & ~kKnown) != 0) {
+    if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
         return makeError("strategy", scene.path,
                          fmt::format("{:#x} is no set of strategies", settings.strategies),
-                         "choose uber, visibility or both");
+                         "choose among uber, visibility, sorted-uber and hit-shaders");
+    }
+    if (settings.tracers == 0 || settings.tracers > package::kAllTracers) {
+        return makeError("tracer", scene.path, fmt::format("{:#x} is no set of tracers", settings.tracers),
+                         "choose ray-query, ray-pipeline or both");
     }
     if (Status valid = checkScene(scene); !valid) {
         return valid.error();
@@ -54,12 +57,16 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
     const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
     CompiledPackage package;
     package.plan = makePlan(scene.materials, primitives, settings.plan);
-    if (const auto excess = describeExcess(package.plan, settings.plan.merge, settings.maxShaders)) {
+    if (const auto excess = describeExcess(package.plan, settings.plan)) {
         return makeError("max-shaders", scene.path, *excess);
     }
 
     // Plan to GLSL to SPIR-V.
-    const SourceSet sources = makeSourceSet(scene, package.plan, settings);
+    Result<SourceSet> made = makeSourceSet(scene, package.plan, settings);
+    if (!made) {
+        return made.error();
+    }
+    const SourceSet& sources = *made;
     Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, package.plan, sources, settings);
     if (!modules) {
         return modules.error();
@@ -92,6 +99,26 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
 
 std::string_view toString(TextureLod lod) {
     return lod == TextureLod::Cones ? "cones" : "mip0";
+}
+
+std::vector<std::string> strategyNames(std::uint32_t strategies) {
+    std::vector<std::string> names;
+    for (const package::Strategy strategy : package::kStrategies) {
+        if ((strategies & strategy) != 0) {
+            names.emplace_back(package::nameOf(strategy));
+        }
+    }
+    return names;
+}
+
+std::vector<std::string> tracerNames(std::uint32_t tracers) {
+    std::vector<std::string> names;
+    for (const package::Tracer tracer : package::kTracers) {
+        if ((tracers & tracer) != 0) {
+            names.emplace_back(package::nameOf(tracer));
+        }
+    }
+    return names;
 }
 
 Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {

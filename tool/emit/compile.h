@@ -6,7 +6,7 @@
 #include "plan/plan.h"
 #include "spirv/statistics.h"
 
-#include <glint/package_format.h>
+#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>
@@ -25,10 +25,13 @@ enum class TextureLod : std::uint8_t {
 
 struct CompileSettings {
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    std::uint32_t tracers = package::kTracerRayQuery;
+    package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+    package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
+    bool environmentMap = false;  // rays that leave the scene read an environment map instead of a gradient
     PlanOptions plan;
     bool energyCompensation = true;  // of light that bounces between microfacets more than once
     TextureLod textureLod = TextureLod::Cones;
-    int maxShaders = 0;      // cases; 0: no limit
     int jobs = 0;            // threads; 0: one a core
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // the flattened sources, in glsl/
@@ -36,11 +39,13 @@ struct CompileSettings {
 };
 
 std::string_view toString(TextureLod lod);
+// Of a set of bits.
+std::vector<std::string> strategyNames(std::uint32_t strategies);
+std::vector<std::string> tracerNames(std::uint32_t tracers);
 
 // One SPIR-V module of the package. Modules with equal bytes share `file`.
 struct CompiledModule {
-    package::ModuleRole role = package::ModuleRole::Trace;
-    int shaderId = 0;  // ShadeCase only
+    package::ModuleKey key;
     std::string name;  // "uber.comp", "shade_2_BaseTex.comp": also the name of the GLSL file
     std::string file;  // "uber.spv": within the package
     std::vector<std::uint32_t> spirv;
@@ -56,7 +61,7 @@ struct PackageFile {
 
 struct CompiledPackage {
     Plan plan;
-    std::vector<CompiledModule> modules;  // in order of role, then shader ID
+    std::vector<CompiledModule> modules;  // in order of their keys
     std::vector<PackageFile> files;       // everything that writePackage() writes, sorted by name
     int uniqueSpirv = 0;
     std::uint64_t spirvBytes = 0;  // of the unique modules

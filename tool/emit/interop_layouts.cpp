@@ -34,6 +34,7 @@ constexpr MemberLayout kTextureRecord[] = {
     GLINT_MEMBER(TextureRecord, textureIndex), GLINT_MEMBER(TextureRecord, samplerIndex),
     GLINT_MEMBER(TextureRecord, texCoord),     GLINT_MEMBER(TextureRecord, rowU),
     GLINT_MEMBER(TextureRecord, rowV),         GLINT_MEMBER(TextureRecord, texels),
+    GLINT_MEMBER(TextureRecord, anisotropy),
 };
 
 constexpr MemberLayout kMaterialRecord[] = {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdint>
 
 namespace glint {
@@ -12,6 +13,11 @@ inline nlohmann::ordered_json countToJson(double count) {
     constexpr double kLargest = 9007199254740992.0;  // 2^53
     return count <= kLargest ? nlohmann::ordered_json(static_cast<std::uint64_t>(count))
                              : nlohmann::ordered_json(count);
+}
+
+// A share of hits to four decimals, which is more than is known of it.
+inline nlohmann::ordered_json shareToJson(double share) {
+    return std::round(share * 1e4) / 1e4;
 }
 
 }  // namespace glint

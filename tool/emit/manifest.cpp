@@ -18,17 +18,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json strategyNames(std::uint32_t strategies) {
-    Json names = Json::array();
-    if ((strategies & package::kStrategyUber) != 0) {
-        names.push_back("uber");
-    }
-    if ((strategies & package::kStrategyVisibility) != 0) {
-        names.push_back("visibility");
-    }
-    return names;
-}
-
 // The path below the scene's folder; a package must not tell where it was built.
 std::string relativeName(const std::string& path, const std::string& scenePath) {
     const std::filesystem::path folder = std::filesystem::path(scenePath).parent_path().lexically_normal();
@@ -63,9 +52,13 @@ Json features() {
 }
 
 Json settingsOf(const CompileSettings& settings) {
-    return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
+    return {{"maxShaders", settings.plan.maxShaders},
+            {"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
             {"energyCompensation", settings.energyCompensation},
-            {"textureLod", toString(settings.textureLod)}};
+            {"textureLod", toString(settings.textureLod)},
+            {"shadows", package::nameOf(settings.shadows)},
+            {"hitRecord", package::nameOf(settings.hitRecord)},
+            {"sky", settings.environmentMap ? "map" : "gradient"}};
 }
 
 Json materialList(const Scene& scene, const std::vector<int>& materials) {
@@ -91,8 +84,13 @@ Json moduleEntry(const CompiledModule& module) {
 Json stages(const CompiledPackage& package, int shaderId) {
     Json object = Json::object();
     for (const CompiledModule& module : package.modules) {
-        if (module.role == package::ModuleRole::ShadeCase && module.shaderId == shaderId) {
-            object["visibility"] = moduleEntry(module);
+        const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
+        if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
+            const bool hit = module.key.role == package::ModuleRole::HitCase;
+            const bool pipeline = !hit && module.key.tracer == package::kTracerRayPipeline;
+            object[hit        ? "hit-shaders"
+                   : pipeline ? "visibility, ray-pipeline"
+                              : "visibility"] = moduleEntry(module);
         }
     }
     return object;
@@ -106,6 +104,8 @@ Json shaders(const Scene& scene, const CompiledPackage& package) {
                         {"always", featureNames(shaderCase.always)},
                         {"sometimes", featureNames(shaderCase.sometimes)},
                         {"keys", shaderCase.keys.size()},
+                        {"share", shareToJson(shaderCase.share)},
+                        {"reason", toString(shaderCase.reason)},
                         {"materials", materialList(scene, shaderCase.materials)},
                         {"stages", stages(package, shaderCase.shaderId)}});
     }
@@ -115,8 +115,8 @@ Json shaders(const Scene& scene, const CompiledPackage& package) {
 Json passes(const CompiledPackage& package) {
     Json list = Json::array();
     for (const CompiledModule& module : package.modules) {
-        if (module.role != package::ModuleRole::ShadeCase) {
-            Json entry = {{"role", toString(module.role)}};
+        if (package::findRole(module.key.role)->repeated != package::Repeated::ByCase) {
+            Json entry = {{"role", package::roleName(module.key.role)}};
             entry.update(moduleEntry(module));
             list.push_back(std::move(entry));
         }
@@ -131,6 +131,7 @@ Json keys(const CompiledPackage& package) {
                         {"mask", fmt::format("{:#018x}", key.mask)},
                         {"primitives", key.primitives.size()},
                         {"materials", key.materials},
+                        {"share", shareToJson(key.share)},
                         {"shaderId", key.shaderId}});
     }
     return list;
@@ -186,6 +187,7 @@ std::string makeManifest(const Scene& scene, const CompiledPackage& package,
     manifest["source"] = std::filesystem::path(scene.path).filename().string();
     manifest["sources"] = sources(scene);
     manifest["strategies"] = strategyNames(settings.strategies);
+    manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = toString(settings.plan.merge);
     manifest["alpha"] = toString(settings.plan.keys.alpha);
     manifest["settings"] = settingsOf(settings);

@@ -18,48 +18,115 @@ using package::ModuleRole;
 
 namespace {
 
-constexpr std::uint32_t kBothStrategies = package::kStrategyUber | package::kStrategyVisibility;
 // File systems allow 255 bytes; the shader ID alone makes a name unique.
 constexpr std::size_t kMaxCaseNameLength = 100;
 
-// A pass: its source below shaders/, or its template, and which strategies dispatch it.
-struct PassInfo {
+// Where a role's GLSL is: below shaders/, or a template.
+struct RoleSource {
     ModuleRole role;
-    std::string_view roleName;
-    ShaderStage stage;
-    std::uint32_t strategies;
     std::string_view source;
 };
 
-constexpr PassInfo kPasses[] = {
-    {ModuleRole::GBufferVertex, "GBufferVertex", ShaderStage::Vertex, kBothStrategies, "passes/gbuffer.vert"},
-    {ModuleRole::GBufferFragment, "GBufferFragment", ShaderStage::Fragment, kBothStrategies,
-     "passes/gbuffer.frag"},
-    {ModuleRole::Lighting, "Lighting", ShaderStage::Compute, kBothStrategies, "passes/lighting.comp"},
-    {ModuleRole::ReflectionRays, "ReflectionRays", ShaderStage::Compute, kBothStrategies,
-     "passes/reflection_rays.comp"},
-    {ModuleRole::RayDispatch, "RayDispatch", ShaderStage::Compute, kBothStrategies,
-     "passes/ray_dispatch.comp"},
-    {ModuleRole::UberShade, "UberShade", ShaderStage::Compute, package::kStrategyUber, "uber.comp.mustache"},
-    {ModuleRole::Trace, "Trace", ShaderStage::Compute, package::kStrategyVisibility, "passes/trace.comp"},
-    {ModuleRole::BucketCount, "BucketCount", ShaderStage::Compute, package::kStrategyVisibility,
-     "passes/bucket_count.comp"},
-    {ModuleRole::BucketOffset, "BucketOffset", ShaderStage::Compute, package::kStrategyVisibility,
-     "passes/bucket_offset.comp"},
-    {ModuleRole::BucketCopy, "BucketCopy", ShaderStage::Compute, package::kStrategyVisibility,
-     "passes/bucket_copy.comp"},
-    {ModuleRole::ShadeMiss, "ShadeMiss", ShaderStage::Compute, package::kStrategyVisibility,
-     "passes/shade_miss.comp"},
-    {ModuleRole::ShadeCase, "ShadeCase", ShaderStage::Compute, package::kStrategyVisibility,
-     "shade_case.comp.mustache"},
-    {ModuleRole::Compose, "Compose", ShaderStage::Compute, kBothStrategies, "passes/compose.comp"},
+constexpr RoleSource kSources[] = {
+    {ModuleRole::GBufferVertex, "passes/gbuffer.vert"},
+    {ModuleRole::GBufferFragment, "passes/gbuffer.frag"},
+    {ModuleRole::Lighting, "passes/lighting.comp"},
+    {ModuleRole::ReflectionRays, "passes/reflection_rays.comp"},
+    {ModuleRole::RayDispatch, "passes/ray_dispatch.comp"},
+    {ModuleRole::UberShade, "passes/uber.comp"},
+    {ModuleRole::Trace, "passes/trace.comp"},
+    {ModuleRole::BucketCount, "passes/bucket_count.comp"},
+    {ModuleRole::BucketOffset, "passes/bucket_offset.comp"},
+    {ModuleRole::BucketCopy, "passes/bucket_copy.comp"},
+    {ModuleRole::ShadeMiss, "passes/shade_miss.comp"},
+    {ModuleRole::ShadeCase, "shade_case.comp.mustache"},
+    {ModuleRole::Compose, "passes/compose.comp"},
+    {ModuleRole::SortedShade, "passes/sorted_shade.comp"},
+    {ModuleRole::ShadowDispatch, "passes/shadow_dispatch.comp"},
+    {ModuleRole::ShadowTrace, "passes/shadow_trace.comp"},
+    {ModuleRole::OrderCheck, "passes/order_check.comp"},
+    {ModuleRole::TraceClosestHit, "passes/trace.rchit"},
+    {ModuleRole::TraceAnyHit, "passes/trace.rahit"},
+    {ModuleRole::TraceMiss, "passes/trace.rmiss"},
+    {ModuleRole::HitTrace, "passes/hit_trace.rgen"},
+    {ModuleRole::HitCase, "hit_case.rchit.mustache"},
+    {ModuleRole::HitUnknown, "passes/hit_unknown.rchit"},
+    {ModuleRole::HitMiss, "passes/hit_miss.rmiss"},
 };
 
+ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
+    switch (info.kind) {
+        case package::ShaderKind::Vertex:
+            return ShaderStage::Vertex;
+        case package::ShaderKind::Fragment:
+            return ShaderStage::Fragment;
+        case package::ShaderKind::Compute:
+            return ShaderStage::Compute;
+        case package::ShaderKind::Tracing:
+            return tracer == package::kTracerRayPipeline ? ShaderStage::RayGeneration : ShaderStage::Compute;
+        case package::ShaderKind::RayGeneration:
+            return ShaderStage::RayGeneration;
+        case package::ShaderKind::ClosestHit:
+            return ShaderStage::ClosestHit;
+        case package::ShaderKind::AnyHit:
+            return ShaderStage::AnyHit;
+        case package::ShaderKind::Miss:
+            return ShaderStage::Miss;
+    }
+    return ShaderStage::Compute;
+}
+
 constexpr std::string_view kTemplateSuffix = ".mustache";
+constexpr std::string_view kComputeSuffix = ".comp";
+
+// "passes/lighting.comp" gives lighting.comp, or lighting.rgen where it is a ray generation shader; what
+// there are several of says which it is.
+std::string moduleName(std::string_view source, const package::RoleInfo& info, const package::ModuleKey& key,
+                       std::string_view caseName) {
+    std::string name(source.substr(source.find('/') + 1));
+    if (name.ends_with(kTemplateSuffix)) {
+        name.resize(name.size() - kTemplateSuffix.size());
+    }
+    const std::size_t dot = name.rfind('.');
+    std::string extension = name.substr(dot);
+    name.resize(dot);
+    if (info.repeated == package::Repeated::ByCase) {
+        // "shade_case" gives shade_2_BaseTex.
+        name.resize(name.rfind('_') + 1);
+        name += fmt::format("{}_{}", key.index, caseName.substr(0, kMaxCaseNameLength));
+    } else if (info.repeated == package::Repeated::ByOrdering) {
+        name += fmt::format("_{}", package::nameOf(static_cast<package::Ordering>(key.index)));
+        std::ranges::replace(name, '-', '_');
+    }
+    if (extension == kComputeSuffix && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
+        extension = ".rgen";
+    }
+    return name + extension;
+}
+
+// What a module knows of itself, before anything else of its text.
+std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKey& key) {
+    std::string defines;
+    const ShaderStage stage = stageOf(info, key.tracer);
+    if (stage != ShaderStage::Vertex && stage != ShaderStage::Fragment) {
+        defines += fmt::format("#define GLINT_TRACER {}\n#define GLINT_RAY_GENERATION {}\n", key.tracer,
+                               stage == ShaderStage::RayGeneration ? 1 : 0);
+    }
+    if (info.repeated == package::Repeated::ByOrdering) {
+        defines += fmt::format("#define GLINT_ORDERING {}\n", key.index);
+    }
+    return defines;
+}
+
+// After the line of #version, which has to come first.
+void insertDefines(std::string& text, const std::string& defines) {
+    if (!defines.empty()) {
+        text.insert(text.find('\n') + 1, defines + "#line 2\n");
+    }
+}
 
 // "uber.comp" is compiled to uber.spv; other stages keep theirs in the name: gbuffer.vert.spv.
 std::string spirvFileName(const ModuleSource& source) {
-    constexpr std::string_view kComputeSuffix = ".comp";
     std::string_view stem = source.name;
     if (stem.ends_with(kComputeSuffix)) {
         stem.remove_suffix(kComputeSuffix.size());
@@ -67,23 +134,26 @@ std::string spirvFileName(const ModuleSource& source) {
     return std::string(stem) + ".spv";
 }
 
-Result<ModuleSource> makeModule(const PassInfo& pass, std::string name, const SourceSet& sources,
+Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
+                                std::string_view caseName, const SourceSet& sources,
                                 const kainjow::mustache::data& context) {
-    ModuleSource module{pass.role, 0, pass.stage, std::move(name), {}, {}};
+    const package::RoleInfo& info = *package::findRole(key.role);
+    ModuleSource module{key, stageOf(info, key.tracer), moduleName(source, info, key, caseName), {}, {}};
     std::string text;
-    std::string origin(pass.source);
-    if (pass.source.ends_with(kTemplateSuffix)) {
-        Result<std::string> rendered = renderTemplate(sources, pass.source, context);
+    std::string origin(source);
+    if (source.ends_with(kTemplateSuffix)) {
+        Result<std::string> rendered = renderTemplate(sources, source, context);
         if (!rendered) {
             return rendered.error();
         }
         text = std::move(*rendered);
         origin = module.name;
-    } else if (const std::optional<std::string_view> found = sources.find(pass.source)) {
+    } else if (const std::optional<std::string_view> found = sources.find(source)) {
         text = *found;
     } else {
         return makeError("source-include", origin, "there is no such shader");
     }
+    insertDefines(text, moduleDefines(info, key));
     Result<std::string> flattened = flatten(origin, text, sources.lookup(), FlattenSide::Glsl);
     if (!flattened) {
         return flattened.error();
@@ -103,8 +173,7 @@ Result<CompiledModule> compileModule(ModuleSource& source, bool debugInfo) {
         return statistics.error();
     }
     CompiledModule module;
-    module.role = source.role;
-    module.shaderId = source.shaderId;
+    module.key = source.key;
     module.file = spirvFileName(source);
     module.name = std::move(source.name);
     module.glsl = std::move(source.glsl);
@@ -158,9 +227,9 @@ void shareFiles(std::vector<CompiledModule>& modules) {
 
 }  // namespace
 
-std::string_view toString(ModuleRole role) {
-    const auto* const pass = std::ranges::find(kPasses, role, &PassInfo::role);
-    return pass == std::end(kPasses) ? "unknown" : pass->roleName;
+package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings) {
+    return {settings.strategies, settings.tracers, settings.shadows,
+            settings.plan.keys.alpha == AlphaPolicy::Tested, static_cast<std::uint32_t>(plan.cases.size())};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Plan& plan,
@@ -168,38 +237,24 @@ Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Pl
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scene, plan, settings.plan);
     std::vector<ModuleSource> modules;
-    for (const PassInfo& pass : kPasses) {
-        if ((pass.strategies & settings.strategies) == 0) {
-            continue;
+    for (const package::ModuleKey& key : package::requiredModules(shapeOf(plan, settings))) {
+        const bool ofCase = package::findRole(key.role)->repeated == package::Repeated::ByCase;
+        if (ofCase) {
+            addCase(context, scene, plan.cases[key.index]);
         }
-        if (pass.role != ModuleRole::ShadeCase) {
-            std::string name(pass.source.substr(pass.source.find('/') + 1));
-            if (name.ends_with(kTemplateSuffix)) {
-                name.resize(name.size() - kTemplateSuffix.size());
-            }
-            Result<ModuleSource> module = makeModule(pass, std::move(name), sources, context);
-            if (!module) {
-                return module.error();
-            }
-            if (pass.role == ModuleRole::UberShade) {
-                for (const Case& shaderCase : plan.cases) {
-                    module->functionsApart.push_back("shade" + shaderCase.name);
-                }
-            }
-            modules.push_back(std::move(*module));
-            continue;
+        const auto* const source = std::ranges::find(kSources, key.role, &RoleSource::role);
+        Result<ModuleSource> module =
+            makeModule(source->source, key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
+                       sources, context);
+        if (!module) {
+            return module.error();
         }
-        for (const Case& shaderCase : plan.cases) {
-            addCase(context, scene, shaderCase);
-            const std::string name = fmt::format("shade_{}_{}.comp", shaderCase.shaderId,
-                                                 shaderCase.name.substr(0, kMaxCaseNameLength));
-            Result<ModuleSource> module = makeModule(pass, name, sources, context);
-            if (!module) {
-                return module.error();
+        if (key.role == ModuleRole::UberShade || key.role == ModuleRole::SortedShade) {
+            for (const Case& shaderCase : plan.cases) {
+                module->functionsApart.push_back("shade" + shaderCase.name);
             }
-            module->shaderId = shaderCase.shaderId;
-            modules.push_back(std::move(*module));
         }
+        modules.push_back(std::move(*module));
     }
     return modules;
 }

@@ -12,18 +12,16 @@ namespace glint {
 
 // A module before it is compiled.
 struct ModuleSource {
-    package::ModuleRole role = package::ModuleRole::Trace;
-    int shaderId = 0;  // ShadeCase only
+    package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
     std::string name;                           // "uber.comp"
     std::string glsl;                           // flattened
     std::vector<std::string> functionsApart{};  // see ShaderSource
 };
 
-// "GBufferVertex": stable, as in the manifest.
-std::string_view toString(package::ModuleRole role);
+package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings);
 
-// Those that the settings call for, in order of role, then shader ID. Errors as renderTemplate() and
+// Those that the settings call for, in order of their keys. Errors as renderTemplate() and
 // flatten().
 Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Plan& plan,
                                                     const SourceSet& sources,

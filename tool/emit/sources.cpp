@@ -1,5 +1,6 @@
 #include "emit/sources.h"
 
+#include "emit/context.h"
 #include "emit/embedded.h"
 
 #include <fmt/format.h>
@@ -36,6 +37,11 @@ std::string sceneDefines(const Scene& scene, const Plan& plan, const CompileSett
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
+    text += fmt::format("#define GLINT_SHADOWS_DEFERRED {}\n",
+                        flag(settings.shadows == package::ShadowPlacement::Deferred));
+    text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
+                        flag(settings.hitRecord == package::HitRecordFormat::Packed));
+    text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
     return text;
@@ -65,13 +71,19 @@ SourceLookup SourceSet::lookup() const {
     return [this](std::string_view name) { return find(name); };
 }
 
-SourceSet makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
+Result<SourceSet> makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
     SourceSet sources;
     for (const EmbeddedFile& file : embeddedFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
     sources.add("generated/features.glsl", featureDefines());
     sources.add("generated/scene.glsl", sceneDefines(scene, plan, settings));
+    Result<std::string> cases =
+        renderTemplate(sources, "cases.glsl.mustache", makeContext(scene, plan, settings.plan));
+    if (!cases) {
+        return cases.error();
+    }
+    sources.add("generated/cases.glsl", std::move(*cases));
     return sources;
 }
 

@@ -24,8 +24,9 @@ private:
     std::map<std::string, std::string, std::less<>> files_;
 };
 
-// Embedded files, "generated/features.glsl" and "generated/scene.glsl".
-SourceSet makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings);
+// Embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl". Errors as
+// renderTemplate().
+Result<SourceSet> makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings);
 
 // C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();

@@ -156,7 +156,7 @@ Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives
     StringTable strings;
     std::vector<ModuleEntry> moduleEntries;
     for (const CompiledModule& module : modules) {
-        moduleEntries.push_back({module.role, static_cast<std::uint32_t>(module.shaderId),
+        moduleEntries.push_back({module.key.role, module.key.index, module.key.tracer, 0,
                                  strings.add(module.file), module.statistics.bytes, module.hash});
     }
     std::vector<CaseEntry> cases;
@@ -180,6 +180,10 @@ Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives
     std::memcpy(header.magic, kMagic, sizeof header.magic);
     header.version = kVersion;
     header.strategies = settings.strategies;
+    header.tracers = settings.tracers;
+    header.shadows = settings.shadows;
+    header.hitRecord = settings.hitRecord;
+    header.environmentMap = settings.environmentMap ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
     header.interopHash = static_cast<std::uint32_t>(interopHash());

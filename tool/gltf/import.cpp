@@ -1,6 +1,7 @@
 #include "gltf/import.h"
 
 #include "gltf/document.h"
+#include "gltf/expected_hits.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
 #include "gltf/nodes.h"
@@ -123,6 +124,7 @@ std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
             inputs.push_back(input);
         }
     }
+    expectHits(scene, inputs);
     return inputs;
 }
 

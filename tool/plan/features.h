@@ -92,6 +92,8 @@ struct FeatureInfo {
     std::string_view macro;      // in GLSL: "GLINT_BASE_COLOR_TEXTURE"
     std::string_view gltf;       // where it stands in glTF
     std::string_view neutral;    // when it is there and changes nothing
+    // How many SPIR-V instructions a shader has more for it: the cost model's measure (plan/cost.h).
+    int instructions;
     // The rule. `soFar` holds the features of earlier rows that are present.
     Presence (*rule)(const Material&, const PrimitiveInputs&, const KeyOptions&, FeatureMask soFar);
 };

@@ -175,6 +175,7 @@ struct PrimitiveInputs {
     bool hasTexCoords0 = false;
     bool hasTexCoords1 = false;
     ColorContent colors = ColorContent::None;
+    double expectedHits = 0.0;  // in proportion to those of other primitives; 0 each: nothing is known
 };
 
 }  // namespace glint

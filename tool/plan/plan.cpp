@@ -71,23 +71,43 @@ FeatureSpread spreadOf(const std::vector<FeatureMask>& masks) {
     return {every, any & ~every};
 }
 
-// Which cluster a key belongs to: keys with equal values share a case.
-FeatureMask clusterOf(FeatureMask mask, MergePolicy merge) {
-    switch (merge) {
-        case MergePolicy::None:
-            return mask;
-        case MergePolicy::Family:
-            return mask & kLobeMask;
-        case MergePolicy::All:
-            break;
+// Makes the shares of all keys add up to 1; false, and 0 each, where there is nothing to share.
+bool normalizeShares(std::vector<Key>& keys) {
+    double sum = 0.0;
+    for (const Key& key : keys) {
+        sum += key.share;
     }
-    return 0;
+    const bool isPositive = sum > 0.0 && std::isfinite(sum);
+    for (Key& key : keys) {
+        key.share = isPositive ? key.share / sum : 0.0;
+    }
+    return isPositive;
 }
 
-// A case's features as an identifier: "Pbr_BaseTex_Normals", or "PbrFamily" where keys differ.
-std::string nameCase(const Case& shaderCase, MergePolicy merge) {
+void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& options,
+               std::vector<Key>& keys) {
+    const bool counted = options.merge == MergePolicy::Profile;
+    for (Key& key : keys) {
+        const auto found = options.hits.find(key.mask);
+        if (counted && found != options.hits.end()) {
+            key.share = static_cast<double>(found->second);
+        }
+        for (std::size_t i = 0; !counted && i < key.primitives.size(); ++i) {
+            key.share += primitives[static_cast<std::size_t>(key.primitives[i])].expectedHits;
+        }
+    }
+    if (!normalizeShares(keys) && !counted) {
+        for (Key& key : keys) {
+            key.share = 1.0 / static_cast<double>(keys.size());
+        }
+    }
+}
+
+// A case's features as an identifier: "Pbr_BaseTex_Normals", "PbrFamily" where keys differ in inputs,
+// "PbrMixed" where they differ in lobes.
+std::string nameCase(const Case& shaderCase, bool hasAllKeys) {
     const bool merged = shaderCase.sometimes != 0;
-    if (merged && merge == MergePolicy::All) {
+    if (merged && hasAllKeys) {
         return "AllMaterials";
     }
     std::string lobes;
@@ -103,32 +123,39 @@ std::string nameCase(const Case& shaderCase, MergePolicy merge) {
         }
     }
     const std::string base = lobes.empty() ? "Pbr" : lobes;
-    return merged ? base + "Family" : base + inputs;
+    const bool mixed = (shaderCase.sometimes & kLobeMask) != 0;
+    return !merged ? base + inputs : base + (mixed ? "Mixed" : "Family");
 }
 
-void clusterKeys(MergePolicy merge, Plan& plan) {
-    std::map<FeatureMask, int> caseOf;
-    for (std::size_t i = 0; i < plan.keys.size(); ++i) {
-        Key& key = plan.keys[i];
-        const auto [place, isNew] =
-            caseOf.try_emplace(clusterOf(key.mask, merge), static_cast<int>(plan.cases.size()));
-        if (isNew) {
-            Case shaderCase;
-            shaderCase.shaderId = place->second;
-            shaderCase.always = key.mask;
-            plan.cases.push_back(std::move(shaderCase));
-        }
-        Case& shaderCase = plan.cases[place->second];
-        shaderCase.sometimes |= shaderCase.always ^ key.mask;
-        shaderCase.always &= key.mask;
-        shaderCase.keys.push_back(static_cast<int>(i));
-        appendUnique(shaderCase.materials, key.materials);
-        key.shaderId = shaderCase.shaderId;
+void makeCases(const PlanOptions& options, Plan& plan) {
+    std::vector<WeightedKey> weighted;
+    for (const Key& key : plan.keys) {
+        weighted.push_back({key.mask, key.share});
     }
-    for (Case& shaderCase : plan.cases) {
-        // Features that some keys lack are never "always", whichever key came first.
-        shaderCase.sometimes &= ~shaderCase.always;
-        shaderCase.name = nameCase(shaderCase, merge);
+    std::map<std::string, int> named;
+    const int maxCases = options.maxShaders > 0 ? options.maxShaders : kDefaultMaxCases;
+    for (CaseKeys& merged : mergeKeys(weighted, options.merge, maxCases)) {
+        Case shaderCase;
+        shaderCase.shaderId = static_cast<int>(plan.cases.size());
+        shaderCase.reason = merged.reason;
+        std::vector<FeatureMask> masks;
+        for (const int index : merged.keys) {
+            Key& key = plan.keys[static_cast<std::size_t>(index)];
+            key.shaderId = shaderCase.shaderId;
+            masks.push_back(key.mask);
+            shaderCase.share += key.share;
+            appendUnique(shaderCase.materials, key.materials);
+        }
+        const FeatureSpread spread = spreadOf(masks);
+        shaderCase.always = spread.always;
+        shaderCase.sometimes = spread.sometimes;
+        shaderCase.keys = std::move(merged.keys);
+        shaderCase.name = nameCase(shaderCase, shaderCase.keys.size() == plan.keys.size());
+        // Two cases may differ in what they never have alone.
+        if (const int count = ++named[shaderCase.name]; count > 1) {
+            shaderCase.name += fmt::format("_{}", count);
+        }
+        plan.cases.push_back(std::move(shaderCase));
     }
 }
 
@@ -139,7 +166,8 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
     Plan plan;
     DroppedMap droppedBy;
     collectKeys(materials, primitives, options.keys, plan, droppedBy);
-    clusterKeys(options.merge, plan);
+    shareHits(primitives, options, plan.keys);
+    makeCases(options, plan);
 
     std::vector<FeatureMask> hitMasks;
     for (const Key& key : plan.keys) {
@@ -158,34 +186,25 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
     return plan;
 }
 
-std::optional<std::string> describeExcess(const Plan& plan, MergePolicy merge, int maxShaders) {
+std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options) {
+    const int maxShaders = options.maxShaders;
     if (maxShaders <= 0 || plan.cases.size() <= static_cast<std::size_t>(maxShaders)) {
         return std::nullopt;
     }
     std::set<FeatureMask> families;
     for (const Key& key : plan.keys) {
-        families.insert(clusterOf(key.mask, MergePolicy::Family));
+        families.insert(key.mask & kLobeMask);
     }
     std::string advice = "raise --max-shaders";
-    if (merge == MergePolicy::None && families.size() <= static_cast<std::size_t>(maxShaders)) {
-        advice = fmt::format("use --merge family, which needs {}, or {}", families.size(), advice);
+    if (options.merge == MergePolicy::None && families.size() <= static_cast<std::size_t>(maxShaders)) {
+        advice = fmt::format(
+            "use --merge family, which needs {}, or --merge auto, which keeps to any limit, or {}",
+            families.size(), advice);
     } else {
-        advice = fmt::format("use --merge all, which needs 1, or {}", advice);
+        advice = fmt::format("use --merge auto, which keeps to it, or {}", advice);
     }
     return fmt::format("the plan needs {} cases for {} keys; the limit is {}: {}", plan.cases.size(),
                        plan.keys.size(), maxShaders, advice);
-}
-
-std::string_view toString(MergePolicy merge) {
-    switch (merge) {
-        case MergePolicy::None:
-            return "none";
-        case MergePolicy::Family:
-            return "family";
-        case MergePolicy::All:
-            break;
-    }
-    return "all";
 }
 
 std::string_view toString(AlphaPolicy alpha) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "plan/features.h"
+#include "plan/merge.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,11 +14,14 @@
 
 namespace glint {
 
-enum class MergePolicy : std::uint8_t { None, Family, All };
-
 struct PlanOptions {
     KeyOptions keys;
     MergePolicy merge = MergePolicy::Family;
+    // Auto and Profile make no more cases, the other policies are told by describeExcess(); 0: no limit, but
+    // kDefaultMaxCases for Auto and Profile.
+    int maxShaders = 0;
+    // Profile: hits that were counted, by key. A key that is not there was never hit.
+    std::map<FeatureMask, std::uint64_t> hits{};
 };
 
 // A feature that the file asks for and the key leaves out.
@@ -32,6 +37,7 @@ struct Key {
     std::vector<int> materials;   // ascending
     std::vector<int> primitives;  // indices into the plan's primitives, ascending
     int shaderId = 0;
+    double share = 0.0;  // of all hits, as counted (Profile) or expected; 1 over all keys, or 0 each
 };
 
 // Keys that share one piece of code. always & sometimes is 0.
@@ -42,6 +48,8 @@ struct Case {
     FeatureMask sometimes = 0;
     std::vector<int> keys;       // ascending
     std::vector<int> materials;  // ascending
+    double share = 0.0;          // of all hits: that of its keys
+    CaseReason reason = CaseReason::Own;
 };
 
 // Keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes); the key of a
@@ -66,14 +74,14 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
 // The same options for primary surfaces.
 KeyOptions keepAllLobes(KeyOptions options);
 
-// Clusters the keys of `primitives`. Requires every PrimitiveInputs::material to index `materials`.
+// Clusters the keys of `primitives`. Hits are those that PlanOptions::hits counts (Profile), else those that
+// the primitives expect. Requires every PrimitiveInputs::material to index `materials`.
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options);
 
-// What to tell the user when the plan has more than `maxShaders` cases; nothing if it fits.
-std::optional<std::string> describeExcess(const Plan& plan, MergePolicy merge, int maxShaders);
+// What to tell the user when the plan has more cases than options.maxShaders; nothing if it fits.
+std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options);
 
-std::string_view toString(MergePolicy merge);
 std::string_view toString(AlphaPolicy alpha);
 
 }  // namespace glint

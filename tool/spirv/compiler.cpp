@@ -31,6 +31,14 @@ EShLanguage toGlslang(ShaderStage stage) {
             return EShLangFragment;
         case ShaderStage::Compute:
             break;
+        case ShaderStage::RayGeneration:
+            return EShLangRayGen;
+        case ShaderStage::ClosestHit:
+            return EShLangClosestHit;
+        case ShaderStage::AnyHit:
+            return EShLangAnyHit;
+        case ShaderStage::Miss:
+            return EShLangMiss;
     }
     return EShLangCompute;
 }

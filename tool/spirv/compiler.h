@@ -9,7 +9,7 @@
 
 namespace glint {
 
-enum class ShaderStage { Vertex, Fragment, Compute };
+enum class ShaderStage { Vertex, Fragment, Compute, RayGeneration, ClosestHit, AnyHit, Miss };
 
 struct ShaderSource {
     std::string name;  // for messages; a message about a line names the file and line of the #line directives
@@ -23,8 +23,8 @@ struct ShaderCompileOptions {
     bool debugInfo = false;  // keep names
 };
 
-// Vulkan 1.2, SPIR-V 1.5: so that every device with ray queries can load it. Thread-safe.
-// Errors: "glsl" (what glslang says, first error first), "spirv-optimize", "spirv-validate".
+// Vulkan 1.2, SPIR-V 1.5: so that every device with ray queries or ray tracing pipelines can load it.
+// Thread-safe. Errors: "glsl" (what glslang says, first error first), "spirv-optimize", "spirv-validate".
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
 

@@ -45,6 +45,8 @@ Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words) {
             statistics.textureFetches += isTextureFetch(opcode) ? 1 : 0;
             statistics.rayQueries += opcode == spv::OpRayQueryInitializeKHR ? 1 : 0;
             statistics.branches += opcode == spv::OpBranchConditional || opcode == spv::OpSwitch ? 1 : 0;
+            statistics.traces += opcode == spv::OpTraceRayKHR ? 1 : 0;
+            statistics.functions += opcode == spv::OpFunction ? 1 : 0;
         }
         inFunction = inFunction && opcode != spv::OpFunctionEnd;
     });

@@ -14,6 +14,8 @@ struct SpirvStatistics {
     std::uint32_t textureFetches = 0;  // OpImageSample*, OpImageFetch, OpImageGather
     std::uint32_t rayQueries = 0;      // OpRayQueryInitializeKHR
     std::uint32_t branches = 0;        // OpBranchConditional and OpSwitch
+    std::uint32_t traces = 0;          // OpTraceRayKHR
+    std::uint32_t functions = 0;
 };
 
 // Error "spirv-format" where `words` is no SPIR-V module.

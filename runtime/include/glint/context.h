@@ -21,6 +21,9 @@ struct DeviceHandles {
     std::uint32_t queueFamily = 0;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
     bool debugUtils = false;  // VK_EXT_debug_utils is enabled on the instance: passes are labelled
+    // VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Glint runs without it, with
+    // textures that are blurrier at grazing angles.
+    bool samplerAnisotropy = false;
 };
 
 enum class Validation { Off, On, Synchronization };

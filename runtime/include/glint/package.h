@@ -1,7 +1,7 @@
 // A compiled package, read and checked. No Vulkan device needed.
 #pragma once
 
-#include <glint/package_format.h>
+#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>
@@ -30,6 +30,11 @@ public:
 
     bool supports(package::Strategy strategy) const;
     bool alphaTested() const;
+    // Strategies, tracers and where shadow rays are: what decides which modules there are.
+    package::PackageShape shape() const;
+    package::HitRecordFormat hitRecord() const;
+    // Whether misses read an environment map rather than a gradient.
+    bool environmentMap() const;
     std::uint32_t caseCount() const;
     // Buckets of a visibility buffer: 0 for misses, 1 + shader ID for hits.
     std::uint32_t bucketCount() const;
@@ -42,8 +47,8 @@ public:
     std::span<const gpu::MaterialRecord> materials() const;
 
     std::string_view string(package::StringRef ref) const;
-    // SPIR-V words of a module; shaderId matters for ShadeCase only. Empty if the package lacks it.
-    std::span<const std::uint32_t> spirv(package::ModuleRole role, std::uint32_t shaderId = 0) const;
+    // SPIR-V words of a module. Empty if the package lacks it.
+    std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;
     // The entry for a primitive of a mesh, or null if the package does not know it.
     const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
 

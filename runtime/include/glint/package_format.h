@@ -12,12 +12,50 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
 
-enum Strategy : std::uint32_t { kStrategyUber = 1, kStrategyVisibility = 2 };
+// How hits are shaded: bits.
+enum Strategy : std::uint32_t {
+    kStrategyUber = 1,        // trace and shade in one dispatch, a switch over the cases
+    kStrategyVisibility = 2,  // hit records, ordered by case; one dispatch a case
+    kStrategySortedUber = 4,  // hit records, ordered; one dispatch whose switch is uniform in a workgroup
+    kStrategyHitShaders = 8,  // a ray tracing pipeline with a closest-hit shader a case
+    kAllStrategies = 15,
+};
+
+// What traces rays: bits. The strategy hit-shaders has the second, whatever the package has for the others.
+enum Tracer : std::uint32_t {
+    kTracerRayQuery = 1,
+    kTracerRayPipeline = 2,  // ray generation shaders: for devices without ray queries
+    kAllTracers = 3,
+};
+
+// Where shadow rays of hits are traced.
+enum class ShadowPlacement : std::uint32_t {
+    Inline = 0,    // by the shader that shades the hit
+    Deferred = 1,  // by a pass of their own, from a list
+};
+
+// What is kept of a hit between passes.
+enum class HitRecordFormat : std::uint32_t {
+    Full = 0,    // 32 bytes, gpu::HitRecord
+    Packed = 1,  // 16 bytes, gpu::PackedHitRecord
+};
+
+// How hits are counted into buckets and copied in their order. All give each hit one slot; which is fastest
+// depends on the device and on the number of buckets.
+enum class Ordering : std::uint32_t {
+    GlobalAtomics = 0,  // an atomic a hit
+    WaveLoop = 1,       // an atomic for each distinct bucket in a subgroup, found one after the other
+    WaveAggregated =
+        2,  // a loop over all buckets, with an atomic for each that the subgroup has: few buckets only
+    WaveBallot = 3,      // lanes of equal buckets by a ballot a bit; an atomic for each distinct bucket
+    LocalHistogram = 4,  // counts in shared memory, then an atomic for each bucket that the workgroup has
+    Count = 5,
+};
 
 struct PackageHeader {
     char magic[8];
@@ -29,6 +67,10 @@ struct PackageHeader {
     std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
     std::uint32_t caseCount;
     std::uint32_t interopHash;  // low 32 bits of the hash of the interop headers the shaders were built with
+    std::uint32_t tracers;      // Tracer bits
+    ShadowPlacement shadows;
+    HitRecordFormat hitRecord;
+    std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
 };
 
 enum class SectionKind : std::uint32_t {
@@ -68,12 +110,26 @@ enum class ModuleRole : std::uint32_t {
     ShadeMiss = 11,
     ShadeCase = 12,  // one entry a case
     Compose = 13,
+    SortedShade = 14,
+    ShadowDispatch = 15,
+    ShadowTrace = 16,
+    OrderCheck = 17,
+    TraceClosestHit = 18,  // of ray tracing pipelines whose rays are shaded elsewhere
+    TraceAnyHit = 19,      // alpha tests
+    TraceMiss = 20,
+    HitTrace = 21,    // ray generation of the strategy hit-shaders
+    HitCase = 22,     // closest hit, one entry a case
+    HitUnknown = 23,  // closest hit of a geometry whose shader ID no case has
+    HitMiss = 24,
 };
 
 struct ModuleEntry {
     ModuleRole role;
-    std::uint32_t shaderId;  // ShadeCase only
-    StringRef file;          // relative to the package's folder; several entries may name one file
+    std::uint32_t
+        index;  // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering; 0 otherwise
+    std::uint32_t tracer;  // Tracer that it traces with; 0: it traces nothing
+    std::uint32_t pad;
+    StringRef file;  // relative to the package's folder; several entries may name one file
     std::uint64_t bytes;
     std::uint64_t hash;  // XXH3, 64 bits
 };
@@ -113,9 +169,9 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 48);
+static_assert(sizeof(PackageHeader) == 64);
 static_assert(sizeof(PackageSection) == 24);
-static_assert(sizeof(ModuleEntry) == 32);
+static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);
 static_assert(sizeof(PrimitiveEntry) == 32);
 static_assert(sizeof(TextureEntry) == 8);

@@ -10,7 +10,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +58,19 @@ struct RendererOptions {
     package::Strategy strategy = package::kStrategyVisibility;
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
+    // No value: ray queries if package and device have them, else the ray tracing pipeline.
+    std::optional<package::Tracer> tracer{};
+    // No value: by the number of buckets and the device.
+    std::optional<package::Ordering> ordering{};
+    // Checks on the device that each hit is in its bucket, once: FrameCounters::orderErrors. Slow.
+    bool checkOrder = false;
 };
+
+// The ordering that a renderer uses where none is asked for.
+package::Ordering defaultOrdering(std::uint32_t bucketCount);
+
+// What the rays of a workgroup are sorted by before they join the list.
+enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
 
 // A linear gradient: zenith above, ground below, horizon between. Radiance in the units of the lights.
 struct SkyView {
@@ -67,8 +82,17 @@ struct SkyView {
 struct FrameOptions {
     CameraView camera;
     SkyView sky;
+    // Smoother surfaces reflect as mirrors.
+    float mirrorRoughness = 0.05F;
     // Surfaces with a greater roughness send no reflection ray.
     float maxReflectionRoughness = 0.3F;
+    // Luminance that a reflection brings at most in one sample; infinite: no limit, which is exact.
+    float maxSampleRadiance = std::numeric_limits<float>::infinity();
+    Binning binning = Binning::None;
+    // Steps of the march in screen space that comes before a ray; 0: none.
+    std::uint32_t screenSteps = 0;
+    // How far behind its depth a surface is taken to reach in that march, as a share of its distance.
+    float screenThickness = 0.02F;
     bool reflections = true;
     std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
     std::uint32_t seed = 0;
@@ -84,9 +108,13 @@ struct FrameCounters {
     std::uint32_t skippedSky = 0;
     std::uint32_t skippedRough = 0;
     std::uint32_t skippedUnlit = 0;
+    std::uint32_t skippedBlack = 0;  // the sample reflects no light
+    std::uint32_t screenHits = 0;    // reflections found in screen space
+    std::uint32_t shadowRays = 0;    // deferred ones
+    std::uint32_t orderErrors = 0;   // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;
     std::uint32_t nonFinite = 0;  // samples since sample 0 that were no number: they count as black
-    std::vector<std::uint32_t> bucketCounts;  // visibility only: misses, then hits by shader ID
+    std::vector<std::uint32_t> bucketCounts;  // where hits are ordered: misses, then hits by shader ID
 };
 
 // RGBA, 32-bit float, linear, first row on top.
@@ -118,7 +146,10 @@ public:
 
     // Records, submits and waits: samples [0, sampleCount) of the frame; then reads back. For tools and
     // tests.
-    Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1);
+    // `afterSample` is called when a sample has completed and counters() are its own; its error ends the
+    // work.
+    Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1,
+                               const std::function<Status()>& afterSample = {});
 
     // Of the last recording that has completed on the device; the caller has waited for it.
     Result<std::vector<PassTiming>> timings();

@@ -1,12 +1,12 @@
 #version 460
-// Geometry of given hits. Of each RayRecord: origin.xy are the barycentrics, pixel the geometry, coneSpread the triangle,
-// coneWidth the width of the cone at the hit.
+// Geometry of given hits. Of each RayRecord: origin.xy are the barycentrics, origin.z the anisotropy of the sampler, pixel
+// the geometry, coneSpread the triangle, coneWidth the width of the cone at the hit.
 #include "hit/hit.glsl"
 #include "hit/trace.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 
-const uint kWords = 23u;
+const uint kWords = 26u;
 const vec2 kTexels = vec2(1024.0, 512.0);
 
 void writeVector(uint place, vec3 v) {
@@ -31,10 +31,11 @@ void main() {
     writeVector(base + 9u, vec3(hit.texCoords[0], hit.frontFace ? 1.0 : 0.0));
     writeVector(base + 12u, hit.color.rgb);
     writeVector(base + 15u, hit.tangent.xyz);
-    writeVector(base + 18u, vec3(hit.tangent.w, hit.clearance,
-                                 coneLod(hit.footprint, hit.edges[0], hit.edges[1], hit.uvEdges[0], kTexels)));
+    vec4 gradients = coneGradients(hit.footprint, hit.uvEdges[0], kTexels, ray.origin.z);
+    writeVector(base + 18u, vec3(hit.tangent.w, hit.clearance, gradients.x));
+    writeVector(base + 21u, gradients.yzw);
     // Whether a metre above the surface, and below, is free.
     vec3 n = hit.geometricNormal;
-    GLINT_FRAME.counters.data[base + 21u] = isVisible(rayOrigin(hit, n), n, 1.0) ? 1u : 0u;
-    GLINT_FRAME.counters.data[base + 22u] = isVisible(rayOrigin(hit, -n), -n, 1.0) ? 1u : 0u;
+    GLINT_FRAME.counters.data[base + 24u] = isVisible(rayOrigin(hit, n), n, 1.0) ? 1u : 0u;
+    GLINT_FRAME.counters.data[base + 25u] = isVisible(rayOrigin(hit, -n), -n, 1.0) ? 1u : 0u;
 }

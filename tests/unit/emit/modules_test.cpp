@@ -13,7 +13,8 @@ namespace {
 using package::ModuleRole;
 
 ModuleSource makeSource(int shaderId, const std::string& body) {
-    return {ModuleRole::ShadeCase, shaderId, ShaderStage::Compute,
+    return {{ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
+            ShaderStage::Compute,
             "shade_" + std::to_string(shaderId) + ".comp",
             "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n#line 10 \"case.glsl\"\n"
             "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"

@@ -24,7 +24,7 @@ nlohmann::json manifestOf(const CompiledPackage& package) {
 std::map<ModuleRole, int> countRoles(const CompiledPackage& package) {
     std::map<ModuleRole, int> counts;
     for (const CompiledModule& module : package.modules) {
-        ++counts[module.role];
+        ++counts[module.key.role];
     }
     return counts;
 }
@@ -39,9 +39,16 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
     EXPECT_EQ(uber[ModuleRole::Trace], 0);
     settings.strategies = package::kStrategyVisibility;
     auto visibility = countRoles(compileSample(settings));
-    EXPECT_EQ(visibility.size(), 12U);
+    EXPECT_EQ(visibility.size(), 13U);
     EXPECT_EQ(visibility[ModuleRole::ShadeCase], 4);
+    EXPECT_EQ(visibility[ModuleRole::BucketCount], static_cast<int>(package::Ordering::Count));
     EXPECT_EQ(visibility[ModuleRole::UberShade], 0);
+    settings.strategies = package::kStrategyHitShaders;
+    settings.shadows = package::ShadowPlacement::Deferred;
+    auto hitShaders = countRoles(compileSample(settings));
+    EXPECT_EQ(hitShaders[ModuleRole::HitCase], 4);
+    EXPECT_EQ(hitShaders[ModuleRole::ShadowTrace], 1);
+    EXPECT_EQ(hitShaders[ModuleRole::Trace], 0);
 }
 
 TEST(CompilePackage, RefusesNoStrategy) {
@@ -58,10 +65,10 @@ TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
     const CompiledPackage package = compileSample(settings);
     int casesSeen = 0;
     for (const CompiledModule& module : package.modules) {
-        if (module.role != ModuleRole::ShadeCase) {
+        if (module.key.role != ModuleRole::ShadeCase) {
             continue;
         }
-        const Case& shaderCase = package.plan.cases[module.shaderId];
+        const Case& shaderCase = package.plan.cases[module.key.index];
         std::uint32_t expected = 0;
         for (const Feature feature :
              {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture, Feature::NormalTexture,
@@ -100,11 +107,11 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
     for (const CompiledModule& module : package.modules) {
         EXPECT_EQ(textOf(findFile(package, "glsl/" + module.name)), module.glsl);
         EXPECT_EQ(module.glsl.find("#include"), std::string::npos);
-        const ShaderStage stage = module.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
-                                  : module.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
-                                                                               : ShaderStage::Compute;
+        const ShaderStage stage = module.key.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
+                                  : module.key.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
+                                                                                   : ShaderStage::Compute;
         ShaderSource source{module.name, stage, module.glsl};
-        if (module.role == ModuleRole::UberShade) {
+        if (module.key.role == ModuleRole::UberShade) {
             for (const Case& shaderCase : package.plan.cases) {
                 source.functionsApart.push_back("shade" + shaderCase.name);
             }
@@ -118,12 +125,12 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
 TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
     CompileSettings settings;
     settings.plan.merge = MergePolicy::None;
-    settings.maxShaders = 3;
+    settings.plan.maxShaders = 3;
     const auto package = compilePackage(makeSampleScene(), settings);
     ASSERT_FALSE(package);
     EXPECT_EQ(package.error().id, "max-shaders");
     EXPECT_FALSE(package.error().message.empty());
-    settings.maxShaders = 4;
+    settings.plan.maxShaders = 4;
     EXPECT_TRUE(compilePackage(makeSampleScene(), settings));
 }
 

@@ -12,8 +12,8 @@ namespace {
 using namespace glint::testing;
 
 std::string sceneSource(const Plan& plan, const CompileSettings& settings) {
-    const SourceSet sources = makeSourceSet(makeSampleScene(), plan, settings);
-    return std::string(sources.find("generated/scene.glsl").value_or(""));
+    const Result<SourceSet> sources = makeSourceSet(makeSampleScene(), plan, settings);
+    return sources ? std::string(sources->find("generated/scene.glsl").value_or("")) : std::string();
 }
 
 bool defines(const std::string& text, const std::string& macro, const std::string& value) {

@@ -95,7 +95,8 @@ TEST(Plan, AllMakesOneCase) {
 }
 
 TEST(Plan, OfNothingHasNoCase) {
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                    MergePolicy::Auto, MergePolicy::Profile}) {
         const Plan plan = makePlan({}, {}, {{}, merge});
         EXPECT_TRUE(plan.keys.empty());
         EXPECT_TRUE(plan.cases.empty());
@@ -114,6 +115,42 @@ TEST(Plan, DoesNotDependOnTheOrderOfPrimitives) {
         EXPECT_EQ(before.cases[i].name, after.cases[i].name);
         EXPECT_EQ(before.cases[i].materials, after.cases[i].materials);
     }
+}
+
+TEST(Plan, SharesTheExpectedHits) {
+    SmallScene scene;
+    // Nothing is known: all keys the same.
+    for (const Key& key : scene.plan(MergePolicy::None).keys) {
+        EXPECT_DOUBLE_EQ(key.share, 0.2);
+    }
+    scene.primitives[2].expectedHits = 3.0;
+    scene.primitives[0].expectedHits = 0.5;
+    scene.primitives[1].expectedHits = 0.5;
+    scene.primitives[3].expectedHits = 4.0;
+    const Plan plan = scene.plan(MergePolicy::Auto);
+    EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.375);
+    EXPECT_DOUBLE_EQ(plan.keys[3].share, 0.125);
+    EXPECT_DOUBLE_EQ(plan.keys[1].share, 0.5);
+    EXPECT_EQ(plan.keys[0].share, 0.0);
+    double ofCases = 0.0;
+    for (const Case& shaderCase : plan.cases) {
+        ofCases += shaderCase.share;
+    }
+    EXPECT_DOUBLE_EQ(ofCases, 1.0);
+}
+
+TEST(Plan, TakesTheSharesOfAProfile) {
+    const SmallScene scene;
+    PlanOptions options{{}, MergePolicy::Profile};
+    options.hits = {{kNormals, 30}, {kTextured | kNormals, 10}, {FeatureMask{1} << 63U, 1000}};
+    const Plan plan = makePlan(scene.materials, scene.primitives, options);
+    EXPECT_DOUBLE_EQ(plan.keys[3].share, 0.75);
+    EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.25);
+    ASSERT_EQ(plan.cases.size(), 3U);
+    EXPECT_EQ(plan.cases[0].reason, CaseReason::NeverHit);
+    EXPECT_EQ(plan.cases[0].name, "PbrMixed");
+    EXPECT_EQ(plan.cases[1].reason, CaseReason::Hot);
+    EXPECT_EQ(plan.cases[1].name, "Pbr_Normals");
 }
 
 TEST(Plan, RecordsEachDropOnceWithItsMaterials) {
@@ -135,10 +172,16 @@ TEST(Plan, RecordsEachDropOnceWithItsMaterials) {
 TEST(Plan, ExcessSaysWhatToDo) {
     const SmallScene scene;
     const Plan plan = scene.plan(MergePolicy::None);
-    EXPECT_FALSE(describeExcess(plan, MergePolicy::None, 0).has_value());
-    EXPECT_FALSE(describeExcess(plan, MergePolicy::None, 5).has_value());
-    EXPECT_NE(describeExcess(plan, MergePolicy::None, 4)->find("--merge family"), std::string::npos);
-    EXPECT_NE(describeExcess(plan, MergePolicy::None, 1)->find("--merge all"), std::string::npos);
+    const auto excess = [&](int limit) {
+        PlanOptions options{{}, MergePolicy::None};
+        options.maxShaders = limit;
+        return describeExcess(plan, options);
+    };
+    EXPECT_FALSE(excess(0).has_value());
+    EXPECT_FALSE(excess(5).has_value());
+    EXPECT_NE(excess(4)->find("--merge family"), std::string::npos);
+    EXPECT_EQ(excess(1)->find("--merge family"), std::string::npos);
+    EXPECT_NE(excess(1)->find("--merge auto"), std::string::npos);
 }
 
 Material randomMaterial(std::mt19937& random) {
@@ -196,10 +239,17 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     RecordProperty("seed", kSeed);
     std::mt19937 random(kSeed);
     const RandomScene scene(random);
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
-        const Plan plan = makePlan(scene.materials, scene.primitives, {{AlphaPolicy::Tested}, merge});
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                    MergePolicy::Auto, MergePolicy::Profile}) {
+        PlanOptions options{{AlphaPolicy::Tested}, merge};
+        for (const PrimitiveInputs& primitive : scene.primitives) {
+            const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+            options.hits[makeKey(material, primitive, options.keys)] = random() % 100;
+        }
+        const Plan plan = makePlan(scene.materials, scene.primitives, options);
         std::set<std::string> names;
         std::size_t keyCount = 0;
+        double share = 0.0;
         for (const Case& shaderCase : plan.cases) {
             EXPECT_EQ(shaderCase.always & shaderCase.sometimes, 0U);
             EXPECT_TRUE(names.insert(shaderCase.name).second) << shaderCase.name;
@@ -212,9 +262,11 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
             }
             EXPECT_EQ(shaderCase.always, all);
             EXPECT_EQ(shaderCase.sometimes, any & ~all);
+            share += shaderCase.share;
             keyCount += shaderCase.keys.size();
         }
         EXPECT_EQ(keyCount, plan.keys.size());
+        EXPECT_NEAR(share, 1.0, 1e-9);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -34,6 +35,8 @@ constexpr NamedRole kRoles[] = {
     {ModuleRole::ShadeMiss, "shade_miss.comp"},
     {ModuleRole::ShadeCase, "shade_case.comp"},
     {ModuleRole::Compose, "compose.comp"},
+    // Never run here.
+    {ModuleRole::OrderCheck, "compose.comp"},
 };
 
 // A module that is one by its header only.
@@ -42,10 +45,12 @@ const std::vector<std::uint32_t> kEmptyModule{0x07230203, 0x00010500, 0, 1, 0};
 PackageSpec makeWithModules(const auto& wordsOf) {
     PackageSpec spec;
     spec.interopHash = interopHash();
-    for (const NamedRole& named : kRoles) {
-        spec.modules.push_back({named.role, 0, std::string(named.name) + ".spv", wordsOf(named.name)});
-    }
     spec.caseCount = 1;
+    for (const package::ModuleKey& key :
+         package::requiredModules({spec.strategies, spec.tracers, {}, false, 1})) {
+        const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
+        spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
+    }
     spec.cases = {{0, 0, "Plain"}};
     spec.materials.resize(1);
     spec.primitives = {makePrimitive(0, 0)};
@@ -122,8 +127,8 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     std::vector<package::ModuleEntry> modules;
     for (const ModuleSpec& module : spec.modules) {
         const std::uint64_t bytes = module.words.size() * sizeof(std::uint32_t);
-        modules.push_back({module.role, module.shaderId, addString(strings, module.file), bytes,
-                           XXH3_64bits(module.words.data(), bytes)});
+        modules.push_back({module.key.role, module.key.index, module.key.tracer, 0,
+                           addString(strings, module.file), bytes, XXH3_64bits(module.words.data(), bytes)});
     }
     std::vector<package::CaseEntry> cases;
     for (const CaseSpec& entry : spec.cases) {
@@ -143,6 +148,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.version = spec.version;
     header.sectionCount = writer.sectionCount();
     header.strategies = spec.strategies;
+    header.tracers = spec.tracers;
     header.alphaTested = spec.alphaTested;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;

@@ -4,7 +4,7 @@
 #include "interop/scene.h"
 #include "support/temporary_folder.h"
 
-#include <glint/package_format.h>
+#include <glint/package_modules.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -14,8 +14,7 @@
 namespace glint::test {
 
 struct ModuleSpec {
-    package::ModuleRole role = package::ModuleRole::Trace;
-    std::uint32_t shaderId = 0;
+    package::ModuleKey key;
     std::string file;
     std::vector<std::uint32_t> words;
 };
@@ -30,6 +29,7 @@ struct CaseSpec {
 struct PackageSpec {
     std::uint32_t version = package::kVersion;
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    std::uint32_t tracers = package::kTracerRayQuery;
     std::uint32_t alphaTested = 0;
     std::uint32_t caseCount = 0;
     std::uint32_t interopHash = 0;

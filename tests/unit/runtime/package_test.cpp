@@ -51,11 +51,16 @@ PackageSpec makeRichSpec() {
     return spec;
 }
 
+void removeRole(PackageSpec& spec, ModuleRole role) {
+    std::erase_if(spec.modules, [&](const test::ModuleSpec& module) { return module.key.role == role; });
+}
+
 TEST_F(PackageTest, LoadsAValidPackage) {
     PackageSpec spec = makeRichSpec();
     spec.caseCount = 2;
     spec.cases.push_back({0b01, 0b10, "Textured"});
-    spec.modules.push_back({ModuleRole::ShadeCase, 1, "shade_case.comp.spv", spec.modules[0].words});
+    spec.modules.push_back(
+        {{ModuleRole::ShadeCase, 1, package::kTracerRayQuery}, "shade_case.comp.spv", spec.modules[0].words});
     spec.primitives[1].shaderId = 1;
     spec.primitives[1].featureLobes = 0b11;
     write(spec);
@@ -69,9 +74,10 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_EQ(package.bucketCount(), 3U);
     EXPECT_EQ(package.string(package.cases()[1].name), "Textured");
     EXPECT_EQ(package.materials()[0].textures[0].textureIndex, 1U);
-    EXPECT_EQ(package.spirv(ModuleRole::Trace).size(), 5U);
-    EXPECT_EQ(package.spirv(ModuleRole::ShadeCase, 0).data(), package.spirv(ModuleRole::ShadeCase, 1).data());
-    EXPECT_TRUE(package.spirv(ModuleRole::ShadeCase, 2).empty());
+    EXPECT_EQ(package.spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).size(), 5U);
+    EXPECT_EQ(package.spirv({ModuleRole::ShadeCase, 0, package::kTracerRayQuery}).data(),
+              package.spirv({ModuleRole::ShadeCase, 1, package::kTracerRayQuery}).data());
+    EXPECT_TRUE(package.spirv({ModuleRole::ShadeCase, 2, package::kTracerRayQuery}).empty());
     ASSERT_NE(package.findPrimitive(2, 1), nullptr);
     EXPECT_EQ(package.findPrimitive(2, 1)->shaderId, 1U);
     EXPECT_EQ(package.findPrimitive(2, 0), nullptr);
@@ -242,14 +248,17 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
              s.cases[0] = {1, 1, "Both"};
          }},
         {"no strategy", [](PackageSpec& s) { s.strategies = 0; }},
-        {"unknown strategy", [](PackageSpec& s) { s.strategies |= 4; }},
-        {"strategy without modules", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 5); }},
+        {"unknown strategy", [](PackageSpec& s) { s.strategies |= 16; }},
+        {"no tracer", [](PackageSpec& s) { s.tracers = 0; }},
+        {"unknown tracer", [](PackageSpec& s) { s.tracers |= 4; }},
+        {"tracer without modules", [](PackageSpec& s) { s.tracers = package::kAllTracers; }},
+        {"strategy without modules", [](PackageSpec& s) { removeRole(s, ModuleRole::UberShade); }},
         {"modules without strategy", [](PackageSpec& s) { s.strategies = package::kStrategyUber; }},
-        {"case without module", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 11); }},
-        {"pass without module", [](PackageSpec& s) { s.modules.erase(s.modules.begin() + 2); }},
+        {"case without module", [](PackageSpec& s) { removeRole(s, ModuleRole::ShadeCase); }},
+        {"pass without module", [](PackageSpec& s) { removeRole(s, ModuleRole::Lighting); }},
         {"module twice", [](PackageSpec& s) { s.modules.push_back(s.modules[0]); }},
-        {"unknown role", [](PackageSpec& s) { s.modules[12].role = ModuleRole{14}; }},
-        {"module's shader ID", [](PackageSpec& s) { s.modules[11].shaderId = 1; }},
+        {"unknown role", [](PackageSpec& s) { s.modules[12].key.role = ModuleRole{99}; }},
+        {"module's shader ID", [](PackageSpec& s) { s.modules.back().key.index = 1; }},
     };
     write(makeRichSpec());
     ASSERT_EQ(load(), "");
@@ -287,12 +296,16 @@ TEST_F(PackageTest, SectionsAreBounded) {
 TEST_F(PackageTest, OneStrategyIsEnough) {
     PackageSpec spec = test::makeSpec();
     spec.strategies = package::kStrategyUber;
-    spec.modules.erase(spec.modules.begin() + 6, spec.modules.begin() + 12);
+    for (const package::RoleInfo& info : package::kRoles) {
+        if ((info.strategies & package::kStrategyUber) == 0) {
+            removeRole(spec, info.role);
+        }
+    }
     write(spec);
     const Result<Package> loaded = Package::load(folder_.path());
     ASSERT_TRUE(loaded) << toString(loaded.error());
     EXPECT_FALSE(loaded->supports(package::kStrategyVisibility));
-    EXPECT_TRUE(loaded->spirv(ModuleRole::Trace).empty());
+    EXPECT_TRUE(loaded->spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).empty());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 DispatchArguments listDispatch(uint count) {
-    return DispatchArguments((count + kRayGroupSize - 1u) / kRayGroupSize, 1u, 1u, count);
+    return DispatchArguments((count + kRayGroupSize - 1u) / kRayGroupSize, 1u, 1u, count, count, 1u, 1u, 0u);
 }
 
 uint bucketOf(HitRecord hit) {

@@ -1,0 +1,102 @@
+#include "renderer_choice.h"
+
+#include <bit>
+#include <string>
+
+namespace glint {
+namespace {
+
+std::string modulesFor(package::Strategy strategy) {
+    return "the package has no modules for the strategy " + std::string(nameOf(strategy));
+}
+
+Diagnostic notOne(const char* option) {
+    return makeError("renderer-options", "",
+                     std::string("RendererOptions::") + option + " is not one of its values", "choose one");
+}
+
+Result<package::Tracer> chooseTracer(const Context::State& context, const Package& package,
+                                     const RendererOptions& options) {
+    const std::uint32_t compiled = package::tracersOf(options.strategy, package.shape().tracers);
+    if (options.tracer) {
+        const package::Tracer tracer = *options.tracer;
+        if (tracer != package::kTracerRayQuery && tracer != package::kTracerRayPipeline) {
+            return notOne("tracer");
+        }
+        if ((compiled & tracer) == 0) {
+            return makeError("package-tracer", "",
+                             modulesFor(options.strategy) + " with the tracer " + std::string(nameOf(tracer)),
+                             "compile the package with that --tracer, or render with the one that it has");
+        }
+        if ((context.tracers & tracer) == 0) {
+            return makeError("device-tracer", "",
+                             "the device lacks the tracer " + std::string(nameOf(tracer)),
+                             "use another device or the other tracer");
+        }
+        return tracer;
+    }
+    for (const package::Tracer tracer : package::kTracers) {
+        if ((compiled & context.tracers & tracer) != 0) {
+            return tracer;
+        }
+    }
+    return makeError("device-tracer", "",
+                     "the device lacks the tracer that the package has for the strategy " +
+                         std::string(nameOf(options.strategy)),
+                     "compile the package with --tracer all");
+}
+
+}  // namespace
+
+package::Ordering defaultOrdering(std::uint32_t bucketCount) {
+    // Few buckets collide in memory, and shared memory holds their counts.
+    return bucketCount <= gpu::kMaxLocalBuckets ? package::Ordering::LocalHistogram
+                                                : package::Ordering::WaveBallot;
+}
+
+Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
+                                       const RendererOptions& options) {
+    const std::uint32_t strategy = options.strategy;
+    if (!std::has_single_bit(strategy) || strategy > package::kAllStrategies) {
+        return notOne("strategy");
+    }
+    if (!package.supports(options.strategy)) {
+        return makeError("package-strategy", "", modulesFor(options.strategy),
+                         "compile the package with that --strategy, or render with the one that it has");
+    }
+    Result<package::Tracer> tracer = chooseTracer(context, package, options);
+    if (!tracer) {
+        return tracer.error();
+    }
+    PipelineChoice choice;
+    choice.strategy = options.strategy;
+    choice.tracer = *tracer;
+    choice.ordering = options.ordering.value_or(defaultOrdering(package.bucketCount()));
+    choice.checksOrder = options.checkOrder;
+    if (choice.ordering >= package::Ordering::Count) {
+        return notOne("ordering");
+    }
+    if (choice.ordering == package::Ordering::LocalHistogram &&
+        package.bucketCount() > gpu::kMaxLocalBuckets) {
+        return makeError("renderer-options", "",
+                         "the ordering local-histogram holds " + std::to_string(gpu::kMaxLocalBuckets) +
+                             " buckets, the package has " + std::to_string(package.bucketCount()),
+                         "use another ordering, or merge cases");
+    }
+    return choice;
+}
+
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options) {
+    FrameSize size;
+    size.width = options.width;
+    size.height = options.height;
+    size.bucketCount = package.bucketCount();
+    size.ordered = (choice.strategy & package::kOrderedStrategies) != 0;
+    size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
+    size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
+                                                                            : sizeof(gpu::HitRecord);
+    size.deferredShadows = package.shape().shadows == package::ShadowPlacement::Deferred;
+    return size;
+}
+
+}  // namespace glint

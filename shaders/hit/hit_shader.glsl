@@ -1,0 +1,27 @@
+// Closest-hit shaders of the strategy hit-shaders: shading, with the shadow ray left to ray generation.
+#extension GL_EXT_ray_tracing : require
+
+#include "hit/payload.glsl"
+#include "hit/shade.glsl"
+
+layout(location = 0) rayPayloadInEXT HitPayload shaded;
+hitAttributeEXT vec2 hitBarycentrics;
+
+uint hitGeometry() {
+    return uint(gl_InstanceCustomIndexEXT + gl_GeometryIndexEXT);
+}
+
+Hit shadedHit(GeometryRecord geometry, Features features) {
+    uint pixel = floatBitsToUint(shaded.radiance.x);
+    float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
+    return fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, pixel,
+                    features);
+}
+
+void returnShaded(Hit hit, ShadeResult result) {
+    shaded.radiance = result.radiance;
+    shaded.direct = result.direct;
+    shaded.shadowOrigin = rayOrigin(hit, result.shadowDirection);
+    shaded.shadowDirection = result.shadowDirection;
+    shaded.shadowDistance = result.shadowDistance;
+}

@@ -1,0 +1,87 @@
+// Hit records in memory, whole or packed, and the bucket of each.
+#include "hit/bindings.glsl"
+#include "hit/geometry.glsl"
+
+// Shader ID that no case has.
+const uint kNoShader = 0xFFFFFFFFu;
+
+// A cone's width in eighths of a power of two, from 2^-20 metres in 1 to 2^11.6 in 254: a sixteenth of a mip level off
+// at most. 0: no width.
+uint packConeWidth(float width) {
+    return width > 0.0 ? uint(clamp(round(8.0 * (log2(width) + 20.0)), 1.0, 254.0)) : 0u;
+}
+
+float unpackConeWidth(uint code) {
+    return code > 0u ? exp2(float(code) * 0.125 - 20.0) : 0.0;
+}
+
+#if GLINT_HIT_RECORD_PACKED
+
+void storeHit(uint index, HitRecord hit) {
+    PackedHitRecord record;
+    record.pixel = hit.pixel;
+    if (hit.geometry == kMissGeometry) {
+        vec2 direction = octahedralEncode(
+            vec3(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY, hit.distance_orDirectionZ));
+        record.geometry24_coneLog8 = kMissGeometry;
+        record.primitive_orDirectionOctX = floatBitsToUint(direction.x);
+        record.barycentrics2x16_orDirectionOctY = floatBitsToUint(direction.y);
+    } else {
+        record.geometry24_coneLog8 = hit.geometry << 8 | packConeWidth(hit.coneWidth);
+        record.primitive_orDirectionOctX = hit.primitive;
+        record.barycentrics2x16_orDirectionOctY =
+            packUnorm2x16(vec2(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY));
+    }
+    GLINT_FRAME.packedHits.data[index] = record;
+}
+
+// The distance of a hit is not kept.
+HitRecord storedHit(uint index) {
+    PackedHitRecord record = GLINT_FRAME.packedHits.data[index];
+    if (record.geometry24_coneLog8 == kMissGeometry) {
+        vec3 direction = octahedralDecode(uintBitsToFloat(
+            uvec2(record.primitive_orDirectionOctX, record.barycentrics2x16_orDirectionOctY)));
+        return HitRecord(record.pixel, kMissGeometry, 0u, direction.x, direction.y, direction.z, 0.0, index);
+    }
+    vec2 barycentrics = unpackUnorm2x16(record.barycentrics2x16_orDirectionOctY);
+    return HitRecord(record.pixel, record.geometry24_coneLog8 >> 8, record.primitive_orDirectionOctX, barycentrics.x,
+                     barycentrics.y, 0.0, unpackConeWidth(record.geometry24_coneLog8 & 0xFFu), index);
+}
+
+// Geometry of a stored hit, or kMissGeometry.
+uint storedGeometry(uint index) {
+    uint word = GLINT_FRAME.packedHits.data[index].geometry24_coneLog8;
+    return word == kMissGeometry ? kMissGeometry : word >> 8;
+}
+
+#else
+
+void storeHit(uint index, HitRecord hit) {
+    GLINT_FRAME.hits.data[index] = hit;
+}
+
+HitRecord storedHit(uint index) {
+    return GLINT_FRAME.hits.data[index];
+}
+
+uint storedGeometry(uint index) {
+    return GLINT_FRAME.hits.data[index].geometry;
+}
+
+#endif
+
+// Direction of a ray that missed.
+vec3 missDirection(HitRecord record) {
+    return vec3(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY, record.distance_orDirectionZ);
+}
+
+// Bucket of a stored hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to the misses,
+// whose pass shows it in an error colour and counts it.
+uint bucketOf(uint index) {
+    uint geometry = storedGeometry(index);
+    if (geometry == kMissGeometry) {
+        return 0u;
+    }
+    uint shaderId = GLINT_FRAME.geometries.data[geometry].shaderId;
+    return shaderId < GLINT_CASE_COUNT ? 1u + shaderId : 0u;
+}

@@ -1,0 +1,22 @@
+// Shadow rays of hits: traced at once, or put on a list.
+#include "hit/bindings.glsl"
+#include "hit/trace.glsl"
+
+struct ShadowRay {
+    vec3 origin;
+    vec3 direction;  // unit
+    float distance;  // metres
+    vec3 light;      // what it brings if nothing is in its way
+};
+
+// The light that is certain now; deferred, the rest comes by the pass over the list. One ray a pixel: the list has room.
+vec3 lightOrDefer(uint pixel, ShadowRay shadow) {
+#if GLINT_SHADOWS_DEFERRED
+    uint slot = atomicAdd(GLINT_FRAME.counters.data[kCounterShadowRays], 1u);
+    GLINT_FRAME.shadows.data[slot] =
+        ShadowRecord(shadow.origin, pixel, shadow.direction, shadow.distance, shadow.light, 0u);
+    return vec3(0.0);
+#else
+    return isVisible(shadow.origin, shadow.direction, shadow.distance) ? shadow.light : vec3(0.0);
+#endif
+}

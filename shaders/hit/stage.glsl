@@ -1,0 +1,18 @@
+// Threads of the passes that may trace: of compute shaders, or of ray generation shaders.
+#ifndef GLINT_TRACER
+#define GLINT_TRACER 1  // 0: none, 1: ray queries, 2: ray tracing pipeline
+#endif
+#ifndef GLINT_RAY_GENERATION
+#define GLINT_RAY_GENERATION 0
+#endif
+
+#if GLINT_RAY_GENERATION
+#extension GL_EXT_ray_tracing : require
+#define GLINT_RAY_WORKGROUP
+#define GLINT_PIXEL_WORKGROUP
+#define GLINT_PIXEL_OF_THREAD gl_LaunchIDEXT.xy
+#else
+#define GLINT_RAY_WORKGROUP layout(local_size_x = kRayGroupSize) in;
+#define GLINT_PIXEL_WORKGROUP layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
+#define GLINT_PIXEL_OF_THREAD gl_GlobalInvocationID.xy
+#endif

@@ -1,0 +1,10 @@
+#version 460
+// The ray left the scene: ray generation has the sky.
+#extension GL_EXT_ray_tracing : require
+#include "hit/payload.glsl"
+
+layout(location = 0) rayPayloadInEXT HitPayload shaded;
+
+void main() {
+    shaded.shadowDistance = -1.0;
+}

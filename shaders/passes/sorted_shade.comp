@@ -1,0 +1,33 @@
+#version 460
+// Shades the ordered hits in one dispatch. Buckets begin at multiples of a workgroup, so that the switch over the cases
+// is uniform in each.
+#define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
+#define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
+#define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
+#define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
+#include "hit/resolve.glsl"
+#include "generated/cases.glsl"
+
+GLINT_RAY_WORKGROUP
+
+void main() {
+    uint index = listIndex();
+    if (index >= GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount].elementCount) {
+        return;
+    }
+    uint slot = GLINT_FRAME.orderedHits.data[index];
+    if (slot == kNoHit) {
+        return;
+    }
+    HitRecord record = storedHit(slot);
+    if (record.geometry == kMissGeometry) {
+        resolveMiss(record.pixel, missDirection(record));
+        return;
+    }
+    // The first hit of a workgroup says which case all of it has.
+    uint first = storedGeometry(GLINT_FRAME.orderedHits.data[index / kRayGroupSize * kRayGroupSize]);
+    uint shaderId = first == kMissGeometry ? kNoShader : GLINT_FRAME.geometries.data[first].shaderId;
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
+    Hit hit = loadHit(record, rayDirection(record, geometry), geometry, GLINT_HIT_FEATURES(geometry));
+    resolveHit(hit, shadeHit(shaderId, hit, geometry));
+}

@@ -1,0 +1,12 @@
+#version 460
+// Keeps what the ray hit; it is shaded elsewhere.
+#extension GL_EXT_ray_tracing : require
+#include "hit/payload.glsl"
+
+layout(location = 0) rayPayloadInEXT TracePayload traced;
+hitAttributeEXT vec2 hitBarycentrics;
+
+void main() {
+    traced = TracePayload(uint(gl_InstanceCustomIndexEXT + gl_GeometryIndexEXT), uint(gl_PrimitiveID), hitBarycentrics,
+                          gl_HitTEXT);
+}

@@ -1,0 +1,26 @@
+#version 460
+// Uber shader: traces each ray of the list and shades what it hits, whichever of the scene's cases that is.
+#define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
+#define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
+#define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
+#define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
+#include "hit/resolve.glsl"
+#include "generated/cases.glsl"
+
+GLINT_RAY_WORKGROUP
+
+void main() {
+    uint index = listIndex();
+    if (index >= GLINT_FRAME.rayDispatch.data[0].elementCount) {
+        return;
+    }
+    RayRecord ray = GLINT_FRAME.rays.data[index];
+    HitRecord record = traceRay(ray, index);
+    if (record.geometry == kMissGeometry) {
+        resolveMiss(record.pixel, ray.direction);
+    } else {
+        GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
+        Hit hit = loadHit(record, ray.direction, geometry, GLINT_HIT_FEATURES(geometry));
+        resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
+    }
+}

@@ -1,0 +1,202 @@
+// --merge auto and profile without a device: cases, reasons, and profiles that are not what they should be.
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+Json makeProfileJson(int unlitHits, int normalHits) {
+    return {{"format", "glint-profile"},
+            {"version", 1},
+            {"sources", Json::array()},
+            {"variant", nullptr},
+            {"alpha", "opaque"},
+            {"hitLobes",
+             {"unlit", "specularGlossiness", "ior", "specular", "clearcoat", "sheen", "anisotropy",
+              "iridescence", "transmission", "diffuseTransmission", "volume", "attenuation", "dispersion"}},
+            {"keys",
+             {{{"features", {"unlit"}}, {"materials", {"Wall"}}, {"hits", unlitHits}},
+              {{"features", {"normals"}}, {"materials", {"Floor"}}, {"hits", normalHits}}}}};
+}
+
+class Merge : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        scene_ = writeTinyScene(path("")).string();
+    }
+    Outcome plan(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"compile", scene_, "--dry-run", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    Outcome planWith(const Json& profile, const std::vector<std::string>& more = {}) const {
+        writeText(path("hits.json"), profile.dump());
+        std::vector<std::string> arguments{"--merge", "profile", "--profile", "hits.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return plan(arguments);
+    }
+    std::string scene_;
+};
+
+TEST_F(Merge, AutoKeepsToTheLimit) {
+    const Outcome two = plan({"--merge", "auto"});
+    ASSERT_EQ(two.exit, 0) << two.err;
+    EXPECT_EQ(two.json().at("counts").at("cases"), 2);
+    EXPECT_EQ(two.json().at("shaders")[0].at("reason"), "own");
+    const Outcome one = plan({"--merge", "auto", "--max-shaders", "1"});
+    ASSERT_EQ(one.exit, 0) << one.err;
+    EXPECT_EQ(one.json().at("counts").at("cases"), 1);
+    EXPECT_EQ(one.json().at("shaders")[0].at("reason"), "budget");
+    EXPECT_EQ(one.json().at("shaders")[0].at("share"), 1.0);
+    const Outcome none = plan({"--merge", "none", "--max-shaders", "1"});
+    EXPECT_EQ(none.exit, 1);
+    EXPECT_NE(none.err.find("--merge auto"), std::string::npos) << none.err;
+}
+
+TEST_F(Merge, ProfileTellsHotFromNeverHit) {
+    const Outcome outcome = planWith(makeProfileJson(0, 30));
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_EQ(outcome.json().at("shaders")[0].at("reason"), "never-hit");
+    EXPECT_EQ(outcome.json().at("shaders")[1].at("reason"), "hot");
+    EXPECT_EQ(outcome.json().at("shaders")[1].at("share"), 1.0);
+    EXPECT_TRUE(outcome.json().at("warnings").empty());
+    const Outcome explained = run({"explain", scene_, "--merge", "profile:hits.json", "--material", "Wall"});
+    ASSERT_EQ(explained.exit, 0) << explained.err;
+    EXPECT_NE(explained.out.find("never-hit: no hit of the profile has its key"), std::string::npos)
+        << explained.out;
+    EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
+}
+
+TEST_F(Merge, ProfilesOfOtherKeysAreWarnedOf) {
+    Json profile = makeProfileJson(10, 30);
+    profile["keys"][0]["features"] = {"normals", "clearcoat"};
+    profile["keys"][0]["materials"] = {"Varnish"};
+    const Outcome outcome = planWith(profile);
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("warning: has no count for 1 of the scene's 2 keys"), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("Wall (unlit)"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("note: counts 1 keys that the scene does not have: Varnish"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(outcome.json().at("warnings").size(), 1U);
+    EXPECT_EQ(planWith(profile, {"--werror"}).exit, 1);
+}
+
+TEST_F(Merge, ProfilesOfOtherSettingsAreWarnedOf) {
+    Json profile = makeProfileJson(10, 30);
+    profile["alpha"] = "tested";
+    const Outcome outcome = planWith(profile);
+    EXPECT_EQ(outcome.exit, 0);
+    EXPECT_NE(outcome.err.find("was counted with --alpha tested, but this is opaque"), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(planWith(makeProfileJson(1, 1), {"--hit-lobes", "base"}).err.find("--hit-lobes"),
+              std::string::npos);
+    EXPECT_NE(planWith(makeProfileJson(0, 0)).err.find("[profile-empty]"), std::string::npos);
+    profile["sources"] = {{{"file", "scene.gltf"}, {"hash", "0000000000000000"}}};
+    EXPECT_NE(planWith(profile).err.find("[profile-stale]"), std::string::npos);
+}
+
+TEST_F(Merge, MalformedProfilesFailWithTheirPlace) {
+    struct Broken {
+        Json patch;
+        std::string message;
+    };
+    const std::vector<Broken> all{
+        {{{"op", "remove"}, {"path", "/format"}}, "hits.json: error: has no member \"format\""},
+        {{{"op", "replace"}, {"path", "/format"}, {"value", "x"}}, "hits.json#/format: error: is not"},
+        {{{"op", "replace"}, {"path", "/version"}, {"value", 2}},
+         "#/version: error: is 2; this glint reads 1"},
+        {{{"op", "replace"}, {"path", "/version"}, {"value", "1"}}, "#/version: error: is no whole number"},
+        {{{"op", "replace"}, {"path", "/keys"}, {"value", 1}}, "#/keys: error: is no list"},
+        {{{"op", "replace"}, {"path", "/keys/1"}, {"value", 1}},
+         "#/keys/1: error: has no member \"features\""},
+        {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", -1}}, "#/keys/1/hits: error: is no whole"},
+        {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", 1.5}}, "#/keys/1/hits: error: is no whole"},
+        {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", 1e300}},
+         "#/keys/1/hits: error: is no whole"},
+        {{{"op", "replace"}, {"path", "/keys/0/features/0"}, {"value", 7}},
+         "#/keys/0/features/0: error: is no string"},
+        {{{"op", "replace"}, {"path", "/variant"}, {"value", 7}}, "#/variant: error: is no string"},
+        {{{"op", "remove"}, {"path", "/alpha"}}, "has no member \"alpha\""},
+        {{{"op", "replace"}, {"path", ""}, {"value", Json::array()}}, "is no JSON object"},
+    };
+    for (const Broken& broken : all) {
+        const Outcome outcome = planWith(makeProfileJson(1, 1).patch(Json::array({broken.patch})));
+        EXPECT_EQ(outcome.exit, 1) << broken.patch;
+        EXPECT_NE(outcome.err.find(broken.message), std::string::npos) << broken.patch << outcome.err;
+        EXPECT_NE(outcome.err.find("[profile-format]"), std::string::npos) << outcome.err;
+    }
+    writeText(path("hits.json"), "{\"format\": ");
+    EXPECT_NE(plan({"--merge", "profile:hits.json"}).err.find("is no JSON: byte "), std::string::npos);
+    EXPECT_NE(plan({"--merge", "profile:missing.json"}).err.find("[file-open]"), std::string::npos);
+}
+
+// A byte changed, taken out or cut off: a plan or a diagnostic, never anything else.
+TEST_F(Merge, DamagedProfilesNeverCrash) {
+    constexpr unsigned kSeed = 20250320;
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    const std::string whole = makeProfileJson(10, 30).dump();
+    for (int i = 0; i < 60; ++i) {
+        std::string text = whole;
+        const std::size_t place = random() % text.size();
+        switch (random() % 3) {
+            case 0:
+                text[place] = static_cast<char>(random());
+                break;
+            case 1:
+                text.erase(place, 1 + random() % 8);
+                break;
+            default:
+                text.resize(place);
+                break;
+        }
+        writeText(path("hits.json"), text);
+        const Outcome outcome = plan({"--merge", "profile:hits.json"});
+        EXPECT_TRUE(outcome.exit == 0 || outcome.exit == 1) << outcome.exit << ": " << text;
+        EXPECT_TRUE(outcome.exit == 0 || !outcome.err.empty()) << text;
+    }
+    const std::string deep(100000, '[');
+    writeText(path("hits.json"), deep);
+    EXPECT_EQ(plan({"--merge", "profile:hits.json"}).exit, 1);
+}
+
+TEST_F(Merge, OptionsThatDisagreeAreRefused) {
+    struct Mistake {
+        std::vector<std::string> arguments;
+        std::string message;
+    };
+    const std::vector<Mistake> all{
+        {{"compile", "a.gltf", "-o", "x", "--merge", "profile"}, "glint render --profile FILE"},
+        {{"compile", "a.gltf", "-o", "x", "--merge", "profile:"}, "is none of"},
+        {{"compile", "a.gltf", "-o", "x", "--merge", "profle"}, "did you mean profile?"},
+        {{"compile", "a.gltf", "-o", "x", "--profile", "p"},
+         "is for --merge profile, not for --merge family"},
+        {{"compile", "a.gltf", "-o", "x", "--merge", "profile:p", "--profile", "q"}, "give one of them"},
+        {{"explain", "a.gltf", "--merge", "auto", "--profile", "p"}, "is for --merge profile"},
+        {{"render", "a.gltf", "-o", "a.png", "--merge", "profile"}, "profile:FILE"},
+        {{"render", "a.gltf", "-o", "a.png", "--merge", "profile:p", "--profile", "q"}, "leave out --merge"},
+        {{"render", "a.gltf", "-o", "a.png", "--merge", "all", "--profile", "q"}, "leave out --merge all"},
+        {{"render", "a.gltf", "-o", "a.png", "--strategy", "uber", "--profile", "q"},
+         "--strategy visibility"},
+        {{"render", "a.gltf", "-o", "a.png", "--package", "d", "--profile", "q"}, "--package"},
+        {{"render", "a.gltf", "-o", "a.png", "--package", "d", "--max-shaders", "4"}, "--package"},
+    };
+    for (const Mistake& mistake : all) {
+        const Outcome outcome = run(mistake.arguments);
+        EXPECT_EQ(outcome.exit, 2) << outcome.err;
+        EXPECT_NE(outcome.err.find(mistake.message), std::string::npos) << mistake.message << "\n"
+                                                                        << outcome.err;
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,246 @@
+// Which keys share a case under each policy, by what the keys' hits are.
+#include "plan/merge.h"
+
+#include "plan/cluster.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+
+namespace {
+
+using namespace glint;
+
+constexpr unsigned kSeed = 20250317;
+constexpr FeatureMask kBase = bit(Feature::Normals);
+constexpr FeatureMask kTextured = kBase | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+constexpr FeatureMask kCoated = kTextured | bit(Feature::Clearcoat);
+constexpr FeatureMask kDispersing =
+    kBase | bit(Feature::Transmission) | bit(Feature::Volume) | bit(Feature::Dispersion);
+
+// In ascending order of masks, as planning has them; shares add up to 1.
+std::vector<WeightedKey> toKeys(const std::map<FeatureMask, double>& weights) {
+    double sum = 0.0;
+    for (const auto& [mask, weight] : weights) {
+        sum += weight;
+    }
+    std::vector<WeightedKey> keys;
+    for (const auto& [mask, weight] : weights) {
+        keys.push_back({mask, sum > 0.0 ? weight / sum : 0.0});
+    }
+    return keys;
+}
+
+std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
+    FeatureMask known = 0;
+    for (const FeatureInfo& info : featureTable()) {
+        known |= bit(info.feature);
+    }
+    std::map<FeatureMask, double> weights;
+    while (weights.size() < count) {
+        const FeatureMask mask = FeatureMask{random()} << 32U | random();
+        const FeatureMask sparse = mask & (FeatureMask{random()} << 32U | random()) & known;
+        // From a hundred thousand to one, and some that nothing hits.
+        weights[sparse] = random() % 8 == 0 ? 0.0 : std::exp2(static_cast<double>(random() % 17));
+    }
+    return toKeys(weights);
+}
+
+// Places of the keys in a list with their hits multiplied, or of a shuffled one, are found by mask.
+std::map<FeatureMask, CaseReason> reasonsByMask(const std::vector<WeightedKey>& keys,
+                                                const std::vector<CaseKeys>& cases) {
+    std::map<FeatureMask, CaseReason> reasons;
+    for (const CaseKeys& shaderCase : cases) {
+        for (const int key : shaderCase.keys) {
+            reasons[keys[static_cast<std::size_t>(key)].mask] = shaderCase.reason;
+        }
+    }
+    return reasons;
+}
+
+// The case of each key; every key must be in exactly one.
+std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<CaseKeys>& cases) {
+    std::vector<int> caseOf(keyCount, -1);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        EXPECT_FALSE(cases[i].keys.empty());
+        EXPECT_TRUE(std::ranges::is_sorted(cases[i].keys));
+        for (const int key : cases[i].keys) {
+            EXPECT_EQ(caseOf[static_cast<std::size_t>(key)], -1) << "key " << key << " is in two cases";
+            caseOf[static_cast<std::size_t>(key)] = static_cast<int>(i);
+        }
+    }
+    EXPECT_EQ(std::ranges::count(caseOf, -1), 0) << "a key is in no case";
+    return caseOf;
+}
+
+constexpr MergePolicy kBudgeted[] = {MergePolicy::Auto, MergePolicy::Profile};
+
+TEST(Merge, PartitionsTheKeysWithinTheBudget) {
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    for (const std::size_t count : {1U, 2U, 3U, 17U, 40U, 150U}) {
+        const std::vector<WeightedKey> keys = randomKeys(random, count);
+        for (const MergePolicy merge : kBudgeted) {
+            for (const int budget : {1, 2, 3, 4, 5, 8, 32, 1000}) {
+                SCOPED_TRACE(testing::Message() << toString(merge) << ", " << count << " keys, " << budget);
+                const std::vector<CaseKeys> cases = mergeKeys(keys, merge, budget);
+                EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
+                casesOfKeys(keys.size(), cases);
+                EXPECT_TRUE(std::ranges::is_sorted(
+                    cases, {}, [](const CaseKeys& shaderCase) { return shaderCase.keys.front(); }));
+            }
+        }
+    }
+}
+
+TEST(Merge, OfNothingMakesNoCase) {
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                    MergePolicy::Auto, MergePolicy::Profile}) {
+        EXPECT_TRUE(mergeKeys({}, merge, 1).empty());
+    }
+}
+
+TEST(Merge, GivesTheSameCasesAgain) {
+    std::mt19937 random(kSeed);
+    std::vector<WeightedKey> keys = randomKeys(random, 60);
+    // Ties everywhere: the order of the masks decides.
+    for (WeightedKey& key : keys) {
+        key.share = 1.0 / 60.0;
+    }
+    for (const MergePolicy merge : kBudgeted) {
+        const std::vector<int> once = casesOfKeys(keys.size(), mergeKeys(keys, merge, 7));
+        EXPECT_EQ(once, casesOfKeys(keys.size(), mergeKeys(keys, merge, 7)));
+        EXPECT_EQ(*std::ranges::max_element(once), 6);
+    }
+}
+
+TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
+    const std::vector<WeightedKey> keys = toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+    ASSERT_EQ(cases.size(), 3U);
+    for (const CaseKeys& shaderCase : cases) {
+        EXPECT_EQ(shaderCase.reason, CaseReason::Own);
+    }
+}
+
+TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
+    const FeatureMask doubleSided = kCoated | bit(Feature::DoubleSided);
+    const auto casesWith = [&](double weight) {
+        const std::vector<WeightedKey> keys =
+            toKeys({{kTextured, 1000.0}, {kCoated, weight}, {doubleSided, weight}});
+        const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+        return casesOfKeys(keys.size(), cases);
+    };
+    const std::vector<int> few = casesWith(100.0);
+    EXPECT_EQ(few[1], few[2]);
+    EXPECT_NE(few[0], few[1]);
+    const std::vector<int> many = casesWith(1000.0);
+    EXPECT_NE(many[1], many[2]);
+}
+
+// The same keys: who has the hits has the case.
+TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
+    std::mt19937 random(kSeed);
+    const std::vector<WeightedKey> start = randomKeys(random, 30);
+    for (const MergePolicy merge : kBudgeted) {
+        for (std::size_t hot = 0; hot < start.size(); ++hot) {
+            std::map<FeatureMask, double> weights;
+            for (const WeightedKey& key : start) {
+                weights[key.mask] = 1.0;
+            }
+            weights[start[hot].mask] = 60.0;
+            const std::vector<WeightedKey> keys = toKeys(weights);
+            const std::vector<CaseKeys> cases = mergeKeys(keys, merge, 4);
+            const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
+            EXPECT_EQ(std::ranges::count(caseOf, caseOf[hot]), 1) << toString(merge) << ", key " << hot;
+        }
+    }
+}
+
+TEST(Merge, RareKeysAreTheRest) {
+    std::map<FeatureMask, double> weights{{kTextured, 600.0}, {kCoated, 400.0}};
+    for (const Feature feature : {Feature::Sheen, Feature::Anisotropy, Feature::Iridescence}) {
+        weights[kBase | bit(feature)] = 1.0;
+    }
+    const std::vector<WeightedKey> keys = toKeys(weights);
+    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+    EXPECT_EQ(cases.size(), 3U);
+    const auto reasons = reasonsByMask(keys, cases);
+    EXPECT_EQ(reasons.at(kBase | bit(Feature::Sheen)), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kBase | bit(Feature::Iridescence)), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kTextured), CaseReason::Own);
+    EXPECT_EQ(reasons.at(kCoated), CaseReason::Own);
+}
+
+// A thousand keys of one share are each below what is rare: together they are not.
+TEST(Merge, ManyEqualKeysAreNotAllRest) {
+    std::mt19937 random(kSeed);
+    std::vector<WeightedKey> keys = randomKeys(random, 1000);
+    for (WeightedKey& key : keys) {
+        key.share = 1e-3;
+    }
+    EXPECT_EQ(mergeKeys(keys, MergePolicy::Auto, 20).size(), 20U);
+}
+
+TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
+    const std::vector<WeightedKey> keys = toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+    const std::vector<CaseKeys> two = mergeKeys(keys, MergePolicy::Auto, 2);
+    ASSERT_EQ(two.size(), 2U);
+    EXPECT_EQ(std::ranges::count(two, CaseReason::Budget, &CaseKeys::reason), 1);
+    const std::vector<CaseKeys> one = mergeKeys(keys, MergePolicy::Auto, 1);
+    ASSERT_EQ(one.size(), 1U);
+    EXPECT_EQ(one[0].reason, CaseReason::Budget);
+}
+
+TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
+    const FeatureMask sheen = kBase | bit(Feature::Sheen);
+    const std::vector<WeightedKey> keys = toKeys({{kBase, 500.0},
+                                                  {kTextured, 460.0},
+                                                  {kTextured | bit(Feature::TextureTransform), 20.0},
+                                                  {kTextured | bit(Feature::VertexColor), 18.0},
+                                                  {kCoated, 0.0},
+                                                  {sheen, 0.0},
+                                                  {sheen | bit(Feature::DoubleSided), 2.0}});
+    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
+    const auto reasons = reasonsByMask(keys, cases);
+    EXPECT_EQ(reasons.at(kBase), CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kTextured), CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kTextured | bit(Feature::TextureTransform)), CaseReason::Cold);
+    EXPECT_EQ(reasons.at(sheen | bit(Feature::DoubleSided)), CaseReason::Cold);
+    EXPECT_EQ(reasons.at(kCoated), CaseReason::NeverHit);
+    EXPECT_EQ(reasons.at(sheen), CaseReason::NeverHit);
+    // Two hot ones, two families of cold ones at most, one for the others.
+    const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
+    EXPECT_LE(cases.size(), 5U);
+    for (const CaseKeys& shaderCase : cases) {
+        EXPECT_TRUE(shaderCase.reason != CaseReason::Hot || shaderCase.keys.size() == 1);
+    }
+    EXPECT_EQ(std::ranges::count(cases, CaseReason::NeverHit, &CaseKeys::reason), 1);
+    EXPECT_EQ(mergeKeys(keys, MergePolicy::Profile, 2).size(), 2U);
+}
+
+TEST(Merge, AProfileWithoutHitsMakesOneCase) {
+    std::mt19937 random(kSeed);
+    std::vector<WeightedKey> keys = randomKeys(random, 10);
+    for (WeightedKey& key : keys) {
+        key.share = 0.0;
+    }
+    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
+    ASSERT_EQ(cases.size(), 1U);
+    EXPECT_EQ(cases[0].reason, CaseReason::NeverHit);
+}
+
+TEST(Merge, EveryReasonHasAWordAndASentence) {
+    std::map<std::string_view, int> words;
+    for (int i = 0; i <= static_cast<int>(CaseReason::NeverHit); ++i) {
+        ++words[toString(static_cast<CaseReason>(i))];
+        EXPECT_FALSE(explain(static_cast<CaseReason>(i)).empty());
+    }
+    EXPECT_EQ(words.size(), static_cast<std::size_t>(CaseReason::NeverHit) + 1);
+    EXPECT_EQ(toString(CaseReason::NeverHit), "never-hit");
+}
+
+}  // namespace

@@ -1,0 +1,273 @@
+#include "spirv/reader.h"
+#include "unit/spirv/lint_shaders.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+constexpr std::uint32_t kOpSource = 3;
+constexpr std::uint32_t kOpString = 7;
+constexpr std::uint32_t kOpLine = 8;
+constexpr std::uint32_t kOpRayQueryInitialize = 4473;
+
+TEST(LintQueries, TheFastShapeIsClean) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kFast);
+            rayQueryProceedEXT(q);
+            if (HIT(q) != 0u) { data.t = DISTANCE(q); }
+        })")),
+              Rules{});
+}
+
+TEST(LintQueries, ConditionAroundBothIsClean) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            if (data.b == 4u) { return; }
+            for (uint i = 0u; i < data.a; ++i) {
+                if (data.b == i) {
+                    rayQueryEXT q;
+                    START(q, kAny);
+                    rayQueryProceedEXT(q);
+                    data.b = HIT(q);
+                }
+            }
+        })")),
+              Rules{});
+}
+
+TEST(LintQueries, TwoProceedsAreAnError) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+        })")),
+              Rules{"error query-proceeds"});
+}
+
+TEST(LintQueries, AProceedAfterEachInitializeIsClean) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+            START(q, kFast);
+            rayQueryProceedEXT(q);
+            data.t = DISTANCE(q);
+        })")),
+              Rules{});
+}
+
+TEST(LintQueries, ConditionalProceedIsAnError) {
+    const Rules expected{"error query-proceed-conditional"};
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            if (data.a == 3u) { rayQueryProceedEXT(q); }
+            data.b = HIT(q);
+        })")),
+              expected);
+    // A loop that may run no round.
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            for (uint i = 0u; i < data.a; ++i) { rayQueryProceedEXT(q); }
+            data.b = HIT(q);
+        })")),
+              expected);
+    // A return between the two.
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            if (data.a == 3u) { return; }
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+        })")),
+              expected);
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            switch (data.a) {
+                case 1u: data.t = 1.0; break;
+                case 7u: rayQueryProceedEXT(q); break;
+                default: break;
+            }
+            data.b = HIT(q);
+        })")),
+              expected);
+}
+
+TEST(LintQueries, LoopOverCandidatesIsAWarning) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, gl_RayFlagsSkipAABBEXT);
+            while (rayQueryProceedEXT(q)) {
+                if (rayQueryGetIntersectionTEXT(q, false) > 1.0) { rayQueryConfirmIntersectionEXT(q); }
+            }
+            data.t = DISTANCE(q);
+        })")),
+              Rules{"warning query-proceed-loop"});
+}
+
+TEST(LintQueries, MissingProceedIsAWarning) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            data.b = HIT(q);
+        })")),
+              Rules{"warning query-proceed-missing"});
+}
+
+TEST(LintQueries, TwoLiveObjectsAreAnError) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT p;
+            rayQueryEXT q;
+            START(p, kFast);
+            rayQueryProceedEXT(p);
+            START(q, kFast);
+            rayQueryProceedEXT(q);
+            data.t = DISTANCE(p) + DISTANCE(q);
+        })")),
+              Rules{"error query-live-objects"});
+    // The first is read after a loop that uses the second.
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT p;
+            START(p, kFast);
+            rayQueryProceedEXT(p);
+            for (uint i = 0u; i < data.a; ++i) {
+                rayQueryEXT q;
+                START(q, kAny);
+                rayQueryProceedEXT(q);
+                data.b = HIT(q);
+            }
+            data.t = DISTANCE(p);
+        })")),
+              Rules{"error query-live-objects"});
+}
+
+TEST(LintQueries, OneAfterTheOtherIsClean) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            for (uint i = 0u; i < data.a; ++i) {
+                rayQueryEXT p;
+                START(p, kFast);
+                rayQueryProceedEXT(p);
+                float t = DISTANCE(p);
+                rayQueryEXT q;
+                START(q, kAny);
+                rayQueryProceedEXT(q);
+                data.t = HIT(q) == 0u ? t : 0.0;
+            }
+        })")),
+              Rules{});
+}
+
+TEST(LintQueries, AnArrayChosenAtRunTimeIsAllLive) {
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q[2];
+            START(q[data.a], kAny);
+            rayQueryProceedEXT(q[data.a]);
+            data.b = HIT(q[data.a]);
+        })")),
+              Rules{"error query-live-objects"});
+    EXPECT_EQ(rules(compileQuery(R"(
+        void main() {
+            rayQueryEXT q[2];
+            START(q[1], kAny);
+            rayQueryProceedEXT(q[1]);
+            data.b = HIT(q[1]);
+        })")),
+              Rules{});
+}
+
+TEST(LintQueries, FlagsMustBeConstantOpaqueAndWithoutAabbs) {
+    const auto withFlags = [](const std::string& flags, const std::string& read) {
+        return rules(compileQuery("void main() { rayQueryEXT q; START(q, " + flags +
+                                  "); rayQueryProceedEXT(q); " + read + " }"));
+    };
+    const std::string readsHit = "data.t = DISTANCE(q);";
+    const std::string readsType = "data.b = HIT(q);";
+    EXPECT_EQ(withFlags("kFast", readsHit), Rules{});
+    EXPECT_EQ(withFlags("kAny", readsType), Rules{});
+    EXPECT_EQ(withFlags("kFast", readsType), Rules{"note query-flags"});
+    EXPECT_EQ(withFlags("gl_RayFlagsOpaqueEXT", readsHit), Rules{"warning query-flags"});
+    EXPECT_EQ(withFlags("gl_RayFlagsSkipAABBEXT", readsHit), Rules{"warning query-flags"});
+    EXPECT_EQ(withFlags("0u", readsHit), (Rules{"warning query-flags", "warning query-flags"}));
+    EXPECT_EQ(withFlags("data.flags", readsHit), Rules{"warning query-flags"});
+}
+
+TEST(LintQueries, LooksThroughCalls) {
+    EXPECT_EQ(rules(compileQuery(functionsWith("t"), {"isVisible"})), Rules{});
+    const std::vector<LintFinding> found =
+        findings(compileQuery(functionsWith("DISTANCE(p)"), {"isVisible"}));
+    // One finding for the function, however often it is called.
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].rule, "query-live-objects");
+    EXPECT_EQ(found[0].place.function, "isVisible");
+}
+
+// A line at the first initialise.
+Words withLine(const Words& words, std::uint32_t line) {
+    Words result(words.begin(), words.begin() + 5);
+    const std::uint32_t file = result[3]++;
+    bool named = false;
+    EXPECT_TRUE(visitSpirv(words, [&](const SpirvInstruction& it) {
+        const auto opcode = it.opcode;
+        if (!named && opcode >= kOpSource && opcode < kOpLine) {
+            result.insert(result.end(), {4U << 16U | kOpString, file, 0x65732E61U, 0U});  // "a.se"
+            named = true;
+        }
+        if (named && opcode == kOpRayQueryInitialize) {
+            result.insert(result.end(), {4U << 16U | kOpLine, file, line, 1U});
+        }
+        result.push_back(static_cast<std::uint32_t>(it.operands.size() + 1) << 16U | opcode);
+        result.insert(result.end(), it.operands.begin(), it.operands.end());
+    }));
+    EXPECT_TRUE(named);
+    return result;
+}
+
+TEST(LintQueries, NamesThePlace) {
+    const std::string twice = R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+        })";
+    const Words words = compileQuery(twice);
+    const std::vector<LintFinding> found = findings(words);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].place.function, "main");
+    EXPECT_EQ(found[0].place.source, "");
+    ASSERT_LT(found[0].place.offset, words.size());
+    EXPECT_EQ(words[found[0].place.offset] & 0xFFFFU, kOpRayQueryInitialize);
+    EXPECT_FALSE(found[0].hint.empty());
+
+    const std::vector<LintFinding> lined = findings(withLine(words, 34));
+    ASSERT_EQ(lined.size(), 1U);
+    EXPECT_EQ(lined[0].place.source, "a.se:34");
+    EXPECT_NE(toString(lined[0].place).find("in main (a.se:34, word "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace glint::testing

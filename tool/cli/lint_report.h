@@ -1,0 +1,41 @@
+// What glint lint found, as a table and as JSON.
+#pragma once
+
+#include "cli/lint_files.h"
+#include "cli/lint_malioc.h"
+#include "cli/report.h"
+#include "spirv/lint.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct LintedModule {
+    LintFile file;
+    std::optional<SpirvLint> lint;  // nothing where the file can't be read
+    std::optional<MaliocReport> malioc;
+    std::vector<LintFinding> findings;  // all of them: shape, budgets, why it can't be read
+};
+
+struct LintedFolder {
+    std::string path;
+    std::vector<LintFinding> findings;  // of its modules together
+};
+
+struct LintReport {
+    std::vector<LintedModule> modules;
+    std::vector<LintedFolder> folders;
+    std::optional<std::filesystem::path> malioc;  // nothing where there is none
+    std::size_t count(Severity severity) const;
+};
+
+// "file.spv: error: in main (word 214): message; hint [rule]"
+Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where);
+
+std::string toText(const LintReport& report);
+// docs/lint.md describes it.
+Json toJson(const LintReport& report);
+
+}  // namespace glint

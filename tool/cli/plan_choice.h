@@ -1,0 +1,24 @@
+// From command line and files to the options of planning.
+#pragma once
+
+#include "cli/options.h"
+#include "cli/profile.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+
+#include <vector>
+
+namespace glint {
+
+struct PlanChoice {
+    PlanOptions options;
+    std::vector<Diagnostic> warnings;
+    std::vector<Diagnostic> notes;
+};
+
+// The options of the command line, with the hits of its profile where it names one. Warns of keys that the
+// scene has and the profile lacks, and of a profile that was made otherwise. Errors of readProfile().
+Result<PlanChoice> choosePlan(const PlanArguments& arguments, const Scene& scene);
+
+}  // namespace glint

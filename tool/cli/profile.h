@@ -1,0 +1,45 @@
+// Profiles: how many hits each key had, as `glint render --profile FILE` counts and `--merge profile` reads.
+#pragma once
+
+#include "gltf/scene.h"
+#include "plan/plan.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// A key by the names of its features, which outlive versions of Glint that number them otherwise.
+struct ProfileKey {
+    std::vector<std::string> features;   // in order of bits
+    std::vector<std::string> materials;  // that have the key; for people
+    std::uint64_t hits = 0;
+};
+
+struct ProfileSource {
+    std::string file;  // without folder
+    std::string hash;
+};
+
+struct Profile {
+    std::vector<ProfileSource> sources;
+    std::string variant;  // empty: none
+    std::string alpha;
+    std::vector<std::string> hitLobes;
+    std::vector<ProfileKey> keys;
+};
+
+// What the scene and the plan give; without hits. Requires a plan that gives each key its own case, in the
+// order of the keys.
+Profile makeProfile(const Scene& scene, const Plan& plan, const KeyOptions& options);
+
+std::string toText(const Profile& profile);
+
+// Errors of readFile(), and "profile-format" with the place where the file is no profile.
+Result<Profile> readProfile(const std::filesystem::path& path);
+
+}  // namespace glint

@@ -1,0 +1,26 @@
+// glint render --profile: the hits of every key, counted while rendering.
+#pragma once
+
+#include "cli/options.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Hits are counted by case: every key needs one, in a strategy that orders hits. Chooses --merge none; throws
+// a CLI::ParseError where the command line asks for something else. Nothing to do where `file` is empty.
+void settleProfileOutput(const std::string& file, const std::string& package, const std::string& strategy,
+                         bool mergeGiven, PlanArguments& plan);
+
+// `hits`: by shader ID of a plan with `options`, in which every key has its own case. Adds to `warnings` if
+// there is none. Errors of writeFile().
+Status writeProfile(const std::string& file, const Scene& scene, const PlanOptions& options,
+                    std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings);
+
+}  // namespace glint

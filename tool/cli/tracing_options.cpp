@@ -1,0 +1,176 @@
+#include "cli/tracing_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace glint {
+namespace {
+
+constexpr std::int64_t kMaxScreenSteps = 1024;
+
+template <typename Values>
+std::vector<std::string> namesOf(const Values& values) {
+    std::vector<std::string> names;
+    for (const auto value : values) {
+        names.emplace_back(package::nameOf(value));
+    }
+    return names;
+}
+
+std::vector<std::string> withAll(std::vector<std::string> names) {
+    names.emplace_back("all");
+    return names;
+}
+
+std::vector<std::string> orderingNames() {
+    std::vector<std::string> names{"auto"};
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(package::Ordering::Count); ++i) {
+        names.emplace_back(package::nameOf(static_cast<package::Ordering>(i)));
+    }
+    return names;
+}
+
+// 0 where the text is "off"; -1 where it is neither that nor a number of steps.
+std::int64_t screenSteps(const std::string& text) {
+    if (text == "off") {
+        return 0;
+    }
+    std::int64_t steps = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, steps);
+    return parsed.ec == std::errc() && parsed.ptr == end && steps >= 1 && steps <= kMaxScreenSteps ? steps
+                                                                                                   : -1;
+}
+
+std::vector<CLI::Option*> addPlacement(CLI::App& command, TracingArguments& arguments) {
+    CLI::Option& shadows = addChoice(command, "--shadows", arguments.shadows, {"inline", "deferred"},
+                                     "where shadow rays of hits are traced; inline: by the\n"
+                                     "shader that shades the hit; deferred: by a pass of\ntheir own");
+    CLI::Option& record = addChoice(command, "--hit-record", arguments.hitRecord, {"full", "packed"},
+                                    "what is kept of a hit between passes;\nfull: 32 bytes; packed: 16");
+    shadows.group("Shaders");
+    record.group("Shaders");
+    return {&shadows, &record};
+}
+
+}  // namespace
+
+package::Strategy strategyNamed(const std::string& name) {
+    const auto* const found = std::ranges::find(
+        package::kStrategies, name, [](package::Strategy value) { return package::nameOf(value); });
+    return found == std::end(package::kStrategies) ? package::kAllStrategies : *found;
+}
+
+package::Tracer tracerNamed(const std::string& name) {
+    const auto* const found = std::ranges::find(package::kTracers, name,
+                                                [](package::Tracer value) { return package::nameOf(value); });
+    return found == std::end(package::kTracers) ? package::kAllTracers : *found;
+}
+
+void TracingArguments::apply(CompileSettings& settings) const {
+    settings.strategies = 0;
+    for (const std::string& name : strategies) {
+        settings.strategies |= strategyNamed(name);
+    }
+    settings.tracers = 0;
+    for (const std::string& name : tracers) {
+        settings.tracers |= tracerNamed(name);
+    }
+    settings.shadows =
+        shadows == "deferred" ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
+    settings.hitRecord =
+        hitRecord == "packed" ? package::HitRecordFormat::Packed : package::HitRecordFormat::Full;
+}
+
+void addTracingLists(CLI::App& command, TracingArguments& arguments) {
+    arguments.strategies = {"uber", "visibility"};
+    arguments.tracers = {"ray-query"};
+    addChoices(command, "--strategy", arguments.strategies, withAll(namesOf(package::kStrategies)),
+               "how hits can be shaded, separated by commas;\n"
+               "uber: one shader traces and shades; visibility: hits\n"
+               "are ordered by shader first, one dispatch a shader;\n"
+               "sorted-uber: ordered, and one dispatch; hit-shaders: a\n"
+               "ray tracing pipeline")
+        .group("Shaders");
+    addChoices(command, "--tracer", arguments.tracers, withAll(namesOf(package::kTracers)),
+               "what traces rays, separated by commas; ray-pipeline:\n"
+               "for devices without ray queries; hit-shaders come\nwith it")
+        .group("Shaders");
+    addPlacement(command, arguments);
+}
+
+std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments) {
+    arguments.strategies = {"visibility"};
+    arguments.tracers = {"ray-query"};
+    addChoice(command, "--strategy", arguments.strategies.front(), namesOf(package::kStrategies),
+              "how hits are shaded; uber: one shader traces and\n"
+              "shades; visibility: hits are ordered by shader first,\n"
+              "one dispatch a shader; sorted-uber: ordered, and one\n"
+              "dispatch; hit-shaders: a ray tracing pipeline")
+        .group("Shaders");
+    addChoice(command, "--tracer", arguments.tracers.front(), namesOf(package::kTracers),
+              "what traces rays; hit-shaders: always ray-pipeline")
+        .group("Shaders");
+    return addPlacement(command, arguments);
+}
+
+void FrameArguments::apply(RendererOptions& options) const {
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(package::Ordering::Count); ++i) {
+        const auto candidate = static_cast<package::Ordering>(i);
+        if (ordering == package::nameOf(candidate)) {
+            options.ordering = candidate;
+        }
+    }
+}
+
+void FrameArguments::apply(FrameOptions& frame) const {
+    frame.mirrorRoughness = static_cast<float>(mirrorRoughness);
+    frame.maxReflectionRoughness = static_cast<float>(maxRoughness);
+    if (clamp > 0.0) {
+        frame.maxSampleRadiance = static_cast<float>(clamp);
+    }
+    frame.reflections = !noReflections;
+    frame.binning = binning == "sign"         ? Binning::Sign
+                    : binning == "octahedral" ? Binning::Octahedral
+                                              : Binning::None;
+    frame.screenSteps = static_cast<std::uint32_t>(screenSteps(ssr));
+    frame.screenThickness = static_cast<float>(ssrThickness);
+}
+
+void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
+    const std::string group = "Reflections";
+    addFlag(command, "--no-reflections", arguments.noReflections, "send no reflection rays").group(group);
+    addReal(command, "--mirror-roughness", arguments.mirrorRoughness, 0.0, 1.0,
+            "smoother surfaces reflect as mirrors\n(0 to 1, default: 0.05)")
+        .group(group);
+    addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
+            "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
+        .group(group);
+    addText(command, "--ssr", arguments.ssr, "off|N",
+            "march N steps in screen space before a ray is sent\n(1 to 1024, default: off)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                return screenSteps(text) >= 0 ? std::string()
+                                              : "\"" + text + "\" is neither off nor a number from 1 to 1024";
+            },
+            ""))
+        ->group(group);
+    addReal(command, "--ssr-thickness", arguments.ssrThickness, 0.0, 1.0,
+            "how far behind its depth a surface reaches in that\nmarch, share of its distance (0 to 1, "
+            "default: 0.02)")
+        .group(group);
+    addReal(command, "--clamp", arguments.clamp, 0.0, 1e9,
+            "luminance that a reflection brings at most in a sample:\nless noise, some light lost (default: "
+            "0, no limit)")
+        .group(group);
+    addChoice(command, "--binning", arguments.binning, {"none", "sign", "octahedral"},
+              "sort the rays of a workgroup by direction")
+        .group(group);
+    addChoice(command, "--ordering", arguments.ordering, orderingNames(),
+              "how hits are counted and sorted by shader;\nauto: by the number of shaders")
+        .group(group);
+}
+
+}  // namespace glint

@@ -1,0 +1,47 @@
+// Options of how rays are traced and shaded: what a package is compiled for, and what a renderer chooses at
+// run time.
+#pragma once
+
+#include "cli/options.h"
+
+#include <glint/renderer.h>
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// What a package can do. Strategies and tracers are lists for `compile`, and one value each for `render`.
+struct TracingArguments {
+    std::vector<std::string> strategies;
+    std::vector<std::string> tracers;
+    std::string shadows = "inline";
+    std::string hitRecord = "full";
+    void apply(CompileSettings& settings) const;
+};
+// --strategy and --tracer of lists, --shadows, --hit-record.
+void addTracingLists(CLI::App& command, TracingArguments& arguments);
+// --strategy and --tracer of one value, --shadows, --hit-record. Returns what a package decides: all but the
+// first.
+std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
+
+// What a renderer chooses.
+struct FrameArguments {
+    std::string ordering = "auto";
+    std::string binning = "none";
+    std::string ssr = "off";  // or a number of steps
+    double ssrThickness = 0.02;
+    double mirrorRoughness = 0.05;
+    double maxRoughness = 0.3;
+    double clamp = 0.0;  // 0: no limit
+    bool noReflections = false;
+    void apply(RendererOptions& options) const;
+    void apply(FrameOptions& frame) const;
+};
+void addFrameOptions(CLI::App& command, FrameArguments& arguments);
+
+// Of one name that --strategy or --tracer takes.
+package::Strategy strategyNamed(const std::string& name);
+package::Tracer tracerNamed(const std::string& name);
+
+}  // namespace glint

@@ -1,0 +1,127 @@
+#include "gltf/expected_hits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace glint {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Vector column(const Matrix4& matrix, std::size_t index) {
+    return {matrix[4 * index], matrix[4 * index + 1], matrix[4 * index + 2]};
+}
+
+// Columns of the cofactors of the upper 3 x 3: they take area vectors into the world.
+using Cofactors = std::array<Vector, 3>;
+
+Cofactors cofactorsOf(const Matrix4& matrix) {
+    const Vector x = column(matrix, 0);
+    const Vector y = column(matrix, 1);
+    const Vector z = column(matrix, 2);
+    return {cross(y, z), cross(z, x), cross(x, y)};
+}
+
+Vector edge(const Primitive& primitive, std::uint32_t from, std::uint32_t to) {
+    const Float3& a = primitive.positions[from];
+    const Float3& b = primitive.positions[to];
+    return {double{b[0]} - a[0], double{b[1]} - a[1], double{b[2]} - a[2]};
+}
+
+double areaOf(const Primitive& primitive, const Cofactors& cofactors) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        const std::uint32_t corner = primitive.indices[i];
+        const Vector local = cross(edge(primitive, corner, primitive.indices[i + 1]),
+                                   edge(primitive, corner, primitive.indices[i + 2]));
+        Vector world{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t part = 0; part < 3; ++part) {
+                world[axis] += cofactors[part][axis] * local[part];
+            }
+        }
+        sum += 0.5 * std::sqrt(dot(world, world));
+    }
+    return std::isfinite(sum) ? sum : 0.0;
+}
+
+// How much the upper 3 x 3 scales every area, if it does so whatever its direction; else negative.
+double uniformAreaScale(const Cofactors& cofactors) {
+    // Equal but for what single precision leaves of a rotation.
+    constexpr double kTolerance = 1e-5;
+    const double scale = dot(cofactors[0], cofactors[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double off = dot(cofactors[i], cofactors[(i + 1) % 3]);
+        if (std::abs(dot(cofactors[i], cofactors[i]) - scale) > kTolerance * scale ||
+            std::abs(off) > kTolerance * scale) {
+            return -1.0;
+        }
+    }
+    return std::sqrt(scale);
+}
+
+// The area at each place of a mesh. One pass over the triangles serves all places that scale uniformly.
+std::vector<double> areasOf(const Primitive& primitive, const std::vector<Cofactors>& places) {
+    constexpr Cofactors kIdentity{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
+    const double local = places.empty() ? 0.0 : areaOf(primitive, kIdentity);
+    std::vector<double> areas;
+    areas.reserve(places.size());
+    for (const Cofactors& cofactors : places) {
+        const double scale = uniformAreaScale(cofactors);
+        const double area = scale >= 0.0 ? scale * local : areaOf(primitive, cofactors);
+        areas.push_back(std::isfinite(area) ? area : 0.0);
+    }
+    return areas;
+}
+
+// Of the areas above 0; 0 if there is none.
+double medianOf(const std::vector<std::vector<double>>& areas) {
+    std::vector<double> all;
+    for (const std::vector<double>& list : areas) {
+        std::ranges::copy_if(list, std::back_inserter(all), [](double area) { return area > 0.0; });
+    }
+    if (all.empty()) {
+        return 0.0;
+    }
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::ranges::nth_element(all, middle);
+    return *middle;
+}
+
+}  // namespace
+
+void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
+    constexpr double kMedians = 10.0;
+    std::vector<std::vector<Cofactors>> places(scene.meshes.size());
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0) {
+            places[static_cast<std::size_t>(node.mesh)].push_back(cofactorsOf(node.world));
+        }
+    }
+    std::vector<std::vector<double>> areas;
+    areas.reserve(inputs.size());
+    for (const PrimitiveInputs& input : inputs) {
+        const auto mesh = static_cast<std::size_t>(input.mesh);
+        const Primitive& primitive = scene.meshes[mesh].primitives[static_cast<std::size_t>(input.primitive)];
+        areas.push_back(areasOf(primitive, places[mesh]));
+    }
+    const double large = kMedians * medianOf(areas);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        inputs[i].expectedHits = 0.0;
+        for (const double area : areas[i]) {
+            inputs[i].expectedHits += area > 0.0 ? area / (area + large) : 0.0;
+        }
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,66 @@
+// What it costs that keys share a case: the model behind --merge auto.
+//
+// Unit: SPIR-V instructions that an average hit runs in vain. A hit runs the code of its own features in any
+// clustering, so only the surplus counts. A case whose hits have the share w of all hits costs
+//
+//     w * sum over its "sometimes" features f of ( branch(f) + instructions(f) * (q(f) - p(f)) )  + kCaseCost
+//
+//   p(f)             share of the case's hits that have f
+//   q(f)             chance that some lane of a subgroup has f, 1 - (1 - p)^kSubgroupSize, if neighbours are
+//                    independent: the others wait for that lane. Neighbours are often alike, so this is an
+//                    upper bound.
+//   instructions(f)  FeatureInfo::instructions: a shader with f less one without, from `glint compile --merge
+//                    none --strategy visibility --json` over a scene with one material for each feature
+//                    (base colour texture, UV set 0, normals, and the feature; 924 instructions without it)
+//   branch(f)        what a case grows by beyond its features' own code when f becomes a branch, which all of
+//                    its hits pay in tests, selects and registers: kInputBranch, kLobeBranch
+//
+// Lit shading is such a feature too, which unlit keys lack.
+#pragma once
+
+#include "plan/features.h"
+
+#include <array>
+
+namespace glint {
+
+// Of the gallery, `--merge family` has one case of 13 input branches with 1581 instructions where its
+// features add up to 1284: 23 a branch; `--merge all` one of 41 branches with 7737 where they add up to 4560,
+// which leaves some 200 for each of the 13 lobes. Rounded, as another scene gives other numbers.
+inline constexpr double kInputBranch = 20.0;
+inline constexpr double kLobeBranch = 200.0;
+
+// A material of base colour texture and normals has 924 instructions lit and 233 unlit.
+inline constexpr double kLitInstructions = 690.0;
+
+// Lanes of a subgroup on most GPUs (8 on lavapipe, 64 on some).
+inline constexpr int kSubgroupSize = 32;
+
+// One per cent of a plain lit hit. A case brings a dispatch whose last workgroup is half empty or, in an uber
+// shader, one more way for a subgroup to diverge; some 25 kB of SPIR-V; and a tenth of a second or more to
+// compile. This is a choice rather than a measurement: what they weigh depends on the GPU.
+inline constexpr double kCaseCost = 10.0;
+
+// A key, and the share of all hits that have it: not negative, 1 over all keys or 0 each.
+struct WeightedKey {
+    FeatureMask mask = 0;
+    double share = 0.0;
+};
+
+// What the model needs to know of a set of keys.
+struct KeySet {
+    double share = 0.0;
+    FeatureMask always = 0;
+    FeatureMask any = 0;
+    std::array<double, 64> shareWith{};  // by bit: the part of `share` whose keys have it
+};
+
+KeySet toSet(const WeightedKey& key);
+KeySet unionOf(const KeySet& a, const KeySet& b);
+
+// The surplus of a case of these keys, without kCaseCost. Never negative; 0 for one key.
+double mergingCost(const KeySet& keys);
+// The surplus of a case of the keys of both.
+double mergingCost(const KeySet& a, const KeySet& b);
+
+}  // namespace glint

@@ -1,0 +1,205 @@
+#include "plan/merge.h"
+
+#include "plan/cluster.h"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <numeric>
+
+namespace glint {
+
+namespace {
+
+using Keys = std::span<const WeightedKey>;
+
+// Indices of the keys, those with most hits first; of equal ones the smaller mask.
+std::vector<int> byShare(Keys keys) {
+    std::vector<int> order(keys.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater(),
+                             [&](int key) { return keys[static_cast<std::size_t>(key)].share; });
+    return order;
+}
+
+// Keys whose masks agree in the bits of `distinguishes`.
+std::vector<Cluster> groupBy(Keys keys, const std::vector<int>& indices, FeatureMask distinguishes) {
+    std::map<FeatureMask, Cluster> groups;
+    for (const int key : indices) {
+        groups[keys[static_cast<std::size_t>(key)].mask & distinguishes].keys.push_back(key);
+    }
+    std::vector<Cluster> clusters;
+    clusters.reserve(groups.size());
+    for (auto& [mask, cluster] : groups) {
+        clusters.push_back(std::move(cluster));
+    }
+    return clusters;
+}
+
+void append(std::vector<CaseKeys>& cases, std::vector<Cluster> clusters, CaseReason reason) {
+    for (Cluster& cluster : clusters) {
+        cases.push_back({std::move(cluster.keys), reason});
+    }
+}
+
+std::vector<CaseKeys> mergeByMask(Keys keys, FeatureMask distinguishes, CaseReason reason) {
+    std::vector<CaseKeys> cases;
+    append(cases, groupBy(keys, byShare(keys), distinguishes), reason);
+    return cases;
+}
+
+// Takes the rare keys off the end of `order`.
+std::vector<int> takeRest(Keys keys, std::vector<int>& order) {
+    std::vector<int> rest;
+    double share = 0.0;
+    while (!order.empty()) {
+        const double next = keys[static_cast<std::size_t>(order.back())].share;
+        const bool isRare = next < kRareShare && share + next <= kRestShare;
+        if (!isRare && order.size() + (rest.empty() ? 0 : 1) <= kMaxStart) {
+            break;
+        }
+        share += next;
+        rest.push_back(order.back());
+        order.pop_back();
+    }
+    return rest;
+}
+
+std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
+    std::vector<int> order = byShare(keys);
+    std::vector<int> rest = takeRest(keys, order);
+    const int rare = rest.size() > 1 ? rest.front() : -1;
+    std::vector<Cluster> start;
+    for (const int key : order) {
+        start.push_back({{key}});
+    }
+    if (!rest.empty()) {
+        start.push_back({std::move(rest)});
+    }
+    std::vector<CaseKeys> cases;
+    for (Cluster& cluster : agglomerate(std::move(start), keys, maxCases)) {
+        const bool hasRest = std::ranges::binary_search(cluster.keys, rare);
+        cases.push_back({std::move(cluster.keys), cluster.forced ? CaseReason::Budget
+                                                  : hasRest      ? CaseReason::Rest
+                                                                 : CaseReason::Cost});
+    }
+    return cases;
+}
+
+// How many keys, the most frequent first, have kHotShare of the hits.
+std::size_t countHot(Keys keys, const std::vector<int>& order) {
+    double covered = 0.0;
+    std::size_t hot = 0;
+    while (hot < order.size() && covered < kHotShare &&
+           keys[static_cast<std::size_t>(order[hot])].share > 0.0) {
+        covered += keys[static_cast<std::size_t>(order[hot])].share;
+        ++hot;
+    }
+    return hot;
+}
+
+std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
+    const auto budget = static_cast<std::size_t>(maxCases);
+    const std::vector<int> order = byShare(keys);
+    std::size_t hot = countHot(keys, order);
+    // Where not all hot keys can have a case, a quarter of the cases is for those that can't.
+    const std::size_t others = hot < order.size() ? 1 : 0;
+    if (hot + others > budget) {
+        hot = budget - std::max<std::size_t>(1, budget / 4);
+    }
+    const auto firstUnhit = std::ranges::find_if(
+        order, [&](int key) { return keys[static_cast<std::size_t>(key)].share <= 0.0; });
+    const auto firstCold = order.begin() + static_cast<std::ptrdiff_t>(hot);
+    std::vector<int> cold(firstCold, firstUnhit);
+    std::vector<int> unhit(firstUnhit, order.end());
+
+    std::vector<CaseKeys> cases;
+    for (auto key = order.begin(); key != firstCold; ++key) {
+        cases.push_back({{*key}, CaseReason::Hot});
+    }
+    if (!unhit.empty() && !cold.empty() && budget - hot < 2) {
+        cold.insert(cold.end(), unhit.begin(), unhit.end());
+        unhit.clear();
+    }
+    if (!cold.empty()) {
+        const std::size_t left = budget - hot - (unhit.empty() ? 0 : 1);
+        append(cases, agglomerate(groupBy(keys, cold, kLobeMask), keys, static_cast<int>(left)),
+               CaseReason::Cold);
+    }
+    if (!unhit.empty()) {
+        cases.push_back({std::move(unhit), CaseReason::NeverHit});
+    }
+    return cases;
+}
+
+std::vector<CaseKeys> mergeBy(Keys keys, MergePolicy merge, int maxCases) {
+    switch (merge) {
+        case MergePolicy::None:
+            return mergeByMask(keys, ~FeatureMask{0}, CaseReason::Own);
+        case MergePolicy::Family:
+            return mergeByMask(keys, kLobeMask, CaseReason::Family);
+        case MergePolicy::All:
+            return mergeByMask(keys, 0, CaseReason::All);
+        case MergePolicy::Auto:
+            return mergeByCost(keys, maxCases);
+        case MergePolicy::Profile:
+            break;
+    }
+    return mergeByHits(keys, maxCases);
+}
+
+}  // namespace
+
+std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy merge, int maxCases) {
+    assert(maxCases >= 1 || (merge != MergePolicy::Auto && merge != MergePolicy::Profile));
+    if (keys.empty()) {
+        return {};
+    }
+    std::vector<CaseKeys> cases = mergeBy(keys, merge, maxCases);
+    for (CaseKeys& shaderCase : cases) {
+        std::ranges::sort(shaderCase.keys);
+        if (shaderCase.keys.size() == 1 && merge != MergePolicy::Profile) {
+            shaderCase.reason = CaseReason::Own;
+        }
+    }
+    std::ranges::sort(cases, {}, [](const CaseKeys& shaderCase) { return shaderCase.keys.front(); });
+    return cases;
+}
+
+std::string_view toString(MergePolicy merge) {
+    switch (merge) {
+        case MergePolicy::None:
+            return "none";
+        case MergePolicy::Family:
+            return "family";
+        case MergePolicy::All:
+            return "all";
+        case MergePolicy::Auto:
+            return "auto";
+        case MergePolicy::Profile:
+            break;
+    }
+    return "profile";
+}
+
+std::string_view toString(CaseReason reason) {
+    constexpr std::string_view kNames[] = {"own",  "family", "all",  "cost",     "budget",
+                                           "rest", "hot",    "cold", "never-hit"};
+    return kNames[static_cast<std::size_t>(reason)];
+}
+
+std::string_view explain(CaseReason reason) {
+    constexpr std::string_view kSentences[] = {
+        "it has one key",
+        "its keys have the same lobes",
+        "every key shares one case",
+        "branches on what its keys differ in cost less than more cases",
+        "more cases than --max-shaders allows would be better",
+        "its keys are too rare to pay for cases of their own",
+        "many hits of the profile have its key",
+        "few hits of the profile have its keys",
+        "no hit of the profile has its keys"};
+    return kSentences[static_cast<std::size_t>(reason)];
+}
+
+}  // namespace glint

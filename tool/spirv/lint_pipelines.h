@@ -1,0 +1,14 @@
+// The rules about shaders of ray tracing pipelines.
+#pragma once
+
+#include "spirv/lint.h"
+
+#include <map>
+
+namespace glint {
+
+// Appends the findings about a valid module; `places` as findPlaces() gives them for it.
+void lintPipelines(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
+                   std::vector<LintFinding>& findings);
+
+}  // namespace glint

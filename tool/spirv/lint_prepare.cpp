@@ -1,0 +1,165 @@
+#include "spirv/lint_prepare.h"
+
+#include "spirv/call_graph.h"
+#include "spirv/lint_places.h"
+#include "spirv/reader.h"
+
+#include <glslang/SPIRV/spirv.hpp>
+#include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
+
+#include <set>
+#include <string>
+
+namespace glint {
+
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+// A superset of what any Vulkan version takes: lint is about speed, not about environments.
+constexpr spv_target_env kEnvironment = SPV_ENV_UNIVERSAL_1_6;
+constexpr std::size_t kHeaderWords = 5;
+constexpr std::size_t kBoundWord = 3;
+
+// What stands before the debug instructions (SPIR-V specification, section 2.4).
+bool isPreamble(std::uint32_t opcode) {
+    switch (opcode) {
+        case spv::OpCapability:
+        case spv::OpExtension:
+        case spv::OpExtInstImport:
+        case spv::OpMemoryModel:
+        case spv::OpEntryPoint:
+        case spv::OpExecutionMode:
+        case spv::OpExecutionModeId:
+            return true;
+        default:
+            return false;
+    }
+}
+
+void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint32_t> operands) {
+    words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift | opcode);
+    words.insert(words.end(), operands);
+}
+
+// Replaces the lines of the module by the offsets of its ray query instructions.
+Words markOffsets(std::span<const std::uint32_t> words) {
+    Words marked(words.begin(), words.begin() + kHeaderWords);
+    const std::uint32_t file = marked[kBoundWord]++;
+    bool named = false;
+    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+        const std::uint32_t opcode = instruction.opcode;
+        if (opcode == spv::OpLine || opcode == spv::OpNoLine) {
+            return;
+        }
+        if (!named && !isPreamble(opcode)) {
+            append(marked, spv::OpString, {file, 0});
+            named = true;
+        }
+        const std::size_t offset = offsetOf(words, instruction);
+        if (isRayQueryInstruction(opcode)) {
+            append(marked, spv::OpLine, {file, static_cast<std::uint32_t>(offset), 0});
+        }
+        const auto source = words.subspan(offset, instruction.operands.size() + 1);
+        marked.insert(marked.end(), source.begin(), source.end());
+    });
+    return marked;
+}
+
+struct FunctionContents {
+    std::size_t words = 0;
+    bool hasRayQueries = false;
+};
+
+std::map<std::uint32_t, FunctionContents> weighFunctions(std::span<const std::uint32_t> words) {
+    std::map<std::uint32_t, FunctionContents> functions;
+    std::uint32_t current = 0;
+    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+        if (instruction.opcode == spv::OpFunction) {
+            current = instruction.operands[1];
+        }
+        FunctionContents& function = functions[current];
+        function.words += instruction.operands.size() + 1;
+        function.hasRayQueries = function.hasRayQueries || isRayQueryInstruction(instruction.opcode);
+    });
+    return functions;
+}
+
+// Large functions that neither query nor call one that does: inlining them would cost time and show nothing.
+std::set<std::uint32_t> findApart(std::span<const std::uint32_t> words,
+                                  const std::vector<SpirvFunction>& functions) {
+    constexpr std::size_t kSmallWords = 256;
+    std::map<std::uint32_t, FunctionContents> contents = weighFunctions(words);
+    // Each round reaches one caller more; no chain of calls is longer than there are functions.
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (const SpirvFunction& function : functions) {
+            for (const std::uint32_t callee : function.calls) {
+                if (contents[callee].hasRayQueries && !contents[function.id].hasRayQueries) {
+                    contents[function.id].hasRayQueries = true;
+                    changed = true;
+                }
+            }
+        }
+    }
+    std::set<std::uint32_t> apart;
+    for (const SpirvFunction& function : functions) {
+        const FunctionContents& it = contents[function.id];
+        if (!it.hasRayQueries && it.words > kSmallWords) {
+            apart.insert(function.id);
+        }
+    }
+    return apart;
+}
+
+void registerPasses(spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateScalarReplacementPass(0))
+        .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
+        .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateSSARewritePass())
+        .RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateSimplificationPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass());
+}
+
+}  // namespace
+
+Status checkSpirv(std::span<const std::uint32_t> words) {
+    std::string message;
+    spvtools::SpirvTools tools(kEnvironment);
+    tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* text) {
+        message = message.empty() ? text : message;
+    });
+    spvtools::ValidatorOptions options;
+    options.SetSkipBlockLayout(true);
+    if (tools.Validate(words.data(), words.size(), options)) {
+        return okStatus();
+    }
+    // Some messages go on with a disassembly.
+    message = message.substr(0, message.find('\n'));
+    return makeError("spirv-invalid", {},
+                     "is not valid SPIR-V: " + (message.empty() ? "no reason given" : message),
+                     "compile it again; spirv-val says more");
+}
+
+std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) {
+    Words marked = markOffsets(words);
+    const std::vector<SpirvFunction> functions = findFunctions(marked);
+    keepApart(marked, functions, findApart(marked, functions));
+    spvtools::Optimizer optimizer(kEnvironment);
+    optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+    registerPasses(optimizer);
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false);  // checkSpirv() did
+    Words prepared;
+    // A module that SPIRV-Tools can't inline is judged function by function.
+    return optimizer.Run(marked.data(), marked.size(), &prepared, options) ? prepared : marked;
+}
+
+}  // namespace glint

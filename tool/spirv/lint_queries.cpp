@@ -1,0 +1,245 @@
+#include "spirv/lint_queries.h"
+
+#include "spirv/lint_flow.h"
+#include "spirv/lint_prepare.h"
+
+#include <fmt/format.h>
+#include <glslang/SPIRV/spirv.hpp>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+namespace glint {
+
+namespace {
+
+// gl_RayFlagsSkipAABBEXT of GLSL_EXT_ray_flags_primitive_culling.
+constexpr std::uint32_t kSkipAabbs = spv::RayFlagsSkipAABBsKHRMask;
+constexpr std::uint32_t kOpaque = spv::RayFlagsOpaqueKHRMask;
+constexpr std::uint32_t kFirstHit = spv::RayFlagsTerminateOnFirstHitKHRMask;
+
+class QueryRules {
+public:
+    QueryRules(const FlowModule& module, const std::map<std::size_t, SpirvPlace>& places,
+               std::vector<LintFinding>& findings)
+        : module_(module), places_(places), findings_(findings) {}
+
+    void judge(const FlowFunction& function) {
+        for (std::size_t b = 0; b < function.blocks.size(); ++b) {
+            for (std::size_t e = 0; e < function.blocks[b].events.size(); ++e) {
+                if (function.blocks[b].events[e].act == QueryAct::Initialize) {
+                    judgeInitialize(function, {b, e});
+                }
+            }
+        }
+        judgeLiveness(function);
+    }
+
+private:
+    // Of a function that is inlined at several calls, each finding is reported once.
+    void report(Severity severity, const std::string& rule, const QueryEvent& event, std::string message,
+                std::string hint) {
+        if (reported_.emplace(rule, event.origin, message).second) {
+            const auto place = places_.find(event.origin);
+            findings_.push_back({severity, rule, place == places_.end() ? SpirvPlace() : place->second,
+                                 std::move(message), std::move(hint)});
+        }
+    }
+
+    void judgeInitialize(const FlowFunction& function, EventPlace start) {
+        const std::vector<EventPlace> after = eventsAfter(function, start);
+        std::vector<EventPlace> proceeds;
+        bool passedOn = false;
+        for (const EventPlace place : after) {
+            const QueryAct act = at(function, place).act;
+            passedOn = passedOn || act == QueryAct::PassedOn;
+            if (act == QueryAct::Proceed) {
+                proceeds.push_back(place);
+            }
+        }
+        if (proceeds.empty() && !passedOn) {
+            report(Severity::Warning, "query-proceed-missing", at(function, start),
+                   "a ray query is initialised, but no path proceeds",
+                   "remove it, or call rayQueryProceedEXT");
+        }
+        judgeProceeds(function, start, proceeds);
+        judgeFlags(function, start, after);
+    }
+
+    void judgeProceeds(const FlowFunction& function, EventPlace start,
+                       const std::vector<EventPlace>& proceeds) {
+        if (proceeds.size() > 1) {
+            report(Severity::Error, "query-proceeds", at(function, start),
+                   fmt::format("{} OpRayQueryProceedKHR can follow one OpRayQueryInitializeKHR",
+                               proceeds.size()),
+                   "call rayQueryProceedEXT at one place after each initialise");
+        }
+        for (const EventPlace proceed : proceeds) {
+            if (canAvoid(function, start, proceed)) {
+                report(Severity::Error, "query-proceed-conditional", at(function, proceed),
+                       "OpRayQueryProceedKHR is not on every path from its OpRayQueryInitializeKHR",
+                       "proceed right after the initialise, and put the condition around both");
+            } else if (repeats(function, proceed)) {
+                report(Severity::Warning, "query-proceed-loop", at(function, proceed),
+                       "OpRayQueryProceedKHR runs in a loop over candidates, as alpha tests need",
+                       "where hits may be opaque, set gl_RayFlagsOpaqueEXT and proceed once, without a loop");
+            }
+        }
+    }
+
+    void judgeFlags(const FlowFunction& function, EventPlace start, const std::vector<EventPlace>& after) {
+        const QueryEvent& initialize = at(function, start);
+        const std::uint32_t* flags = module_.findConstant(initialize.flags);
+        if (flags == nullptr) {
+            report(Severity::Warning, "query-flags", initialize, "ray flags are not a constant",
+                   "pass a constant, so that the compiler can leave out what it excludes");
+            return;
+        }
+        const bool loops = std::ranges::any_of(after, [&](EventPlace place) {
+            return at(function, place).act == QueryAct::Proceed && repeats(function, place);
+        });
+        // A loop over candidates wants those that are not opaque; query-proceed-loop says so already.
+        if ((*flags & kOpaque) == 0 && !loops) {
+            report(Severity::Warning, "query-flags", initialize,
+                   fmt::format("ray flags {:#x} lack Opaque (0x1)", *flags), "add gl_RayFlagsOpaqueEXT");
+        }
+        if ((*flags & kSkipAabbs) == 0) {
+            report(Severity::Warning, "query-flags", initialize,
+                   fmt::format("ray flags {:#x} lack SkipAABBs (0x200)", *flags),
+                   "add gl_RayFlagsSkipAABBEXT (GL_EXT_ray_flags_primitive_culling; device feature "
+                   "rayTraversalPrimitiveCulling)");
+        }
+        if ((*flags & kFirstHit) == 0 && readsTypeAlone(function, after)) {
+            report(
+                Severity::Note, "query-flags", initialize,
+                fmt::format(
+                    "ray flags {:#x} lack TerminateOnFirstHit (0x4), yet only whether there is a hit is read",
+                    *flags),
+                "add gl_RayFlagsTerminateOnFirstHitEXT if any hit will do");
+        }
+    }
+
+    static bool readsTypeAlone(const FlowFunction& function, const std::vector<EventPlace>& after) {
+        const auto any = [&](QueryAct act) {
+            return std::ranges::any_of(after,
+                                       [&](EventPlace place) { return at(function, place).act == act; });
+        };
+        return any(QueryAct::ReadType) && !any(QueryAct::ReadHit) && !any(QueryAct::PassedOn);
+    }
+
+    using ObjectSet = std::vector<bool>;
+
+    // Objects that may be initialised at the start of each block.
+    static std::vector<ObjectSet> initializedAtEntry(const FlowFunction& function) {
+        std::vector<ObjectSet> sets(function.blocks.size(), ObjectSet(function.objects.size(), false));
+        bool changed = true;
+        while (changed) {
+            changed = false;
+            for (std::size_t b = 0; b < function.blocks.size(); ++b) {
+                ObjectSet set = sets[b];
+                for (const QueryEvent& event : function.blocks[b].events) {
+                    // A function that an object is passed to may initialise it.
+                    set[event.object] = set[event.object] || event.act == QueryAct::Initialize ||
+                                        event.act == QueryAct::PassedOn;
+                }
+                for (const std::size_t successor : function.blocks[b].successors) {
+                    changed = merge(sets[successor], set) || changed;
+                }
+            }
+        }
+        return sets;
+    }
+
+    // Objects that may yet be used, without being initialised before, at the end of each block.
+    static std::vector<ObjectSet> usedAfterExit(const FlowFunction& function) {
+        std::vector<ObjectSet> sets(function.blocks.size(), ObjectSet(function.objects.size(), false));
+        bool changed = true;
+        while (changed) {
+            changed = false;
+            for (std::size_t b = function.blocks.size(); b-- > 0;) {
+                for (const std::size_t successor : function.blocks[b].successors) {
+                    ObjectSet set = sets[successor];
+                    const std::vector<QueryEvent>& events = function.blocks[successor].events;
+                    for (std::size_t e = events.size(); e-- > 0;) {
+                        set[events[e].object] = events[e].act != QueryAct::Initialize;
+                    }
+                    changed = merge(sets[b], set) || changed;
+                }
+            }
+        }
+        return sets;
+    }
+
+    // Whether `target` grew.
+    static bool merge(ObjectSet& target, const ObjectSet& source) {
+        bool grew = false;
+        for (std::size_t i = 0; i < source.size(); ++i) {
+            grew = grew || (source[i] && !target[i]);
+            target[i] = target[i] || source[i];
+        }
+        return grew;
+    }
+
+    // An object is live between its initialise and its last use.
+    void judgeLiveness(const FlowFunction& function) {
+        const std::vector<ObjectSet> initialized = initializedAtEntry(function);
+        const std::vector<ObjectSet> used = usedAfterExit(function);
+        for (std::size_t b = 0; b < function.blocks.size(); ++b) {
+            const std::vector<QueryEvent>& events = function.blocks[b].events;
+            ObjectSet before = initialized[b];
+            for (std::size_t e = 0; e < events.size(); ++e) {
+                if (events[e].act == QueryAct::Initialize) {
+                    judgeOthers(function, {b, e}, before, used[b]);
+                }
+                before[events[e].object] = before[events[e].object] ||
+                                           events[e].act == QueryAct::Initialize ||
+                                           events[e].act == QueryAct::PassedOn;
+            }
+        }
+    }
+
+    // Reports the other objects that are live where `start` initialises one.
+    void judgeOthers(const FlowFunction& function, EventPlace start, const ObjectSet& initialized,
+                     ObjectSet usedLater) {
+        const std::vector<QueryEvent>& events = function.blocks[start.block].events;
+        for (std::size_t e = events.size(); --e > start.event;) {
+            usedLater[events[e].object] = events[e].act != QueryAct::Initialize;
+        }
+        const std::size_t own = events[start.event].object;
+        if (function.objects[own].dynamic) {
+            report(Severity::Error, "query-live-objects", events[start.event],
+                   "a ray query of an array is chosen at run time, so all of them are live",
+                   "use one ray query");
+        }
+        std::size_t others = 0;
+        for (std::size_t object = 0; object < function.objects.size(); ++object) {
+            others += object != own && initialized[object] && usedLater[object] ? 1 : 0;
+        }
+        if (others > 0) {
+            report(Severity::Error, "query-live-objects", events[start.event],
+                   fmt::format("a ray query is initialised while {} yet to be read",
+                               others == 1 ? "another is" : fmt::format("{} others are", others)),
+                   "copy what is needed of a hit, then initialise the next query");
+        }
+    }
+
+    const FlowModule& module_;
+    const std::map<std::size_t, SpirvPlace>& places_;
+    std::vector<LintFinding>& findings_;
+    std::set<std::tuple<std::string, std::size_t, std::string>> reported_;
+};
+
+}  // namespace
+
+void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
+                 std::vector<LintFinding>& findings) {
+    const std::vector<std::uint32_t> prepared = prepareForLint(words);
+    const FlowModule module = readFlow(prepared);
+    QueryRules rules(module, places, findings);
+    for (const FlowFunction& function : module.functions) {
+        rules.judge(function);
+    }
+}
+
+}  // namespace glint
