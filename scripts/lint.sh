@@ -37,6 +37,8 @@ consumers=()
 for source in "${sources[@]}"; do
     if [[ $source == tests/install/consumer/* ]]; then
         consumers+=("$source")
+    elif ! grep -qF "/$source\"" build/release/compile_commands.json; then
+        printf 'lint: %s: not part of this build, left out\n' "$source"
     else
         own+=("$source")
     fi

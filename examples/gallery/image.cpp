@@ -11,7 +11,9 @@
 // Internal linkage: another part of the program may carry its own copy of stb. The analyser sees declarations
 // only, as its findings within stb are not ours to mend.
 #ifndef __clang_analyzer__
+#ifndef __clang_analyzer__  // not ours to lint
 #define STB_IMAGE_WRITE_IMPLEMENTATION
+#endif
 #define STB_IMAGE_WRITE_STATIC
 #endif
 #include <stb_image_write.h>

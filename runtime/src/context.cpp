@@ -2,6 +2,8 @@
 #include "requirements.h"
 #include "vulkan_error.h"
 
+#include <glint/package_modules.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -46,6 +48,10 @@ void queryLimits(Context::State& state) {
     VkPhysicalDeviceVulkan13Properties vulkan13{};
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;
     vulkan13.pNext = &limits.accelerationStructure;
+    if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
+        limits.rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
+        limits.accelerationStructure.pNext = &limits.rayPipeline;
+    }
     VkPhysicalDeviceVulkan12Properties vulkan12{};
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
     vulkan12.pNext = &vulkan13;
@@ -76,6 +82,11 @@ void queryLimits(Context::State& state) {
     state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
                                                      VK_FORMAT_R16G16B16A16_UNORM, &wide);
     limits.wideTextures = (wide.optimalTilingFeatures & kTexture) == kTexture;
+    VkFormatProperties floats{};
+    state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
+                                                     VK_FORMAT_R32G32B32A32_SFLOAT, &floats);
+    limits.filteredFloats =
+        (floats.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
 }
 
 Status checkQueueFamily(Context::State& state) {
@@ -95,6 +106,16 @@ Status checkQueueFamily(Context::State& state) {
     return okStatus();
 }
 
+std::string tracerNames(std::uint32_t tracers) {
+    std::vector<std::string> names;
+    for (const package::Tracer tracer : package::kTracers) {
+        if ((tracers & tracer) != 0) {
+            names.emplace_back(nameOf(tracer));
+        }
+    }
+    return joinNames(names);
+}
+
 Status checkHandles(const DeviceHandles& handles) {
     const std::pair<bool, const char*> needed[] = {
         {handles.instance != VK_NULL_HANDLE, "instance"},
@@ -106,6 +127,10 @@ Status checkHandles(const DeviceHandles& handles) {
             return makeError("context-handles", "", std::string("DeviceHandles::") + name + " is null",
                              "fill every handle before Context::adopt()");
         }
+    }
+    if (handles.tracers == 0 || handles.tracers > package::kAllTracers) {
+        return makeError("context-handles", "", "DeviceHandles::tracers is no set of tracers",
+                         "give the tracers that the device was created with");
     }
     return okStatus();
 }
@@ -119,6 +144,12 @@ Status finishContext(Context::State& state) {
         return table.error();
     }
     state.vk = *table;
+    if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
+        if (Status status = loadRayPipelineFunctions(state.instance, state.handles.device, state.vk);
+            !status) {
+            return status;
+        }
+    }
     queryLimits(state);
     if (Status status = checkQueueFamily(state); !status) {
         return status;
@@ -131,6 +162,14 @@ Status finishContext(Context::State& state) {
         return vulkanError("vkCreatePipelineCache", result);
     }
     return okStatus();
+}
+
+VkShaderStageFlags passStages(const Context::State& state) {
+    constexpr VkShaderStageFlags kRayStages =
+        VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
+        VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR;
+    const bool rayPipeline = (state.handles.tracers & package::kTracerRayPipeline) != 0;
+    return VK_SHADER_STAGE_COMPUTE_BIT | (rayPipeline ? kRayStages : 0U);
 }
 
 Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
@@ -160,6 +199,11 @@ Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
     if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
         return makeError("device-features", "", "the device lacks " + joinNames(missing),
                          "update the driver or use another device");
+    }
+    if (const std::uint32_t absent = complete.tracers & ~tracersOf(report); absent != 0) {
+        return makeError("device-features", "",
+                         "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
+                         "create the device with some of deviceTracers()");
     }
     if (Status status = finishContext(*state); !status) {
         return status.error();

@@ -31,10 +31,12 @@ struct DeviceLimits {
     VkDeviceSize maxAllocationBytes = 0;
     VkDeviceSize maxBufferBytes = 0;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
+    VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayPipeline{};  // zeros where it is not enabled
     std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
     float samplerAnisotropy = 1.0F;        // that texture samplers are made with; 1: none
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
+    bool filteredFloats = false;           // R32G32B32A32_SFLOAT can be filtered
     std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
     std::string deviceName;
     std::string driverName;
@@ -56,12 +58,15 @@ struct Context::State {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     ValidationLog log;
     DeviceLimits limits;
-    std::uint32_t tracers = package::kTracerRayQuery;  // package::Tracer bits that the device has
     // In memory only; shared by the renderers of this context.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };
 
 // Fills what follows from the handles: device functions, limits, pipeline cache.
 Status finishContext(Context::State& state);
+
+// Stages of the passes that are not raster passes: compute, and those of ray tracing pipelines where the
+// device has them.
+VkShaderStageFlags passStages(const Context::State& state);
 
 }  // namespace glint

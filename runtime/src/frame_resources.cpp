@@ -6,8 +6,26 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace glint {
+namespace {
+
+// Elements of the longest list: hits, each bucket with all but one slot of its last group empty.
+VkDeviceSize listSlots(const FrameSize& size) {
+    const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
+    return pixels + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+}
+
+// Rays of a dispatch that is one-dimensional, as lists are. One over an image is no wider, and its height is
+// within the limits of images, which are below those of dispatches.
+std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
+    const std::uint64_t width =
+        std::uint64_t{limits.core.maxComputeWorkGroupCount[0]} * limits.core.maxComputeWorkGroupSize[0];
+    return std::min<std::uint64_t>(width, limits.rayPipeline.maxRayDispatchInvocationCount);
+}
+
+}  // namespace
 
 Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const VkPhysicalDeviceLimits& limits = context.limits.core;
@@ -25,6 +43,13 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
         return makeError("render-size", "",
                          "the rays of " + asked + " pixels do not fit a buffer of the device",
                          "render a smaller image");
+    }
+    if (size.rayPipeline && listSlots(size) > maxRayDispatch(context.limits)) {
+        return makeError("render-size", "",
+                         "the rays of " + asked + " pixels are more than one dispatch of the device's ray " +
+                             "tracing pipelines holds, which is " +
+                             std::to_string(maxRayDispatch(context.limits)),
+                         "render a smaller image, or use the tracer ray-query");
     }
     return okStatus();
 }
@@ -71,8 +96,9 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
     const VkDeviceSize hits = size.ordered ? pixels : 1;
-    // Each bucket may leave all but one slot of its last group empty.
-    const VkDeviceSize slots = hits + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+    const VkDeviceSize slots = size.ordered ? listSlots(size) : 1;
+    // A bit a hit, in whole words.
+    const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 1;
     const VkDeviceSize shadows = size.deferredShadows ? pixels : 1;
     const VkDeviceSize bucketBytes = sizeof(gpu::BucketRecord) * size.bucketCount;
     const struct {
@@ -85,6 +111,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage, MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
         {frame.shadowDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.buckets, bucketBytes, kCleared, MemoryUse::Device},
@@ -105,15 +132,20 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     return okStatus();
 }
 
-Status createSet(Context::State& context, FrameResources& frame) {
-    std::array<VkDescriptorSetLayoutBinding, gpu::kFrameImageCount> bindings{};
+Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        bindings[binding] = {binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, VK_SHADER_STAGE_COMPUTE_BIT,
-                             nullptr};
+        bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
+    }
+    std::vector<VkDescriptorPoolSize> poolSizes{{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, gpu::kFrameImageCount}};
+    if (size.environmentMap) {
+        constexpr VkDescriptorType kMap = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        bindings.push_back({gpu::kBindingEnvironment, kMap, 1, passStages(context), nullptr});
+        poolSizes.push_back({kMap, 1});
     }
     VkDescriptorSetLayoutCreateInfo layoutInfo{};
     layoutInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    layoutInfo.bindingCount = gpu::kFrameImageCount;
+    layoutInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
     layoutInfo.pBindings = bindings.data();
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
     const VkDevice device = context.handles.device;
@@ -123,12 +155,11 @@ Status createSet(Context::State& context, FrameResources& frame) {
     }
     frame.setLayout = UniqueSetLayout(context, layout);
 
-    const VkDescriptorPoolSize poolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, gpu::kFrameImageCount};
     VkDescriptorPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &poolSize;
+    poolInfo.poolSizeCount = static_cast<std::uint32_t>(poolSizes.size());
+    poolInfo.pPoolSizes = poolSizes.data();
     VkDescriptorPool pool = VK_NULL_HANDLE;
     result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
     if (result != VK_SUCCESS) {
@@ -204,11 +235,24 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     if (Status status = createBuffers(context, size, frame); !status) {
         return status;
     }
-    if (Status status = createSet(context, frame); !status) {
+    if (Status status = createSet(context, size, frame); !status) {
         return status;
     }
     fillSet(context, frame);
     return clearImages(context, frame);
+}
+
+void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame) {
+    const VkDescriptorImageInfo map{environment.sampler.get(), environment.map.view.get(),
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = frame.set;
+    write.dstBinding = gpu::kBindingEnvironment;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &map;
+    context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
 }
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 // Images and buffers of a frame, and descriptor set 1.
 #pragma once
 
+#include "environment_state.h"
 #include "interop/frame.h"
 #include "resources.h"
 
@@ -26,6 +27,7 @@ struct FrameResources {
     Buffer rays;
     Buffer hits;         // full or packed; one element unless hits are ordered
     Buffer orderedHits;  // likewise
+    Buffer visitedHits;  // a bit a hit; one element unless the order is checked
     Buffer shadows;      // one element unless shadow rays are deferred
     Buffer shadowDispatch;
     Buffer buckets;
@@ -43,9 +45,12 @@ struct FrameSize {
     std::uint32_t height = 0;
     std::uint32_t bucketCount = 0;
     bool ordered = false;  // hits are stored and ordered by bucket
+    bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
     std::uint32_t hitBytes = sizeof(gpu::HitRecord);
     bool deferredShadows = false;
+    bool environmentMap = false;
+    bool rayPipeline = false;  // lists are dispatched as rays of a ray tracing pipeline
 };
 
 // Error "render-size": no pixels, or more than the device can do.
@@ -53,5 +58,8 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size);
 
 // Makes everything, clears the images and waits for the device.
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
+
+// Nothing that is recorded with the set may be in flight. Requires FrameSize::environmentMap.
+void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame);
 
 }  // namespace glint

@@ -40,6 +40,9 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         return laidOut.error();
     }
     layout = std::move(*laidOut);
+    for (const gpu::GeometryRecord& geometry : layout.geometries) {
+        state.shaderIds.push_back(geometry.shaderId);
+    }
     std::vector<gpu::LightRecord> lights;
     for (const LightView& light : scene.lights) {
         lights.push_back(makeLightRecord(light));
@@ -111,6 +114,8 @@ VkAccelerationStructureInstanceKHR makeInstance(const GpuScene::State& state, co
     std::memcpy(&instance.transform, rows.data(), sizeof(rows));
     // An instance mask of 8 bits, a custom index of 24: layOutScene() has seen that it fits.
     instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
+    // Shader binding tables, where they have records, have one for each geometry record.
+    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
     instance.mask = 0xFF;
     // Facing is determined in object space, so that a mirroring transform changes nothing, and the default
     // is glTF's: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.

@@ -25,6 +25,7 @@ struct GpuScene::State {
     std::vector<AccelerationStructure> blases;
     AccelerationStructure tlas;
     Buffer geometries;
+    std::vector<std::uint32_t> shaderIds;  // of the geometry records, in their order
     Buffer instances;
     Buffer materials;
     Buffer lights;

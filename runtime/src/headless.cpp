@@ -153,7 +153,9 @@ Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& sta
 }
 
 // The first device with that name and all features; the error says of each device what is wrong with it.
-Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const std::string& wanted) {
+// Of that device the tracers are left that it has.
+Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const std::string& wanted,
+                                      std::uint32_t& tracers) {
     Result<std::vector<VkPhysicalDevice>> devices = enumerateDevices(state);
     if (!devices) {
         return devices.error();
@@ -172,8 +174,13 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const std::st
         if (Status status = queryDevice(state.instance, device, report); !status) {
             return status.error();
         }
-        const std::vector<std::string> missing = missingFrom(report);
+        std::vector<std::string> missing = missingFrom(report);
+        const std::uint32_t common = tracersOf(report) & tracers;
+        if (missing.empty() && common == 0) {
+            missing.emplace_back("the tracers that were asked for");
+        }
         if (missing.empty()) {
+            tracers = common;
             return device;
         }
         complaints.push_back(name + " lacks " + joinNames(missing));
@@ -204,7 +211,7 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 }
 
 Status createDevice(Context::State& state) {
-    DeviceRequirements requirements;
+    DeviceRequirements requirements(state.handles.tracers);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -254,7 +261,8 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
     if (Status status = createInstance(*table, options.validation, *state); !status) {
         return status.error();
     }
-    Result<VkPhysicalDevice> device = chooseDevice(*state, options.deviceName);
+    state->handles.tracers = options.tracers;
+    Result<VkPhysicalDevice> device = chooseDevice(*state, options.deviceName, state->handles.tracers);
     if (!device) {
         return device.error();
     }

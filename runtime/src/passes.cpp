@@ -8,38 +8,54 @@ namespace {
 
 using package::ModuleRole;
 
-constexpr VkShaderStageFlags kPushStages =
-    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
-
 // Everything before against everything after: frames follow each other, whoever recorded the one before.
 constexpr MemoryDependency kAllToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                      VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-// Fills count as clears or as copies, depending on the edition of the specification.
-constexpr MemoryDependency kClearToPasses{
-    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
-constexpr MemoryDependency kRasterToCompute{
-    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT};
-// Also into indirect arguments, which the dispatching passes read.
-constexpr MemoryDependency kComputeToCompute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-    VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
-// Counters that no pass touched were last written by a fill.
-constexpr MemoryDependency kPassesToCopy{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-    VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
-    VK_ACCESS_2_TRANSFER_READ_BIT};
+constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+
+// Dependencies of the passes, which run in `stages`.
+struct PassDependencies {
+    explicit PassDependencies(VkPipelineStageFlags2 stages)
+        // Fills count as clears or as copies, depending on the edition of the specification.
+        : clearToPasses{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                        kRasterStage | stages,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT |
+                            VK_ACCESS_2_SHADER_WRITE_BIT},
+          rasterToPasses{kRasterStage, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, stages,
+                         VK_ACCESS_2_SHADER_READ_BIT},
+          passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
+                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
+          passesToCopy{stages | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                       VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT} {}
+
+    MemoryDependency clearToPasses;
+    MemoryDependency rasterToPasses;
+    MemoryDependency passToPass;    // also into indirect arguments, which the dispatching passes read
+    MemoryDependency passesToCopy;  // counters that no pass touched were last written by a fill
+};
+
+VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
+    const bool rayPipeline = choice.tracer == package::kTracerRayPipeline;
+    return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+           (rayPipeline ? VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR : VK_PIPELINE_STAGE_2_NONE);
+}
+
 constexpr MemoryDependency kCopyToHost{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+
+constexpr VkStridedDeviceAddressRegionKHR kNoCallables{};
 
 class FrameRecorder {
 public:
     FrameRecorder(Renderer::State& state, VkCommandBuffer commands)
-        : state_(state), vk_(state.context.vk), commands_(commands) {
+        : state_(state),
+          vk_(state.context.vk),
+          commands_(commands),
+          pushStages_(pushStages(state.context)),
+          dependencies_(stagesOf(state.choice)) {
         pushed_.frame = state.frame.constants.address;
     }
 
@@ -48,17 +64,20 @@ public:
         state_.timer.recordReset(commands_);
         barrier(kAllToAll);
         clear(frame);
-        barrier(kClearToPasses);
+        barrier(dependencies_.clearToPasses);
         recordGBuffer();
-        barrier(kRasterToCompute);
+        barrier(dependencies_.rasterToPasses);
         bindSets(VK_PIPELINE_BIND_POINT_COMPUTE);
+        if (state_.choice.tracer == package::kTracerRayPipeline) {
+            bindSets(VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR);
+        }
         dispatchPixels("lighting", ModuleRole::Lighting);
-        barrier(kComputeToCompute);
+        barrier(dependencies_.passToPass);
         if (frame.reflections) {
             recordReflections();
         }
         dispatchPixels("compose", ModuleRole::Compose);
-        barrier(kPassesToCopy);
+        barrier(dependencies_.passesToCopy);
         copyCounters();
         barrier(kCopyToHost);
     }
@@ -93,7 +112,7 @@ private:
     }
 
     void push() {
-        vk_.CmdPushConstants(commands_, state_.pipelines.layout.get(), kPushStages, 0, sizeof(pushed_),
+        vk_.CmdPushConstants(commands_, state_.pipelines.layout.get(), pushStages_, 0, sizeof(pushed_),
                              &pushed_);
     }
 
@@ -108,6 +127,9 @@ private:
             // Slots between buckets hold no hit.
             vk_.CmdFillBuffer(commands_, state_.frame.orderedHits.handle.get(), 0, VK_WHOLE_SIZE,
                               gpu::kNoHit);
+        }
+        if (state_.size.checksOrder) {
+            vk_.CmdFillBuffer(commands_, state_.frame.visitedHits.handle.get(), 0, VK_WHOLE_SIZE, 0);
         }
         if (!frame.reflections) {
             const VkClearColorValue black{};
@@ -170,16 +192,24 @@ private:
     }
 
     void bindPass(const PassPipeline& pass) {
-        vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline);
+        vk_.CmdBindPipeline(
+            commands_, pass.traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE,
+            pass.pipeline);
         push();
     }
 
     void dispatchPixels(const std::string& name, ModuleRole role) {
+        const PassPipeline& dispatched = pass(role);
         beginPass(name);
-        bindPass(pass(role));
-        constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
-        vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
-                        (state_.size.height + kTile - 1) / kTile, 1);
+        bindPass(dispatched);
+        if (dispatched.traces) {
+            vk_.CmdTraceRaysKHR(commands_, &dispatched.rayGeneration, &dispatched.miss, &dispatched.hit,
+                                &kNoCallables, state_.size.width, state_.size.height, 1);
+        } else {
+            constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
+            vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
+                            (state_.size.height + kTile - 1) / kTile, 1);
+        }
         endPass();
     }
 
@@ -188,7 +218,7 @@ private:
         bindPass(pass(role));
         vk_.CmdDispatch(commands_, 1, 1, 1);
         endPass();
-        barrier(kComputeToCompute);
+        barrier(dependencies_.passToPass);
     }
 
     // Over a list whose length the device knows: entry `index` of the arguments.
@@ -196,13 +226,20 @@ private:
                       std::uint32_t index) {
         beginPass(name);
         bindPass(pass);
-        vk_.CmdDispatchIndirect(commands_, arguments.handle.get(), index * sizeof(gpu::DispatchArguments));
+        const VkDeviceSize offset = index * sizeof(gpu::DispatchArguments);
+        if (pass.traces) {
+            vk_.CmdTraceRaysIndirectKHR(
+                commands_, &pass.rayGeneration, &pass.miss, &pass.hit, &kNoCallables,
+                arguments.address + offset + offsetof(gpu::DispatchArguments, traceWidth));
+        } else {
+            vk_.CmdDispatchIndirect(commands_, arguments.handle.get(), offset);
+        }
         endPass();
     }
 
     void dispatchRays(const std::string& name, ModuleRole role) {
         dispatchList(name, pass(role), state_.frame.rayDispatch, 0);
-        barrier(kComputeToCompute);
+        barrier(dependencies_.passToPass);
     }
 
     void recordOrder() {
@@ -211,7 +248,9 @@ private:
         dispatchOnce("offset", ModuleRole::BucketOffset);
         dispatchRays("copy", ModuleRole::BucketCopy);
         if (state_.choice.checksOrder) {
-            dispatchRays("check order", ModuleRole::OrderCheck);
+            // Not by the number of rays: without any, buckets have to be empty.
+            dispatchPixels("check order", ModuleRole::OrderCheck);
+            barrier(dependencies_.passToPass);
         }
     }
 
@@ -225,12 +264,12 @@ private:
             dispatchList("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId], arguments,
                          1 + shaderId);
         }
-        barrier(kComputeToCompute);
+        barrier(dependencies_.passToPass);
     }
 
     void recordReflections() {
         dispatchPixels("reflection rays", ModuleRole::ReflectionRays);
-        barrier(kComputeToCompute);
+        barrier(dependencies_.passToPass);
         dispatchOnce("ray dispatch", ModuleRole::RayDispatch);
         switch (state_.choice.strategy) {
             case package::kStrategyUber:
@@ -240,7 +279,7 @@ private:
                 recordOrder();
                 dispatchList("sorted uber", pass(ModuleRole::SortedShade), state_.frame.bucketDispatch,
                              state_.size.bucketCount);
-                barrier(kComputeToCompute);
+                barrier(dependencies_.passToPass);
                 break;
             case package::kStrategyHitShaders:
                 dispatchRays("hit shaders", ModuleRole::HitTrace);
@@ -252,7 +291,7 @@ private:
         if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
             dispatchOnce("shadow dispatch", ModuleRole::ShadowDispatch);
             dispatchList("shadow", pass(ModuleRole::ShadowTrace), state_.frame.shadowDispatch, 0);
-            barrier(kComputeToCompute);
+            barrier(dependencies_.passToPass);
         }
     }
 
@@ -267,6 +306,8 @@ private:
     Renderer::State& state_;
     const DeviceTable& vk_;
     VkCommandBuffer commands_;
+    VkShaderStageFlags pushStages_;
+    PassDependencies dependencies_;
     gpu::PushConstants pushed_{};
 };
 

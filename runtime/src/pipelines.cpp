@@ -1,6 +1,8 @@
 #include "pipelines.h"
 
 #include "frame_resources.h"
+#include "ray_pipelines.h"
+#include "shader_modules.h"
 #include "vulkan_error.h"
 
 #include <array>
@@ -11,33 +13,10 @@ namespace {
 
 using package::ModuleRole;
 
-Result<UniqueShaderModule> createModule(Context::State& context, std::span<const std::uint32_t> words) {
-    VkShaderModuleCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    info.codeSize = words.size_bytes();
-    info.pCode = words.data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateShaderModule(context.handles.device, &info, nullptr, &module);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateShaderModule", result);
-    }
-    return UniqueShaderModule(context, module);
-}
-
-VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
-    VkPipelineShaderStageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage = stage;
-    info.module = module;
-    info.pName = "main";
-    return info;
-}
-
 Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayout> setLayouts,
                     Pipelines& pipelines) {
     VkPushConstantRange range{};
-    range.stageFlags =
-        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    range.stageFlags = pushStages(context);
     range.size = sizeof(gpu::PushConstants);
     VkPipelineLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -56,7 +35,7 @@ Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayo
 
 Result<VkPipeline> createCompute(Context::State& context, std::span<const std::uint32_t> words,
                                  Pipelines& pipelines) {
-    Result<UniqueShaderModule> module = createModule(context, words);
+    Result<UniqueShaderModule> module = createShaderModule(context, words);
     if (!module) {
         return module.error();
     }
@@ -76,11 +55,13 @@ Result<VkPipeline> createCompute(Context::State& context, std::span<const std::u
 
 // Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
 Result<VkPipeline> createGBuffer(Context::State& context, const Package& package, Pipelines& pipelines) {
-    Result<UniqueShaderModule> vertex = createModule(context, package.spirv({ModuleRole::GBufferVertex}));
+    Result<UniqueShaderModule> vertex =
+        createShaderModule(context, package.spirv({ModuleRole::GBufferVertex}));
     if (!vertex) {
         return vertex.error();
     }
-    Result<UniqueShaderModule> fragment = createModule(context, package.spirv({ModuleRole::GBufferFragment}));
+    Result<UniqueShaderModule> fragment =
+        createShaderModule(context, package.spirv({ModuleRole::GBufferFragment}));
     if (!fragment) {
         return fragment.error();
     }
@@ -160,15 +141,19 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 
-// Every compute pass and case of the choice.
-Status createComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
-                           Pipelines& pipelines) {
+package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice) {
     package::PackageShape shape = package.shape();
     shape.strategies = choice.strategy;
     shape.tracers = choice.tracer;
+    return shape;
+}
+
+// Every compute pass and case of the choice.
+Status createComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
+                           Pipelines& pipelines) {
     // The loader gives entries that name one file the same words.
     std::map<const std::uint32_t*, VkPipeline> byWords;
-    for (const package::ModuleKey& key : package::requiredModules(shape)) {
+    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         if (isGraphics(info) || key.tracer == package::kTracerRayPipeline || !runs(choice, info, key)) {
             continue;
@@ -193,13 +178,128 @@ Status createComputePasses(Context::State& context, const Package& package, cons
     return okStatus();
 }
 
+// Keeps the pipeline; its passes, one a ray generation shader of the source.
+Result<std::vector<PassPipeline>> addRayPipeline(Context::State& context, const RayPipelineSource& source,
+                                                 Pipelines& pipelines) {
+    Result<RayPipeline> made = createRayPipeline(context, pipelines.pool, pipelines.layout.get(), source);
+    if (!made) {
+        return made.error();
+    }
+    std::vector<PassPipeline> passes;
+    for (const VkStridedDeviceAddressRegionKHR& rayGeneration : made->table.rayGeneration) {
+        passes.push_back({made->pipeline.get(), true, rayGeneration, made->table.miss, made->table.hit});
+    }
+    pipelines.owned.push_back(std::move(made->pipeline));
+    pipelines.tables.push_back(std::move(made->table.buffer));
+    return passes;
+}
+
+SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index = 0) {
+    return package.spirv({role, index, package::kTracerRayPipeline});
+}
+
+// Of passes that only trace: what rays find is shaded elsewhere.
+RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> rayGeneration) {
+    RayPipelineSource source;
+    source.rayGeneration = std::move(rayGeneration);
+    source.miss = {rayWords(package, ModuleRole::TraceMiss)};
+    source.closestHit = {rayWords(package, ModuleRole::TraceClosestHit)};
+    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    return source;
+}
+
+// Of the strategy hit-shaders: a record for each geometry, with the hit group of its shader ID.
+RayPipelineSource hitShaderSource(const Package& package, std::span<const std::uint32_t> shaderIds) {
+    RayPipelineSource source;
+    source.rayGeneration = {rayWords(package, ModuleRole::HitTrace)};
+    // By miss index: rays of the list, shadow rays.
+    source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
+    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    std::vector<std::uint32_t> groups;
+    std::map<const std::uint32_t*, std::uint32_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, ModuleRole::HitCase, shaderId);
+        const auto [known, fresh] =
+            byWords.emplace(words.data(), static_cast<std::uint32_t>(source.closestHit.size()));
+        if (fresh) {
+            source.closestHit.push_back(words);
+        }
+        groups.push_back(known->second);
+    }
+    const auto unknown = static_cast<std::uint32_t>(source.closestHit.size());
+    source.closestHit.push_back(rayWords(package, ModuleRole::HitUnknown));
+    for (const std::uint32_t shaderId : shaderIds) {
+        source.hitRecords.push_back(shaderId < groups.size() ? groups[shaderId] : unknown);
+    }
+    return source;
+}
+
+// Cases that trace their shadow rays: one pipeline, a ray generation shader for each distinct module.
+Status createRayCases(Context::State& context, const Package& package, Pipelines& pipelines) {
+    std::vector<SpirvWords> shaders;
+    std::vector<std::size_t> shaderOfCase;
+    std::map<const std::uint32_t*, std::size_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
+        const auto [known, fresh] = byWords.emplace(words.data(), shaders.size());
+        if (fresh) {
+            shaders.push_back(words);
+        }
+        shaderOfCase.push_back(known->second);
+    }
+    if (shaders.empty()) {
+        return okStatus();
+    }
+    Result<std::vector<PassPipeline>> passes =
+        addRayPipeline(context, tracingSource(package, std::move(shaders)), pipelines);
+    if (!passes) {
+        return passes.error();
+    }
+    for (const std::size_t shader : shaderOfCase) {
+        pipelines.cases.push_back((*passes)[shader]);
+    }
+    return okStatus();
+}
+
+// Every pass of the choice that is a ray tracing pipeline.
+Status createRayPasses(Context::State& context, const Package& package, const PipelineChoice& choice,
+                       std::span<const std::uint32_t> shaderIds, Pipelines& pipelines) {
+    bool tracesInCases = false;
+    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
+        const package::ShaderKind kind = package::findRole(key.role)->kind;
+        const bool generatesRays =
+            kind == package::ShaderKind::Tracing || kind == package::ShaderKind::RayGeneration;
+        if (key.tracer != package::kTracerRayPipeline || !generatesRays) {
+            continue;
+        }
+        if (key.role == ModuleRole::ShadeCase) {
+            tracesInCases = true;
+            continue;
+        }
+        Result<std::vector<PassPipeline>> passes =
+            addRayPipeline(context,
+                           key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
+                                                            : tracingSource(package, {package.spirv(key)}),
+                           pipelines);
+        if (!passes) {
+            return passes.error();
+        }
+        pipelines.passes[key.role] = passes->front();
+    }
+    return tracesInCases ? createRayCases(context, package, pipelines) : okStatus();
+}
+
 }  // namespace
 
+VkShaderStageFlags pushStages(const Context::State& context) {
+    return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
+}
+
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
-                                  const PipelineChoice& choice,
+                                  const PipelineChoice& choice, std::span<const std::uint32_t> shaderIds,
                                   std::span<const VkDescriptorSetLayout> setLayouts) {
     const auto start = std::chrono::steady_clock::now();
-    Pipelines pipelines;
+    Pipelines pipelines(context);
     if (Status status = createLayout(context, setLayouts, pipelines); !status) {
         return status.error();
     }
@@ -209,6 +309,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     }
     pipelines.gbuffer = *gbuffer;
     if (Status status = createComputePasses(context, package, choice, pipelines); !status) {
+        return status.error();
+    }
+    if (Status status = createRayPasses(context, package, choice, shaderIds, pipelines); !status) {
         return status.error();
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;

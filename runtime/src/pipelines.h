@@ -1,7 +1,7 @@
 // Pipelines of a strategy.
 #pragma once
 
-#include "device_handle.h"
+#include "resources.h"
 
 #include <glint/package.h>
 
@@ -29,7 +29,12 @@ struct PassPipeline {
     VkStridedDeviceAddressRegionKHR hit{};
 };
 
+// Members are destroyed in reverse: the pool's memory last.
 struct Pipelines {
+    explicit Pipelines(Context::State& context) : pool(context) {}
+
+    MemoryPool pool;
+    std::vector<Buffer> tables;  // shader binding tables
     UniquePipelineLayout layout;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
@@ -38,9 +43,13 @@ struct Pipelines {
     double creationMs = 0.0;
 };
 
-// All pipelines of the choice. Errors: "vulkan-call".
+// Stages that push constants are for.
+VkShaderStageFlags pushStages(const Context::State& context);
+
+// All pipelines of the choice. `shaderIds`: of the scene's geometry records, in their order. Errors: those of
+// buffers and submissions, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
-                                  const PipelineChoice& choice,
+                                  const PipelineChoice& choice, std::span<const std::uint32_t> shaderIds,
                                   std::span<const VkDescriptorSetLayout> setLayouts);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <utility>
 
 namespace glint {
@@ -17,6 +18,26 @@ constexpr float kNoReflections = -1.0F;
 
 gpu::vec3 toVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
+}
+
+Status checkEnvironment(const Renderer::State& state, const FrameOptions& frame) {
+    if (state.size.environmentMap && frame.environment == nullptr) {
+        return makeError("environment-missing", "",
+                         "the package reads an environment map, and the frame has none",
+                         "set FrameOptions::environment, or compile the package without an environment map");
+    }
+    if (!state.size.environmentMap && frame.environment != nullptr) {
+        return makeError("environment-unread", "",
+                         "the frame has an environment map, and the package was compiled without one",
+                         "compile the package for an environment map, or leave FrameOptions::environment null");
+    }
+    if (!std::isfinite(frame.environmentRotation) || !std::isfinite(frame.environmentIntensity) ||
+        frame.environmentIntensity < 0.0F) {
+        return makeError("frame-options", "",
+                         "environmentRotation is not finite, or environmentIntensity is negative or not finite",
+                         "use radians, and a factor of at least 0");
+    }
+    return okStatus();
 }
 
 Status checkFrame(const FrameOptions& frame) {
@@ -44,6 +65,22 @@ Status checkFrame(const FrameOptions& frame) {
     return okStatus();
 }
 
+// Shaders turn the direction that they look up, and the host the harmonics.
+void fillEnvironment(const Environment::State& environment, const FrameOptions& options,
+                     gpu::FrameConstants& constants) {
+    const SkyHarmonics harmonics = turned(environment.harmonics, options.environmentRotation);
+    for (std::size_t i = 0; i < harmonics.size(); ++i) {
+        const auto channel = [&](std::size_t c) {
+            return static_cast<float>(harmonics[i][c] * options.environmentIntensity);
+        };
+        constants.skyHarmonics[i] = {channel(0), channel(1), channel(2)};
+    }
+    const double turns = options.environmentRotation / (2.0 * std::numbers::pi);
+    constants.environmentLevels = static_cast<float>(environment.statistics.levels);
+    constants.environmentTurn = static_cast<float>(turns - std::floor(turns));
+    constants.environmentScale = environment.scale * options.environmentIntensity;
+}
+
 gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptions& options) {
     gpu::FrameConstants constants{};
     fillCamera(options.camera, state.size.width, state.size.height, sampleJitter(options.sampleIndex),
@@ -62,6 +99,9 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.skyZenith = toVec3(options.sky.zenith);
     constants.skyHorizon = toVec3(options.sky.horizon);
     constants.skyGround = toVec3(options.sky.ground);
+    if (options.environment != nullptr) {
+        fillEnvironment(*options.environment->state(), options, constants);
+    }
     constants.geometries = state.scene.geometries.address;
     constants.instances = state.scene.instances.address;
     constants.materials = state.scene.materials.address;
@@ -73,6 +113,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.shadows = frame.shadows.address;
     constants.shadowDispatch = frame.shadowDispatch.address;
     constants.orderedHits = frame.orderedHits.address;
+    constants.visitedHits = frame.visitedHits.address;
     constants.buckets = frame.buckets.address;
     constants.rayDispatch = frame.rayDispatch.address;
     constants.bucketDispatch = frame.bucketDispatch.address;
@@ -151,7 +192,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return status.error();
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
-    Result<Pipelines> pipelines = createPipelines(contextState, package, *choice, layouts);
+    Result<Pipelines> pipelines =
+        createPipelines(contextState, package, *choice, state->scene.shaderIds, layouts);
     if (!pipelines) {
         return pipelines.error();
     }
@@ -165,6 +207,13 @@ Renderer::~Renderer() = default;
 Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     if (Status status = checkFrame(frame); !status) {
         return status;
+    }
+    if (Status status = checkEnvironment(*state_, frame); !status) {
+        return status;
+    }
+    if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
+        bindEnvironment(state_->context, *frame.environment->state(), state_->frame);
+        state_->environment = frame.environment->state();
     }
     const gpu::FrameConstants constants = makeConstants(*state_, frame);
     std::memcpy(state_->frame.constants.mapped, &constants, sizeof(constants));

@@ -28,7 +28,7 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                              modulesFor(options.strategy) + " with the tracer " + std::string(nameOf(tracer)),
                              "compile the package with that --tracer, or render with the one that it has");
         }
-        if ((context.tracers & tracer) == 0) {
+        if ((context.handles.tracers & tracer) == 0) {
             return makeError("device-tracer", "",
                              "the device lacks the tracer " + std::string(nameOf(tracer)),
                              "use another device or the other tracer");
@@ -36,7 +36,7 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
         return tracer;
     }
     for (const package::Tracer tracer : package::kTracers) {
-        if ((compiled & context.tracers & tracer) != 0) {
+        if ((compiled & context.handles.tracers & tracer) != 0) {
             return tracer;
         }
     }
@@ -92,10 +92,13 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.height = options.height;
     size.bucketCount = package.bucketCount();
     size.ordered = (choice.strategy & package::kOrderedStrategies) != 0;
+    size.checksOrder = size.ordered && choice.checksOrder;
     size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
+    size.environmentMap = package.environmentMap();
     size.deferredShadows = package.shape().shadows == package::ShadowPlacement::Deferred;
+    size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     return size;
 }
 

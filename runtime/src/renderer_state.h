@@ -18,7 +18,11 @@ namespace glint {
 
 struct Renderer::State {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
-        : context(contextState), scene(sceneState), timer(std::move(passTimer)), frame(contextState) {}
+        : context(contextState),
+          scene(sceneState),
+          timer(std::move(passTimer)),
+          frame(contextState),
+          pipelines(contextState) {}
 
     Context::State& context;
     GpuScene::State& scene;
@@ -28,6 +32,8 @@ struct Renderer::State {
     Timer timer;
     FrameResources frame;
     Pipelines pipelines;
+    // That set 1 names; alive as long as a recording may read it.
+    std::shared_ptr<const Environment::State> environment;
     // Of the last recording.
     std::vector<std::string> passes;
     bool recorded = false;

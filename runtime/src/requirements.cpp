@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <utility>
 
 namespace glint {
 namespace {
 
 constexpr const char* kExtensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                       VK_KHR_RAY_QUERY_EXTENSION_NAME,
                                        VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
 // A feature by name, and where its bit is in a DeviceRequirements.
@@ -39,10 +39,59 @@ constexpr RequiredFeature kFeatures[] = {
     GLINT_FEATURE(vulkan13, dynamicRendering),
     GLINT_FEATURE(vulkan13, synchronization2),
     GLINT_FEATURE(accelerationStructure, accelerationStructure),
-    GLINT_FEATURE(rayQuery, rayQuery),
 };
 
+constexpr RequiredFeature kRayQueryFeatures[] = {GLINT_FEATURE(rayQuery, rayQuery)};
+// Lists of rays are dispatched by their length on the device.
+constexpr RequiredFeature kRayPipelineFeatures[] = {
+    GLINT_FEATURE(rayPipeline, rayTracingPipeline),
+    GLINT_FEATURE(rayPipeline, rayTracingPipelineTraceRaysIndirect)};
+
 #undef GLINT_FEATURE
+
+// What each tracer takes, beyond what every device must have.
+struct TracerNeeds {
+    package::Tracer tracer;
+    const char* extension;
+    std::span<const RequiredFeature> features;
+};
+
+constexpr TracerNeeds kTracerNeeds[] = {
+    {package::kTracerRayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME, kRayQueryFeatures},
+    {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
+};
+
+// Of every device and of every tracer.
+template <typename Work>
+void forEachFeature(const Work& work) {
+    std::ranges::for_each(kFeatures, work);
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        std::ranges::for_each(needs.features, work);
+    }
+}
+
+bool hasExtension(const DeviceReport& report, const char* name) {
+    return std::ranges::find(report.extensions, name) != report.extensions.end();
+}
+
+// The accessors take a mutable chain; nothing is written through them here.
+bool hasFeature(const DeviceReport& report, const RequiredFeature& feature) {
+    return feature.bit(const_cast<DeviceRequirements&>(report.features)) != VK_FALSE;
+}
+
+// "VK_KHR_ray_query (rayQuery) or VK_KHR_…".
+std::string tracerChoices() {
+    std::string text;
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        std::vector<std::string> features;
+        for (const RequiredFeature& feature : needs.features) {
+            features.emplace_back(feature.name);
+        }
+        text +=
+            (text.empty() ? "" : " or ") + std::string(needs.extension) + " (" + joinNames(features) + ")";
+    }
+    return text;
+}
 
 std::string versionName(std::uint32_t version) {
     return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
@@ -51,14 +100,15 @@ std::string versionName(std::uint32_t version) {
 
 }  // namespace
 
-DeviceRequirements::DeviceRequirements()
+DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
       vulkan12{},
       vulkan13{},
       accelerationStructure{},
-      rayQuery{} {
+      rayQuery{},
+      rayPipeline{} {
     vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     vulkan11.pNext = &vulkan12;
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -66,13 +116,39 @@ DeviceRequirements::DeviceRequirements()
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
     vulkan13.pNext = &accelerationStructure;
     accelerationStructure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
-    accelerationStructure.pNext = &rayQuery;
     rayQuery.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+    rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+    if ((tracers & package::kTracerRayQuery) != 0) {
+        rayQuery.pNext = std::exchange(accelerationStructure.pNext, &rayQuery);
+    }
+    if ((tracers & package::kTracerRayPipeline) != 0) {
+        rayPipeline.pNext = std::exchange(accelerationStructure.pNext, &rayPipeline);
+    }
     // An umbrella bit: the specification asks for it where its parts are used with SPIR-V 1.5 modules.
     vulkan12.descriptorIndexing = VK_TRUE;
     for (const RequiredFeature& feature : kFeatures) {
         feature.bit(*this) = VK_TRUE;
     }
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        if ((tracers & needs.tracer) != 0) {
+            extensions.push_back(needs.extension);
+            for (const RequiredFeature& feature : needs.features) {
+                feature.bit(*this) = VK_TRUE;
+            }
+        }
+    }
+}
+
+std::uint32_t tracersOf(const DeviceReport& report) {
+    std::uint32_t tracers = 0;
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        const bool complete = std::ranges::all_of(
+            needs.features, [&](const RequiredFeature& feature) { return hasFeature(report, feature); });
+        if (complete && hasExtension(report, needs.extension)) {
+            tracers |= needs.tracer;
+        }
+    }
+    return tracers;
 }
 
 std::vector<std::string> missingFrom(const DeviceReport& report) {
@@ -82,16 +158,17 @@ std::vector<std::string> missingFrom(const DeviceReport& report) {
                           versionName(report.apiVersion) + ")");
     }
     for (const char* extension : kExtensions) {
-        if (std::ranges::find(report.extensions, extension) == report.extensions.end()) {
+        if (!hasExtension(report, extension)) {
             missing.emplace_back(extension);
         }
     }
-    // The accessors take a mutable chain; nothing is written through them here.
-    auto& features = const_cast<DeviceRequirements&>(report.features);
     for (const RequiredFeature& feature : kFeatures) {
-        if (feature.bit(features) == VK_FALSE) {
+        if (!hasFeature(report, feature)) {
             missing.emplace_back(feature.name);
         }
+    }
+    if (tracersOf(report) == 0) {
+        missing.push_back(tracerChoices());
     }
     if ((report.subgroupStages & VK_SHADER_STAGE_COMPUTE_BIT) == 0) {
         missing.emplace_back("subgroup operations in compute shaders");
@@ -153,10 +230,6 @@ void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     report.maxWorkgroupThreads =
         std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
 
-    // A structure of an extension that the device lacks is left alone by it: start from nothing.
-    for (const RequiredFeature& feature : kFeatures) {
-        feature.bit(report.features) = VK_FALSE;
-    }
     table.GetPhysicalDeviceFeatures2(device, &report.features.features);
 }
 
@@ -180,9 +253,8 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     if (Status status = queryExtensions(table, device, report); !status) {
         return status;
     }
-    for (const RequiredFeature& feature : kFeatures) {
-        feature.bit(report.features) = VK_FALSE;
-    }
+    // A structure of an extension that the device lacks is left alone by it: start from nothing.
+    forEachFeature([&](const RequiredFeature& feature) { feature.bit(report.features) = VK_FALSE; });
     if (report.apiVersion >= DeviceRequirements::kApiVersion) {
         queryFeatures(table, device, report);
     }
@@ -190,7 +262,10 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     return okStatus();
 }
 
-std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
+namespace {
+
+// Fills `report` through the system's loader; names what is missing for that.
+std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
     if (device == VK_NULL_HANDLE) {
         return {"a physical device"};
     }
@@ -207,11 +282,24 @@ std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
     }
     GLINT_INSTANCE_FUNCTIONS(GLINT_LOAD)
 #undef GLINT_LOAD
-    DeviceReport report;
     if (Status status = queryDevice(table, device, report); !status) {
         return {status.error().message};
     }
-    return missingFrom(report);
+    return {};
+}
+
+}  // namespace
+
+std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
+    DeviceReport report;
+    std::vector<std::string> missing = askLoader(device, report);
+    return missing.empty() ? missingFrom(report) : missing;
+}
+
+std::uint32_t deviceTracers(VkPhysicalDevice device) {
+    DeviceReport report;
+    const bool complete = askLoader(device, report).empty() && missingFrom(report).empty();
+    return complete ? tracersOf(report) : 0U;
 }
 
 std::string joinNames(const std::vector<std::string>& names) {

@@ -15,7 +15,7 @@ namespace glint {
 struct DeviceReport {
     std::uint32_t apiVersion = 0;
     std::vector<std::string> extensions;
-    DeviceRequirements features;
+    DeviceRequirements features{package::kAllTracers};
     VkShaderStageFlags subgroupStages = 0;
     VkSubgroupFeatureFlags subgroupOperations = 0;
     std::uint32_t maxPushConstantBytes = 0;
@@ -25,6 +25,9 @@ struct DeviceReport {
 
 // Names of what `report` lacks, the API version first; empty if Glint runs on such a device.
 std::vector<std::string> missingFrom(const DeviceReport& report);
+
+// package::Tracer bits of which `report` has every extension and feature.
+std::uint32_t tracersOf(const DeviceReport& report);
 
 // Fills `report` by asking `device`. Error "vulkan-call".
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);

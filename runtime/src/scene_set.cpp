@@ -13,11 +13,11 @@ constexpr std::size_t kBindings = 3;
 std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const GpuScene::State& state) {
     const auto textures = static_cast<std::uint32_t>(state.textures.size());
     const auto samplers = static_cast<std::uint32_t>(state.samplers.size());
-    constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    const VkShaderStageFlags stages = VK_SHADER_STAGE_FRAGMENT_BIT | passStages(state.context);
     return {
-        {{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kTlasCapacity, kStages, nullptr},
-         {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures, kStages, nullptr},
-         {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers, kStages, nullptr}}};
+        {{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kTlasCapacity, stages, nullptr},
+         {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures, stages, nullptr},
+         {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers, stages, nullptr}}};
 }
 
 Status createLayout(GpuScene::State& state) {

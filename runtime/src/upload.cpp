@@ -14,6 +14,9 @@ constexpr VkDeviceSize kStagingAlignment = 256;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
 constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
+constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                      VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 
 }  // namespace
 
@@ -88,8 +91,7 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
     return okStatus();
 }
 
-Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
-                             const DeviceImage& target) {
+Status Uploader::startImage(const DeviceImage& target) {
     if (Status status = start(); !status) {
         return status;
     }
@@ -99,10 +101,17 @@ Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t
          VK_IMAGE_LAYOUT_UNDEFINED,
          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
          {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
-    const VkDeviceSize rowBytes = VkDeviceSize{texelBytes} * target.extent.width;
+    return okStatus();
+}
+
+Status Uploader::copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+                          const DeviceImage& target, std::uint32_t mip) {
+    const std::uint32_t width = std::max(target.extent.width >> mip, 1U);
+    const std::uint32_t height = std::max(target.extent.height >> mip, 1U);
+    const VkDeviceSize rowBytes = VkDeviceSize{texelBytes} * width;
     std::uint32_t row = 0;
-    while (row < target.extent.height) {
-        Result<VkDeviceSize> room = reserve(rowBytes * (target.extent.height - row), rowBytes);
+    while (row < height) {
+        Result<VkDeviceSize> room = reserve(rowBytes * (height - row), rowBytes);
         if (!room) {
             return room.error();
         }
@@ -110,15 +119,42 @@ Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t
         std::memcpy(staging_.mapped + used_, texels.data() + row * rowBytes, *room);
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
         region.imageOffset = {0, static_cast<std::int32_t>(row), 0};
-        region.imageExtent = {target.extent.width, rows, 1};
+        region.imageExtent = {width, rows, 1};
         context_->vk.CmdCopyBufferToImage(commands_, staging_.handle.get(), target.handle.get(),
                                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         used_ += *room;
         row += rows;
     }
+    return okStatus();
+}
+
+Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+                             const DeviceImage& target) {
+    if (Status status = startImage(target); !status) {
+        return status;
+    }
+    if (Status status = copyRows(texels, texelBytes, target, 0); !status) {
+        return status;
+    }
     recordMips(target);
+    return okStatus();
+}
+
+Status Uploader::copyMips(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
+                          const DeviceImage& target) {
+    if (Status status = startImage(target); !status) {
+        return status;
+    }
+    for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
+        if (Status status = copyRows(mips[mip], texelBytes, target, mip); !status) {
+            return status;
+        }
+    }
+    recordTransition(*context_, commands_,
+                     {target.handle.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders});
     return okStatus();
 }
 
@@ -145,17 +181,14 @@ void Uploader::recordMips(const DeviceImage& target) {
         context_->vk.CmdBlitImage(commands_, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
     }
-    const MemoryDependency toShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
     if (target.mips > 1) {
         recordTransition(*context_, commands_,
                          {image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, toShaders, 0, target.mips - 1});
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, 0, target.mips - 1});
     }
     recordTransition(*context_, commands_,
                      {image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                      toShaders, target.mips - 1, 1});
+                      kToShaders, target.mips - 1, 1});
 }
 
 }  // namespace glint

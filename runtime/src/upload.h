@@ -21,6 +21,10 @@ public:
     // TRANSFER_DST usage.
     Status copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
                        const DeviceImage& target);
+    // Fills every mip of an image of undefined layout, without blits; otherwise as copyToImage(). `target` needs
+    // TRANSFER_DST usage.
+    Status copyMips(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
+                    const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.
     Status finish();
 
@@ -29,6 +33,10 @@ private:
     // Room for at least `unit` bytes, at most `wanted`; submits what there is to make room.
     Result<VkDeviceSize> reserve(VkDeviceSize wanted, VkDeviceSize unit);
     Status start();
+    // All mips become TRANSFER_DST_OPTIMAL.
+    Status startImage(const DeviceImage& target);
+    Status copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes, const DeviceImage& target,
+                    std::uint32_t mip);
     void recordMips(const DeviceImage& target);
 
     Context::State* context_;

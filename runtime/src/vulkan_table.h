@@ -106,6 +106,13 @@
     X(CmdCopyAccelerationStructureKHR)          \
     X(CmdWriteAccelerationStructuresPropertiesKHR)
 
+// Of VK_KHR_ray_tracing_pipeline.
+#define GLINT_RAY_PIPELINE_FUNCTIONS(X)   \
+    X(CreateRayTracingPipelinesKHR)       \
+    X(GetRayTracingShaderGroupHandlesKHR) \
+    X(CmdTraceRaysKHR)                    \
+    X(CmdTraceRaysIndirectKHR)
+
 namespace glint {
 
 #define GLINT_DECLARE_FUNCTION(name) PFN_vk##name name = nullptr;
@@ -124,6 +131,8 @@ struct InstanceTable {
 
 struct DeviceTable {
     GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+    // Null until loadRayPipelineFunctions().
+    GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null unless VK_EXT_debug_utils is enabled.
     PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT CmdEndDebugUtilsLabelEXT = nullptr;
@@ -157,5 +166,7 @@ Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAdd
 Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
 // `debugUtils`: whether the instance has VK_EXT_debug_utils; layers hand its functions out in any case.
 Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils);
+// For a device that has VK_KHR_ray_tracing_pipeline enabled.
+Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 
 }  // namespace glint

@@ -53,6 +53,24 @@ vec3 specularAlbedo(Bsdf b, float loss, float bias) {
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
 }
 
+// 1 - specularAlbedo(), as a sum of terms that are all positive: where nearly all is reflected the difference would lose
+// its digits.
+vec3 specularPassed(Bsdf b, float loss, float bias) {
+    vec3 absorbed = vec3(1.0) - b.f0;
+    vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
+    vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
+    if (GLINT_ENERGY_COMPENSATION != 0) {
+        vec3 mean = b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+        vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
+        again = rest * (vec3(1.0) + mean * (1.0 - b.meanLoss)) / (vec3(1.0) - mean * b.meanLoss);
+    }
+    return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + again * loss;
+}
+
+float smallest(vec3 v) {
+    return min(v.x, min(v.y, v.z));
+}
+
 // How much of the fitted loss counts where the lobe is anisotropic: the fits are of isotropic lobes, and an anisotropic one
 // loses less than either of its alphas along some azimuths. The thousands of lobes of the furnace test make no light so.
 float lossShare(Bsdf b) {
@@ -120,10 +138,10 @@ float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) 
         return 1.0 - fresnel;
     }
     vec2 light = lobeAlbedo(b, features, lightCosine);
-    float in1 = 1.0 - largest(specularAlbedo(b, b.viewLoss, b.viewBias));
-    float out1 = 1.0 - largest(specularAlbedo(b, light.x, light.y));
+    float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
+    float out1 = smallest(specularPassed(b, light.x, light.y));
     // Where all is reflected both vanish with the mean.
-    float mean = max(1.0 - largest(specularAlbedo(b, b.meanLoss, b.meanBias)), 1e-6);
+    float mean = max(smallest(specularPassed(b, b.meanLoss, b.meanBias)), 1e-6);
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 

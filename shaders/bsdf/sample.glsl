@@ -19,7 +19,7 @@ struct LobeChances {
 LobeChances lobeChances(Bsdf b, Features features) {
     vec3 single = singleScatterAlbedo(b, b.viewLoss, b.viewBias);
     vec3 all = specularAlbedo(b, b.viewLoss, b.viewBias);
-    float below = max(1.0 - largest(all), 0.0);
+    float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
     float microfacets = luminance(single);
     float diffuse = luminance(b.diffuse) * below + luminance(all - single);
     float passed = 0.0;

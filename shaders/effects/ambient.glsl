@@ -3,11 +3,6 @@
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
-// The sky in one direction; a rough lobe sees the sky's mean around it.
-vec3 skyAround(vec3 direction, float roughness) {
-    return mix(skyRadiance(direction), skyIrradianceOverPi(direction), roughness);
-}
-
 // The mirror direction. An anisotropic lobe spreads across its grooves: the normal bends towards the view within the
 // plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
 vec3 ambientMirror(Surface surface, Features features, vec3 view) {
@@ -48,7 +43,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, float mirrored,
     vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     vec3 reflected = albedo - first * (1.0 - mirrored);
-    float below = max(1.0 - largest(albedo), 0.0);
+    float below = max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
     vec3 front = surface.bsdf.diffuse * below * skyIrradianceOverPi(surface.normal) +
                  reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);
     vec3 back = vec3(0.0);

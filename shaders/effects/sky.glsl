@@ -1,5 +1,42 @@
-// The sky: radiance linear in the cosine from horizon to zenith above, and to the ground below.
+// The sky: an environment map, or a gradient that is linear in the cosine from horizon to zenith above, and to the
+// ground below.
+#include "bsdf/constants.glsl"
 #include "hit/bindings.glsl"
+
+#if GLINT_ENVIRONMENT_MAP
+
+// Equirectangular; a level holds the means over the lobes of one roughness.
+layout(set = kSetFrame, binding = kBindingEnvironment) uniform sampler2D environmentMap;
+
+// v is the polar angle from +Y, u the azimuth from +X towards +Z, the middle of the map at +X. Both by atan, which keeps
+// its digits at the poles.
+vec2 environmentCoordinates(vec3 direction) {
+    // At a pole any azimuth will do, and atan(0, 0) is undefined.
+    float across = length(direction.xz);
+    float azimuth = across > 0.0 ? atan(direction.z, direction.x) : 0.0;
+    return vec2(azimuth / (2.0 * kPi) + 0.5 + GLINT_FRAME.environmentTurn, atan(across, direction.y) / kPi);
+}
+
+// What a lobe of this roughness about the direction sees. An explicit level leaves no seam where u jumps.
+vec3 skyAround(vec3 direction, float roughness) {
+    float level = roughness * (GLINT_FRAME.environmentLevels - 1.0);
+    return textureLod(environmentMap, environmentCoordinates(direction), level).rgb * GLINT_FRAME.environmentScale;
+}
+
+vec3 skyRadiance(vec3 direction) {
+    return skyAround(direction, 0.0);
+}
+
+// Irradiance over π by nine spherical harmonics; a small bright sun makes them negative where there is hardly any light.
+vec3 skyIrradianceOverPi(vec3 n) {
+    vec3 sum = GLINT_FRAME.skyHarmonics[0] + GLINT_FRAME.skyHarmonics[1] * n.x + GLINT_FRAME.skyHarmonics[2] * n.y +
+               GLINT_FRAME.skyHarmonics[3] * n.z + GLINT_FRAME.skyHarmonics[4] * (3.0 * n.y * n.y - 1.0) +
+               GLINT_FRAME.skyHarmonics[5] * (n.x * n.y) + GLINT_FRAME.skyHarmonics[6] * (n.y * n.z) +
+               GLINT_FRAME.skyHarmonics[7] * (n.x * n.z) + GLINT_FRAME.skyHarmonics[8] * (n.x * n.x - n.z * n.z);
+    return max(sum, vec3(0.0));
+}
+
+#else
 
 vec3 skyRadiance(vec3 direction) {
     vec3 pole = direction.y >= 0.0 ? GLINT_FRAME.skyZenith : GLINT_FRAME.skyGround;
@@ -13,3 +50,10 @@ vec3 skyIrradianceOverPi(vec3 normal) {
     vec3 slope = 0.5 * (GLINT_FRAME.skyZenith - GLINT_FRAME.skyGround);
     return mean + (2.0 / 3.0) * slope * normal.y;
 }
+
+// The sky in one direction; a rough lobe sees the sky's mean around it.
+vec3 skyAround(vec3 direction, float roughness) {
+    return mix(skyRadiance(direction), skyIrradianceOverPi(direction), roughness);
+}
+
+#endif

@@ -19,7 +19,7 @@ const uint kDimensionLight = 0u;
 
 // Light of one light on a surface, without its shadow.
 vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
-    return reflectedLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
+    return scatteredLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
 }
 
 // Direct light by one light, chosen in one pass with probability proportional to the luminance that it would bring

@@ -19,9 +19,9 @@ vec3 toWorld(Surface surface, vec3 direction) {
     return direction.x * surface.tangent + direction.y * surface.bitangent + direction.z * surface.normal;
 }
 
-// BSDF times |n·l| for light from a direction of the world. geometricNormal is on the viewer's side: where it and the
+// BSDF times |n·l|, reflected or let through, for light from a direction of the world. geometricNormal is on the viewer's side: where it and the
 // shading normal differ on which side the light is, there is none, or it would leak through the surface.
-vec3 reflectedLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
+vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
     vec3 l = toSurface(surface, toLight);
     return l.z * dot(geometricNormal, toLight) > 0.0 ? evaluateBsdf(surface.bsdf, features, l) : vec3(0.0);
 }
@@ -39,9 +39,4 @@ float baseShare(Surface surface, Features features) {
         share *= belowSheen(surface.bsdf, surface.bsdf.sheenAlbedo);
     }
     return share;
-}
-
-// What the base's microfacets reflect of a uniform white sky.
-vec3 baseReflectance(Surface surface, Features features) {
-    return specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias) * baseShare(surface, features);
 }

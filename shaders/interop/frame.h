@@ -144,8 +144,10 @@ struct FrameConstants {
     vec3 skyZenith;    // radiance, cd/m² in the units of the lights
     vec3 skyHorizon;
     vec3 skyGround;
-    vec3 skyHarmonics[9];  // environment map: irradiance over π by real spherical harmonics, cosine lobe folded in
+    vec3 skyHarmonics[9];  // environment map: irradiance over π, factors of 1, x, y, z, 3y² - 1, xy, yz, xz, x² - z²
     float environmentLevels;  // mip levels of the environment map: roughness 0 to 1
+    float environmentTurn;    // added to its u: a rotation over 2π
+    float environmentScale;   // radiance of a texel's 1
     GLINT_ADDRESS(Geometry) geometries;
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
@@ -155,6 +157,7 @@ struct FrameConstants {
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
     GLINT_ADDRESS(Bucket) buckets;       // bucketCount
+    GLINT_ADDRESS(Counter) visitedHits;  // a bit a hit, of the check of the order
     GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
     GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays

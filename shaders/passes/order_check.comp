@@ -1,21 +1,89 @@
 #version 460
-// Checks the order of the hits on the device: each slot of a bucket holds a hit of that bucket.
+// Checks the order of the hits on the device. Buckets lie side by side and hold as many hits as there are rays; each of
+// their slots has a hit of that bucket that no other slot has. Then no hit is lost, as there are no more hits than
+// slots. Any number of threads will do: each takes every threadCount-th bucket and slot.
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 
 GLINT_RAY_WORKGROUP
 
-void main() {
-    uint index = listIndex();
-    if (index >= GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        return;
-    }
-    BucketRecord bucket = GLINT_FRAME.buckets.data[bucketOf(index)];
-    uint found = 0u;
-    for (uint slot = bucket.begin; slot < bucket.begin + bucket.count; ++slot) {
-        found += GLINT_FRAME.orderedHits.data[slot] == index ? 1u : 0u;
-    }
-    if (found != 1u || bucket.cursor != bucket.begin + bucket.count) {
+void report(bool wrong) {
+    if (wrong) {
         atomicAdd(GLINT_FRAME.counters.data[kCounterOrderErrors], 1u);
+    }
+}
+
+// Where the bucket after this one begins.
+uint endOfBucket(BucketRecord bucket) {
+    uint alignment = GLINT_FRAME.bucketAlignment;
+    return bucket.begin + (bucket.count + alignment - 1u) / alignment * alignment;
+}
+
+void checkBucket(uint index, uint slotCount) {
+    BucketRecord bucket = GLINT_FRAME.buckets.data[index];
+    report(index == 0u && bucket.begin != 0u);
+    report(bucket.cursor != bucket.begin + bucket.count);
+    bool last = index + 1u == GLINT_FRAME.bucketCount;
+    uint next = last ? slotCount : GLINT_FRAME.buckets.data[index + 1u].begin;
+    report(endOfBucket(bucket) != next);
+    report(GLINT_FRAME.bucketDispatch.data[index].elementCount != bucket.count);
+}
+
+void checkSum(uint rayCount) {
+    uint sum = 0u;
+    for (uint i = 0u; i < GLINT_FRAME.bucketCount; ++i) {
+        sum += GLINT_FRAME.buckets.data[i].count;
+    }
+    report(sum != rayCount);
+}
+
+// The bucket that a slot is of: the last that begins there or before it. Others that begin at the same slot are empty.
+uint bucketOfSlot(uint slot) {
+    uint found = 0u;
+    uint end = GLINT_FRAME.bucketCount;
+    while (end - found > 1u) {
+        uint middle = (found + end) / 2u;
+        if (GLINT_FRAME.buckets.data[middle].begin <= slot) {
+            found = middle;
+        } else {
+            end = middle;
+        }
+    }
+    return found;
+}
+
+// Whether an earlier call was given the same hit.
+bool isVisited(uint hit) {
+    uint bit = 1u << (hit & 31u);
+    return (atomicOr(GLINT_FRAME.visitedHits.data[hit >> 5u], bit) & bit) != 0u;
+}
+
+void checkSlot(uint slot, uint rayCount) {
+    uint hit = GLINT_FRAME.orderedHits.data[slot];
+    uint index = bucketOfSlot(slot);
+    BucketRecord bucket = GLINT_FRAME.buckets.data[index];
+    if (slot - bucket.begin >= bucket.count) {
+        report(hit != kNoHit);
+    } else if (hit >= rayCount) {
+        report(true);
+    } else {
+        report(bucketOf(hit) != index);
+        report(isVisited(hit));
+    }
+}
+
+void main() {
+    uint thread = listIndex();
+    uint threadCount = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kRayGroupSize;
+    uint rayCount = GLINT_FRAME.rayDispatch.data[0].elementCount;
+    uint slotCount = GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount].elementCount;
+    if (thread == 0u) {
+        checkSum(rayCount);
+    }
+    for (uint index = thread; index < GLINT_FRAME.bucketCount; index += threadCount) {
+        checkBucket(index, slotCount);
+    }
+    for (uint slot = thread; slot < slotCount; slot += threadCount) {
+        checkSlot(slot, rayCount);
     }
 }

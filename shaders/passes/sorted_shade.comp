@@ -10,6 +10,17 @@
 
 GLINT_RAY_WORKGROUP
 
+// The slot of the workgroup's first thread. A bucket's slots are filled from its beginning: where any thread of the
+// workgroup has a hit, the first has.
+uint firstSlot() {
+#if GLINT_RAY_GENERATION
+    return gl_LaunchIDEXT.x / kRayGroupSize * kRayGroupSize;
+#else
+    // Of built-in variables that are uniform alone, so that a compiler sees that the switch is.
+    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kRayGroupSize;
+#endif
+}
+
 void main() {
     uint index = listIndex();
     if (index >= GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount].elementCount) {
@@ -25,7 +36,7 @@ void main() {
         return;
     }
     // The first hit of a workgroup says which case all of it has.
-    uint first = storedGeometry(GLINT_FRAME.orderedHits.data[index / kRayGroupSize * kRayGroupSize]);
+    uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);
     uint shaderId = first == kMissGeometry ? kNoShader : GLINT_FRAME.geometries.data[first].shaderId;
     GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
     Hit hit = loadHit(record, rayDirection(record, geometry), geometry, GLINT_HIT_FEATURES(geometry));

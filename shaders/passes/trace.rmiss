@@ -1,8 +1,8 @@
 #version 460
 // Nothing was hit.
 #extension GL_EXT_ray_tracing : require
+#include "hit/bindings.glsl"
 #include "hit/payload.glsl"
-#include "interop/frame.h"
 
 layout(location = 0) rayPayloadInEXT TracePayload traced;
 

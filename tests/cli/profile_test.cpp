@@ -60,6 +60,7 @@ TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
     EXPECT_EQ(wall.at("reason"), "hot");
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("merge"), "profile");
+    EXPECT_EQ(manifest.at("maxShaders"), 32);
     EXPECT_EQ(manifest.at("shaders")[0].at("reason"), "hot");
     EXPECT_EQ(manifest.at("shaders")[0].at("share"), wall.at("share"));
 

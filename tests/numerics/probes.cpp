@@ -153,8 +153,7 @@ constexpr Probe kProbes[] = {
      .inputs = 7,
      .outputs = 3,
      .fill = fillRefraction,
-     // Near the critical angle the direction moves by the root of what rounding moves the cosine.
-     .bounds = {1e-3, 1e-6, 1.0},
+     .bounds = kVectorBounds,
      .undecidedShare = 1e-4},
     {.name = "RefractedTransmission",
      .function = "refractedTransmission",
@@ -227,7 +226,7 @@ constexpr Probe kProbes[] = {
      .inputs = 11,
      .outputs = 4,
      .fill = fillFootprint,
-     .bounds = kVectorBounds,
+     .bounds = {1e-4, 1e-6, 1.0},
      .hasScale = true},
     {.name = "SampleLight",
      .function = "sampleLight (irradiance)",
@@ -273,23 +272,20 @@ constexpr Probe kProbes[] = {
      .inputs = 34,
      .outputs = 3,
      .fill = fillBsdfWithoutSheen,
-     // 1e-4 but for a few of ten million inputs that see the critical angle from within, where Fresnel's
-     // slope is without bound: 1.15e-4.
-     .bounds = {2e-4, 1e-6},
      .hasScale = true},
     {.name = "EvaluateBsdf",
      .function = "evaluateBsdf, all lobes but sheen",
      .inputs = 34,
      .outputs = 3,
      .fill = fillBsdfWithoutSheen,
-     // Refraction by facets that are seen from the side, or close to the critical angle, goes to 0 as a
-     // difference.
-     .bounds = {1e-3, 1e-6, 1e-6}},
+     .bounds = {1e-4, 1e-6, 1e-6}},
     {.name = "EvaluateUnderSheen",
      .function = "evaluateBsdf, all lobes",
      .inputs = 34,
      .outputs = 3,
      .fill = fillBsdf,
+     // What white sheen leaves near grazing is 1 - E, a difference; E goes through exp() and pow(), within
+     // 4e-6.
      .bounds = {1e-3, 1e-6, 0.01},
      .hasScale = true},
     {.name = "BsdfPdf",

@@ -7,7 +7,7 @@ extern "C" int dlclose(void* /*handle*/) {
 }
 
 // The run-time libraries of the sanitizers ask for these by name.
-// NOLINTBEGIN(bugprone-reserved-identifier)
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 
 extern "C" const char* __asan_default_options() {
     return "verify_asan_link_order=0";  // this library comes before theirs
@@ -26,4 +26,4 @@ extern "C" const char* __lsan_default_options() {
     return "print_suppressions=0";
 }
 
-// NOLINTEND(bugprone-reserved-identifier)
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)

@@ -34,6 +34,7 @@ struct CompileArguments {
     AccuracyArguments accuracy;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
+    bool environmentMap = false;
     bool debugInfo = false;
     bool warningsAsErrors = false;
     bool json = false;
@@ -68,6 +69,7 @@ CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) 
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
+    settings.environmentMap = arguments.environmentMap;
     settings.debugInfo = arguments.debugInfo;
     return settings;
 }
@@ -217,6 +219,9 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addPlanOptions(command, arguments.plan);
     addProfileInput(command, arguments.plan);
     addAccuracyOptions(command, arguments.accuracy);
+    addFlag(command, "--environment-map", arguments.environmentMap,
+            "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
+        .group("Shaders");
     addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
         .group("Shaders");
 }

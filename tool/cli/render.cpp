@@ -2,6 +2,7 @@
 #include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/environment.h"
 #include "cli/plan_choice.h"
 #include "cli/render_input.h"
 #include "cli/render_profile.h"
@@ -37,6 +38,7 @@ struct RenderArguments {
     std::string output;
     TracingArguments tracing;
     FrameArguments frame;
+    EnvironmentArguments environment;
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;
@@ -75,7 +77,8 @@ package::Strategy strategyOf(const RenderArguments& arguments) {
 
 SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
     SceneViewData data = makeSceneView(scene);
-    if (arguments.sun == "on" || (arguments.sun == "auto" && scene.lights.empty())) {
+    const bool isUnlit = scene.lights.empty() && arguments.environment.file.empty();
+    if (arguments.sun == "on" || (arguments.sun == "auto" && isUnlit)) {
         data.lights.push_back(sunLight());
     }
     return data;
@@ -89,12 +92,14 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOption
         if (!package) {
             return package;
         }
-        Status checked = checkPackage(*package, arguments.package, strategyOf(arguments), scene);
+        Status checked = checkPackage(*package, arguments.package, strategyOf(arguments),
+                                      !arguments.environment.file.empty(), scene);
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
     CompileSettings settings;
     arguments.tracing.apply(settings);
+    settings.environmentMap = !arguments.environment.file.empty();
     settings.plan = plan;
     arguments.accuracy.apply(settings);
     Result<Package> package = compileTemporary(scene, settings);
@@ -108,6 +113,23 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
     return Context::createHeadless(options);
+}
+
+// Null where none is asked for; fills in what the report says of it.
+Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console, const RenderArguments& arguments,
+                                                       Context& context, RenderReport& report) {
+    const std::string& file = arguments.environment.file;
+    if (file.empty()) {
+        return std::unique_ptr<Environment>();
+    }
+    console.progress("filtering " + file);
+    std::vector<Diagnostic> notes;
+    Result<std::unique_ptr<Environment>> environment = loadEnvironment(context, file, notes);
+    console.report(notes);
+    if (environment) {
+        report.environment = {file, (*environment)->statistics()};
+    }
+    return environment;
 }
 
 RendererOptions rendererOptions(const RenderArguments& arguments, const RenderReport& report) {
@@ -128,8 +150,8 @@ RendererOptions rendererOptions(const RenderArguments& arguments, const RenderRe
 
 // Renders, and fills in what was measured.
 Result<LinearImage> renderFrame(Context& context, const Package& package, const SceneViewData& data,
-                                const RenderArguments& arguments, const CameraView& camera,
-                                RenderReport& report) {
+                                const Environment* environment, const RenderArguments& arguments,
+                                const CameraView& camera, RenderReport& report) {
     const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(context, package, data.view());
     if (!scene) {
         return scene.error();
@@ -145,6 +167,8 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
     FrameOptions frame;
     frame.camera = camera;
     arguments.frame.apply(frame);
+    frame.environment = environment;
+    arguments.environment.apply(frame);
     frame.seed = report.seed;
     const Clock::time_point start = Clock::now();
     const auto addHits = [&]() -> Status {
@@ -226,6 +250,10 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     }
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
+    const Result<std::unique_ptr<Environment>> environment = obtainEnvironment(console, arguments, **context, report);
+    if (!environment) {
+        return environment.error();
+    }
     console.progress("compiling " + arguments.scene);
     const Result<Package> package = obtainPackage(arguments, plan, scene, report);
     if (!package) {
@@ -234,7 +262,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const Result<LinearImage> image = renderFrame(**context, *package, data, arguments, camera->view, report);
+    const Result<LinearImage> image = renderFrame(**context, *package, data, environment->get(), arguments, camera->view, report);
     Status valid = checkValidation(console, **context);
     if (!image) {
         return image.error();
@@ -326,7 +354,7 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             ""))
         ->group(group);
     addChoice(command, "--sun", arguments.sun, {"auto", "on", "off"},
-              "add a directional light; auto: if the scene has no light")
+              "add a directional light; auto: if the scene has no light\nand no --environment")
         .group(group);
 }
 
@@ -360,6 +388,7 @@ void addRender(CLI::App& app, Action& chosen) {
                    "linear, 32-bit float")
         .required();
     addPictureOptions(command, *arguments);
+    addEnvironmentOptions(command, arguments->environment);
     addFrameOptions(command, arguments->frame);
     const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
     std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);

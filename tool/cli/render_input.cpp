@@ -23,9 +23,16 @@ FeatureMask maskOf(const package::PrimitiveEntry& entry) {
 }  // namespace
 
 Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
-                    const Scene& scene) {
+                    bool environmentMap, const Scene& scene) {
     if (!package.supports(strategy)) {
         return mismatch(folder, "was compiled without the strategy that is asked for");
+    }
+    if (package.environmentMap() != environmentMap) {
+        return makeError("package-mismatch", folder.string(),
+                         environmentMap ? "was compiled for a gradient sky, not for an environment map"
+                                        : "was compiled for an environment map, and there is none",
+                         environmentMap ? "compile it with --environment-map, or leave out --environment"
+                                        : "give one by --environment, or compile without --environment-map");
     }
     if (package.materials().size() != scene.materials.size()) {
         return mismatch(folder, fmt::format("has {} materials, but the scene has {}",

@@ -12,10 +12,10 @@
 
 namespace glint {
 
-// Error "package-mismatch" unless `package` was compiled for the strategy and from this scene: the same
-// materials, and for each primitive of it the same material and features.
+// Error "package-mismatch" unless `package` was compiled for the strategy, for that kind of sky, and from this
+// scene: the same materials, and for each primitive of it the same material and features.
 Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
-                    const Scene& scene);
+                    bool environmentMap, const Scene& scene);
 
 // Compiles `scene` into a temporary folder, which is gone on return; leaves out what the runtime does not
 // read.

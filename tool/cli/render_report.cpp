@@ -15,6 +15,19 @@ Json orNull(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
+Json toJson(const std::optional<EnvironmentReport>& environment) {
+    if (!environment) {
+        return nullptr;
+    }
+    const Environment::Statistics& statistics = environment->statistics;
+    return {{"file", environment->file},
+            {"width", statistics.width},
+            {"height", statistics.height},
+            {"levels", statistics.levels},
+            {"halfFloat", statistics.halfFloat},
+            {"filterMs", statistics.filterMs}};
+}
+
 std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
@@ -51,6 +64,7 @@ Json toJson(const RenderReport& report) {
             {"exposure", report.exposure},
             {"cases", report.cases},
             {"compileMs", orNull(report.compileMs)},
+            {"environment", toJson(report.environment)},
             {"sceneStatistics",
              {{"triangles", scene.triangles},
               {"geometries", scene.geometries},
@@ -91,6 +105,11 @@ std::string toText(const RenderReport& report) {
         {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
         {"BLAS", fmt::format("{} in {}", formatBytes(scene.blasBytes), milliseconds(scene.blasBuildMs))}};
+    if (report.environment) {
+        const Environment::Statistics& map = report.environment->statistics;
+        rows.push_back({"environment", fmt::format("{}, {} x {}, {} levels in {}", report.environment->file,
+                                                   map.width, map.height, map.levels, milliseconds(map.filterMs))});
+    }
     if (report.compileMs) {
         rows.push_back({"compile", milliseconds(*report.compileMs)});
     }

@@ -3,6 +3,7 @@
 
 #include "cli/report.h"
 
+#include <glint/environment.h>
 #include <glint/renderer.h>
 
 #include <cstdint>
@@ -11,6 +12,11 @@
 #include <vector>
 
 namespace glint {
+
+struct EnvironmentReport {
+    std::string file;
+    Environment::Statistics statistics;
+};
 
 struct RenderReport {
     std::string scene;
@@ -28,6 +34,7 @@ struct RenderReport {
     double exposure = 0.0;            // stops
     std::optional<double> compileMs;  // absent: a package was given
     std::uint32_t cases = 0;
+    std::optional<EnvironmentReport> environment;
     GpuScene::Statistics sceneStatistics;
     double pipelineCreationMs = 0.0;
     double renderMs = 0.0;            // wall clock, all samples and the read-back

@@ -52,13 +52,18 @@ Json features() {
 }
 
 Json settingsOf(const CompileSettings& settings) {
-    return {{"maxShaders", settings.plan.maxShaders},
-            {"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
+    return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
             {"energyCompensation", settings.energyCompensation},
             {"textureLod", toString(settings.textureLod)},
             {"shadows", package::nameOf(settings.shadows)},
             {"hitRecord", package::nameOf(settings.hitRecord)},
             {"sky", settings.environmentMap ? "map" : "gradient"}};
+}
+
+// The budget of cases; null: none.
+Json maxShadersOf(const PlanOptions& options) {
+    const int budget = budgetOf(options);
+    return budget > 0 ? Json(budget) : Json(nullptr);
 }
 
 Json materialList(const Scene& scene, const std::vector<int>& materials) {
@@ -189,6 +194,7 @@ std::string makeManifest(const Scene& scene, const CompiledPackage& package,
     manifest["strategies"] = strategyNames(settings.strategies);
     manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = toString(settings.plan.merge);
+    manifest["maxShaders"] = maxShadersOf(settings.plan);
     manifest["alpha"] = toString(settings.plan.keys.alpha);
     manifest["settings"] = settingsOf(settings);
     manifest["variant"] = scene.variant.empty() ? Json(nullptr) : Json(scene.variant);

@@ -161,7 +161,7 @@ Result<int> TextureTable::chooseImage(int texture) {
 
 Result<int> TextureTable::append(int texture) {
     const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(texture)];
-    const Result<int> chosen = chooseImage(texture);
+    Result<int> chosen = chooseImage(texture);
     if (!chosen || *chosen < 0) {
         return chosen;
     }

@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "image/exr.h"
+#include "image/hdr.h"
 #include "image/tone.h"
 
 #include <cctype>
@@ -19,6 +20,13 @@ std::string lowerCase(std::string text) {
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
     return text;
+}
+
+Diagnostic extensionError(const std::filesystem::path& path, const std::string& extension, std::string hint) {
+    return makeError("image-extension", path.string(),
+                     extension.empty() ? "has no file name extension"
+                                       : "has the unknown file name extension \"" + extension + "\"",
+                     std::move(hint));
 }
 
 DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
@@ -47,10 +55,18 @@ Result<ImageFormat> imageFormat(const std::filesystem::path& path) {
     if (extension == ".exr") {
         return ImageFormat::Exr;
     }
-    return makeError("image-extension", path.string(),
-                     extension.empty() ? "has no file name extension"
-                                       : "has the unknown file name extension \"" + extension + "\"",
-                     "use .png or .exr");
+    return extensionError(path, extension, "use .png or .exr");
+}
+
+Result<RadianceFormat> radianceFormat(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    if (extension == ".hdr") {
+        return RadianceFormat::Hdr;
+    }
+    if (extension == ".exr") {
+        return RadianceFormat::Exr;
+    }
+    return extensionError(path, extension, "use .hdr or .exr");
 }
 
 Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where) {
@@ -73,6 +89,18 @@ Result<LinearImage> readImage(const std::filesystem::path& path) {
         return bytes.error();
     }
     return *format == ImageFormat::Png ? decodePng(*bytes, path.string()) : decodeExr(*bytes, path.string());
+}
+
+Result<LinearImage> readRadiance(const std::filesystem::path& path) {
+    const Result<RadianceFormat> format = radianceFormat(path);
+    if (!format) {
+        return format.error();
+    }
+    const Result<Bytes> bytes = readFile(path);
+    if (!bytes) {
+        return bytes.error();
+    }
+    return *format == RadianceFormat::Hdr ? decodeHdr(*bytes, path.string()) : decodeExr(*bytes, path.string());
 }
 
 Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure) {

@@ -1,4 +1,4 @@
-// Image files by extension: .png (8-bit sRGB, tone mapped) and .exr (32-bit float, linear).
+// Image files by extension: .png (8-bit sRGB, tone mapped) and .exr (32-bit float, linear); radiance also from .hdr.
 #pragma once
 
 #include "image/png.h"
@@ -20,6 +20,14 @@ Result<ImageFormat> imageFormat(const std::filesystem::path& path);
 // Linear pixels: a PNG through the inverse sRGB function (tone mapping can't be undone). Errors of
 // readFile(), decodePng() and decodeExr().
 Result<LinearImage> readImage(const std::filesystem::path& path);
+
+enum class RadianceFormat : std::uint8_t { Hdr, Exr };
+
+// Of pictures that hold radiance, by the extension, upper or lower case. Error "image-extension".
+Result<RadianceFormat> radianceFormat(const std::filesystem::path& path);
+
+// Errors of readFile(), decodeHdr() and decodeExr().
+Result<LinearImage> readRadiance(const std::filesystem::path& path);
 
 // PNG: exposed by `exposure` stops and tone mapped. EXR: as it is, without exposure. An existing file is
 // replaced as a whole or not at all.

@@ -70,6 +70,7 @@ std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
     std::vector<int> rest = takeRest(keys, order);
     const int rare = rest.size() > 1 ? rest.front() : -1;
     std::vector<Cluster> start;
+    start.reserve(order.size() + 1);
     for (const int key : order) {
         start.push_back({{key}});
     }

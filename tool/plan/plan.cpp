@@ -133,8 +133,7 @@ void makeCases(const PlanOptions& options, Plan& plan) {
         weighted.push_back({key.mask, key.share});
     }
     std::map<std::string, int> named;
-    const int maxCases = options.maxShaders > 0 ? options.maxShaders : kDefaultMaxCases;
-    for (CaseKeys& merged : mergeKeys(weighted, options.merge, maxCases)) {
+    for (CaseKeys& merged : mergeKeys(weighted, options.merge, budgetOf(options))) {
         Case shaderCase;
         shaderCase.shaderId = static_cast<int>(plan.cases.size());
         shaderCase.reason = merged.reason;
@@ -184,6 +183,11 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
         plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
     }
     return plan;
+}
+
+int budgetOf(const PlanOptions& options) {
+    const bool needsOne = options.merge == MergePolicy::Auto || options.merge == MergePolicy::Profile;
+    return options.maxShaders > 0 ? options.maxShaders : needsOne ? kDefaultMaxCases : 0;
 }
 
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options) {

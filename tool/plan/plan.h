@@ -79,6 +79,9 @@ KeyOptions keepAllLobes(KeyOptions options);
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options);
 
+// Cases that a plan may have at most; 0: no limit.
+int budgetOf(const PlanOptions& options);
+
 // What to tell the user when the plan has more cases than options.maxShaders; nothing if it fits.
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options);
 

@@ -1,6 +1,7 @@
 // The Vulkan device that Glint works on: the caller's, or a headless one of its own.
 #pragma once
 
+#include <glint/package_format.h>
 #include <glint/result.h>
 
 #include <vulkan/vulkan_core.h>
@@ -24,6 +25,9 @@ struct DeviceHandles {
     // VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Glint runs without it, with
     // textures that are blurrier at grazing angles.
     bool samplerAnisotropy = false;
+    // package::Tracer bits whose extensions and features are enabled on the device: those that its
+    // DeviceRequirements were made with.
+    std::uint32_t tracers = package::kTracerRayQuery;
 };
 
 enum class Validation { Off, On, Synchronization };
@@ -32,12 +36,18 @@ struct HeadlessOptions {
     // Anything but Off requires the Khronos validation layer and collects its messages.
     Validation validation = Validation::Off;
     std::string deviceName;  // part of the wanted device's name; empty: the first that has all features
+    // package::Tracer bits to enable where the device has them; it has at least one of them.
+    std::uint32_t tracers = package::kAllTracers;
 };
+
+// package::Tracer bits that a device can be created with; 0: Glint does not run on it.
+std::uint32_t deviceTracers(VkPhysicalDevice device);
 
 // What a device must be created with for Glint to use it: chain `features.pNext` into VkDeviceCreateInfo.
 // Points into static memory or itself; neither copy nor move.
 struct DeviceRequirements {
-    DeviceRequirements();
+    // `tracers`: which to enable, some of deviceTracers(). Packages run whose tracer is among them.
+    explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
@@ -48,10 +58,12 @@ struct DeviceRequirements {
     VkPhysicalDeviceVulkan12Features vulkan12;
     VkPhysicalDeviceVulkan13Features vulkan13;
     VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure;
-    VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;
+    VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;               // in the chain if among the tracers
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // likewise
 };
 
-// Every extension and feature that `device` lacks, by name; empty if Glint runs on it.
+// Every extension and feature that `device` lacks, by name; empty if Glint runs on it. Of the tracers it
+// needs one.
 std::vector<std::string> missingRequirements(VkPhysicalDevice device);
 
 class Context {

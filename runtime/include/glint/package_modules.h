@@ -26,6 +26,7 @@ struct ModuleKey {
     std::uint32_t tracer = 0;
 
     friend bool operator==(const ModuleKey&, const ModuleKey&) = default;
+    // NOLINTNEXTLINE(modernize-use-nullptr): a comparison against 0 that the compiler writes.
     friend auto operator<=>(const ModuleKey&, const ModuleKey&) = default;
 };
 

@@ -79,9 +79,16 @@ struct SkyView {
     std::array<float, 3> ground{0.20F, 0.18F, 0.16F};
 };
 
+class Environment;
+
 struct FrameOptions {
     CameraView camera;
     SkyView sky;
+    // Instead of the gradient, for packages that read one (Package::environmentMap()); those need it, the others
+    // refuse it. A Renderer keeps the map of its last recording alive.
+    const Environment* environment = nullptr;
+    float environmentRotation = 0.0F;   // about +Y, counter-clockwise as seen from above, radians
+    float environmentIntensity = 1.0F;  // times its radiance
     // Smoother surfaces reflect as mirrors.
     float mirrorRoughness = 0.05F;
     // Surfaces with a greater roughness send no reflection ray.

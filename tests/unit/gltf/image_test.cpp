@@ -13,7 +13,7 @@
 namespace glint::test {
 namespace {
 
-constexpr ImportOptions kDecode{.decodeImages = true};
+const ImportOptions kDecode{.decodeImages = true};
 
 // A material whose base colour is the image of those bytes.
 GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png") {

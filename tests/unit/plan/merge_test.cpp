@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <random>
@@ -28,6 +29,7 @@ std::vector<WeightedKey> toKeys(const std::map<FeatureMask, double>& weights) {
         sum += weight;
     }
     std::vector<WeightedKey> keys;
+    keys.reserve(weights.size());
     for (const auto& [mask, weight] : weights) {
         keys.push_back({mask, sum > 0.0 ? weight / sum : 0.0});
     }

@@ -1,0 +1,250 @@
+#include "map_filter.h"
+
+#include "map_distribution.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+namespace glint {
+namespace {
+
+// Samples of all texels of a level together, and of one texel: an eighth of a second for a level, and less
+// than 1 % of noise in a smooth sky.
+constexpr std::uint32_t kLevelSamples = 1U << 23;
+constexpr std::uint32_t kMinSamples = 32;
+constexpr std::uint32_t kMaxSamples = 1024;
+// Samples of the map, which all texels share: less than 1 % off for the light of a sun.
+constexpr std::uint32_t kMapSamples = 256;
+constexpr std::uint32_t kRowsAtOnce = 4;
+constexpr std::uint32_t kMaxThreads = 64;
+
+struct Vec3 {
+    float x, y, z;
+};
+
+// The lobe about a direction in which surface and viewer are too: a function of the cosine x = n·l alone,
+// since (n·h)² = (1 + x) / 2. D (n·h) / (4 v·h) = D / 4 is the density of l by that of h.
+class Lobe {
+public:
+    explicit Lobe(double roughness)
+        : alpha2_(static_cast<float>(std::pow(roughness, 4.0))),
+          scale_(static_cast<float>(alpha2_ / (4.0 * std::numbers::pi))) {}
+
+    // D / 4, per steradian. GGX with its denominator 1 - (1 - α²)(n·h)² as a sum of positive terms.
+    float density(float x) const {
+        const float q = alpha2_ + (1.0F - alpha2_) * 0.5F * (1.0F - x);
+        return scale_ / (q * q);
+    }
+    // Of directions above the surface only: the share of the lobe there is 1 / (1 + α²).
+    float pdf(float x) const {
+        return density(x) * (1.0F + alpha2_);
+    }
+    // The cosine of a sample, [0, 1] for u in [0, 1].
+    double sampleCosine(double u) const {
+        const double a2 = alpha2_;
+        const double v = u / (1.0 + a2);
+        return 2.0 * (1.0 - v) / (1.0 - (1.0 - a2) * v) - 1.0;
+    }
+
+private:
+    float alpha2_;
+    float scale_;
+};
+
+// Reversed bits as a fraction: van der Corput's sequence.
+double radicalInverse(std::uint32_t i) {
+    std::uint32_t bits = 0;
+    for (int bit = 0; bit < 32; ++bit) {
+        bits = bits << 1U | (i >> bit & 1U);
+    }
+    return bits * 0x1p-32;
+}
+
+struct LobeSample {
+    Vec3 direction;  // in the frame of the lobe, whose axis is z
+    float weight;    // what the lobe weights it with
+    float density;   // expected samples per steradian
+};
+
+std::vector<LobeSample> sampleLobe(const Lobe& lobe, std::uint32_t count) {
+    std::vector<LobeSample> samples;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double x = lobe.sampleCosine((i + 0.5) / count);
+        const double azimuth = 2.0 * std::numbers::pi * radicalInverse(i);
+        const double sine = std::sqrt(std::max(1.0 - x * x, 0.0));
+        const auto cosine = static_cast<float>(x);
+        samples.push_back({{static_cast<float>(sine * std::cos(azimuth)),
+                            static_cast<float>(sine * std::sin(azimuth)), cosine},
+                           lobe.density(cosine) * cosine,
+                           static_cast<float>(count) * lobe.pdf(cosine)});
+    }
+    return samples;
+}
+
+struct Light {
+    Vec3 direction;
+    Radiance radiance;
+    float density;  // expected samples per steradian
+};
+
+// The map as the samplers see it: radiance, and expected map samples per steradian.
+class Source {
+public:
+    explicit Source(const RadianceMap& map) : width_(map.width), height_(map.height) {
+        const MapDistribution distribution(map);
+        texels_.reserve(map.texels.size());
+        for (std::size_t i = 0; i < map.texels.size(); ++i) {
+            const Radiance& c = map.texels[i];
+            texels_.push_back({c[0], c[1], c[2], static_cast<float>(kMapSamples * distribution.pdf(i))});
+        }
+        for (std::uint32_t i = 0; i < kMapSamples; ++i) {
+            const MapSample sample = distribution.sample((i + 0.5) / kMapSamples, radicalInverse(i));
+            const auto& [x, y, z] = sample.direction;
+            lights_.push_back({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)},
+                               map.texels[sample.texel],
+                               texels_[sample.texel][3]});
+        }
+    }
+
+    const std::vector<Light>& lights() const {
+        return lights_;
+    }
+    const std::array<float, 4>& at(Vec3 d) const {
+        constexpr float kPi = std::numbers::pi_v<float>;
+        const float u = std::atan2(d.z, d.x) * (0.5F / kPi) + 0.5F;
+        const float v = std::acos(std::clamp(d.y, -1.0F, 1.0F)) / kPi;
+        const auto x = static_cast<std::uint32_t>(u * static_cast<float>(width_));
+        const auto y = static_cast<std::uint32_t>(v * static_cast<float>(height_));
+        return texels_[std::size_t{std::min(y, height_ - 1)} * width_ + std::min(x, width_ - 1)];
+    }
+
+private:
+    std::uint32_t width_;
+    std::uint32_t height_;
+    std::vector<std::array<float, 4>> texels_;
+    std::vector<Light> lights_;
+};
+
+// A weighted mean of radiance: no greater than the greatest of it.
+class Mean {
+public:
+    void add(float r, float g, float b, float weight) {
+        sum_[0] += weight * r;
+        sum_[1] += weight * g;
+        sum_[2] += weight * b;
+        total_ += weight;
+    }
+    Radiance value() const {
+        return {static_cast<float>(sum_[0] / total_), static_cast<float>(sum_[1] / total_),
+                static_cast<float>(sum_[2] / total_)};
+    }
+
+private:
+    std::array<double, 3> sum_{};
+    double total_ = 0.0;
+};
+
+// `turn`: of the lobe's samples about its axis, so that neighbours err in different ways.
+Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<LobeSample>& samples,
+                  double polar, double azimuth, double turn) {
+    const double sinP = std::sin(polar);
+    const double cosP = std::cos(polar);
+    const double sinA = std::sin(azimuth);
+    const double cosA = std::cos(azimuth);
+    const auto vec = [](double x, double y, double z) {
+        return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    };
+    const Vec3 n = vec(sinP * cosA, cosP, sinP * sinA);
+    // Down the meridian and along the parallel, turned.
+    const double c = std::cos(turn);
+    const double s = std::sin(turn);
+    const Vec3 t = vec(c * cosP * cosA - s * sinA, -c * sinP, c * cosP * sinA + s * cosA);
+    const Vec3 b = vec(-s * cosP * cosA - c * sinA, s * sinP, -s * cosP * sinA + c * cosA);
+    const auto lobeDensity = static_cast<float>(samples.size());
+    Mean mean;
+    for (const LobeSample& sample : samples) {
+        const Vec3 l = sample.direction;
+        const auto& texel = source.at({l.x * t.x + l.y * b.x + l.z * n.x, l.x * t.y + l.y * b.y + l.z * n.y,
+                                       l.x * t.z + l.y * b.z + l.z * n.z});
+        mean.add(texel[0], texel[1], texel[2], sample.weight / (sample.density + texel[3]));
+    }
+    for (const Light& light : source.lights()) {
+        const float x = light.direction.x * n.x + light.direction.y * n.y + light.direction.z * n.z;
+        if (x > 0.0F) {
+            const float weight = lobe.density(x) * x / (lobeDensity * lobe.pdf(x) + light.density);
+            mean.add(light.radiance[0], light.radiance[1], light.radiance[2], weight);
+        }
+    }
+    return mean.value();
+}
+
+// Calls `work` for each row, from several threads.
+template <typename Work>
+void forEachRow(std::uint32_t rows, const Work& work) {
+    std::atomic<std::uint32_t> next{0};
+    const auto loop = [&] {
+        for (std::uint32_t first = next.fetch_add(kRowsAtOnce); first < rows;
+             first = next.fetch_add(kRowsAtOnce)) {
+            for (std::uint32_t row = first; row < std::min(first + kRowsAtOnce, rows); ++row) {
+                work(row);
+            }
+        }
+    };
+    const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
+    std::vector<std::jthread> helpers;
+    for (std::uint32_t i = 1; i < threads; ++i) {
+        helpers.emplace_back(loop);
+    }
+    loop();
+}
+
+RadianceMap filterLevel(const Source& source, double roughness, std::uint32_t width, std::uint32_t height) {
+    const Lobe lobe(roughness);
+    const std::vector<LobeSample> samples =
+        sampleLobe(lobe, std::clamp(kLevelSamples / (width * height), kMinSamples, kMaxSamples));
+    RadianceMap level{width, height, {}};
+    level.texels.resize(std::size_t{width} * height);
+    forEachRow(height, [&](std::uint32_t row) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            // The additive recurrence of the plastic number fills the plane evenly (Roberts 2018).
+            const double turn = 0.7548776662466927 * x + 0.5698402909980532 * row;
+            level.texels[std::size_t{row} * width + x] =
+                lobeMean(source, lobe, samples, std::numbers::pi * (row + 0.5) / height,
+                         2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5), 2.0 * std::numbers::pi * turn);
+        }
+    });
+    return level;
+}
+
+}  // namespace
+
+RadianceMap fitToDevice(RadianceMap map) {
+    const std::uint32_t width = std::clamp(map.width, kMinMapWidth, kMaxMapWidth);
+    const std::uint32_t height = std::clamp(map.height, kMinMapHeight, kMaxMapHeight);
+    return width == map.width && height == map.height ? std::move(map) : resample(map, width, height);
+}
+
+std::uint32_t levelCount(std::uint32_t width) {
+    constexpr std::uint32_t kSmallestWidth = 32;
+    return static_cast<std::uint32_t>(std::bit_width(width / kSmallestWidth));
+}
+
+std::vector<RadianceMap> filterByRoughness(RadianceMap map) {
+    const Source source(map);
+    const std::uint32_t count = levelCount(map.width);
+    const std::uint32_t width = map.width;
+    const std::uint32_t height = map.height;
+    std::vector<RadianceMap> levels;
+    levels.push_back(std::move(map));
+    for (std::uint32_t level = 1; level < count; ++level) {
+        levels.push_back(filterLevel(source, static_cast<double>(level) / (count - 1),
+                                     std::max(width >> level, 1U), std::max(height >> level, 1U)));
+    }
+    return levels;
+}
+
+}  // namespace glint

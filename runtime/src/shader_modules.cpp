@@ -1,0 +1,29 @@
+#include "shader_modules.h"
+
+#include "vulkan_error.h"
+
+namespace glint {
+
+Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words) {
+    VkShaderModuleCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    info.codeSize = words.size_bytes();
+    info.pCode = words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateShaderModule(context.handles.device, &info, nullptr, &module);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateShaderModule", result);
+    }
+    return UniqueShaderModule(context, module);
+}
+
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
+    VkPipelineShaderStageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage = stage;
+    info.module = module;
+    info.pName = "main";
+    return info;
+}
+
+}  // namespace glint

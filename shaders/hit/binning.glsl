@@ -1,0 +1,61 @@
+// Sorts the rays of a workgroup by direction before they join the list, so that neighbours in the list walk through the
+// same parts of the acceleration structure. For workgroups of at least kMaxDirectionBins threads, all of which call.
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+
+#include "hit/bindings.glsl"
+#include "hit/direction_bin.glsl"
+
+shared uint binCounts[kMaxDirectionBins];
+shared uint binBegins[kMaxDirectionBins];  // of a bin's rays among those of the workgroup
+shared uint groupBegin;                    // of the workgroup's rays in the list
+
+// Of a thread without a ray: above every bin.
+const uint kNoBin = 0xFFFFFFFFu;
+
+// Number of this thread's ray among those of its bin. Conditions are equal in all threads of a subgroup; one atomic for
+// each bin that a subgroup has.
+uint numberInBin(uint bin) {
+    uint number = 0u;
+    uint next = subgroupMin(bin);
+    while (next != kNoBin) {
+        bool counted = bin == next;
+        uvec4 lanes = subgroupBallot(counted);
+        uint first = 0u;
+        if (subgroupElect()) {
+            first = atomicAdd(binCounts[next], subgroupBallotBitCount(lanes));
+        }
+        first = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(lanes);
+        number = counted ? first : number;
+        bin = counted ? kNoBin : bin;
+        next = subgroupMin(bin);
+    }
+    return number;
+}
+
+// Slot in the list of a thread's ray, counted in kCounterRays by one atomic a workgroup; undefined for a thread without
+// one.
+uint binnedSlot(bool hasRay, vec3 direction) {
+    uint thread = gl_LocalInvocationIndex;
+    if (thread < kMaxDirectionBins) {
+        binCounts[thread] = 0u;
+    }
+    barrier();
+    uint bin = hasRay ? directionBin(direction, GLINT_FRAME.binning) : kNoBin;
+    uint number = numberInBin(bin);
+    barrier();
+    if (thread < kMaxDirectionBins) {
+        uint begin = 0u;
+        for (uint before = 0u; before < thread; ++before) {
+            begin += binCounts[before];
+        }
+        binBegins[thread] = begin;
+        uint total = begin + binCounts[thread];
+        if (thread == kMaxDirectionBins - 1u && total > 0u) {
+            groupBegin = atomicAdd(GLINT_FRAME.counters.data[kCounterRays], total);
+        }
+    }
+    barrier();
+    return hasRay ? groupBegin + binBegins[bin] + number : 0u;
+}

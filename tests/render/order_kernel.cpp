@@ -1,0 +1,112 @@
+#include "render/order_kernel.h"
+
+#include "context_state.h"
+#include "emit/modules.h"
+#include "vulkan_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace glint::testing {
+
+namespace {
+
+using package::ModuleRole;
+
+constexpr ModuleRole kRoles[] = {ModuleRole::RayDispatch, ModuleRole::BucketCount, ModuleRole::BucketOffset,
+                                 ModuleRole::BucketCopy, ModuleRole::OrderCheck};
+
+// The modules of a plan with that many cases, whatever they shade.
+Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
+                                                    package::HitRecordFormat hitRecord) {
+    Plan plan;
+    for (std::uint32_t i = 0; i < caseCount; ++i) {
+        Case shaderCase;
+        shaderCase.shaderId = static_cast<int>(i);
+        shaderCase.name = fmt::format("Case{}", i);
+        plan.cases.push_back(std::move(shaderCase));
+    }
+    const Scene scene;
+    CompileSettings settings;
+    settings.strategies = package::kStrategySortedUber;
+    settings.hitRecord = hitRecord;
+    const Result<SourceSet> sources = makeSourceSet(scene, plan, settings);
+    if (!sources) {
+        return sources.error();
+    }
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, plan, *sources, settings);
+    if (!modules) {
+        return modules.error();
+    }
+    std::erase_if(*modules, [](const ModuleSource& module) {
+        return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
+    });
+    return compileModules(std::move(*modules), 0, false);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<OrderKernel>> OrderKernel::create(Context& context, std::uint32_t caseCount,
+                                                         package::HitRecordFormat hitRecord) {
+    std::unique_ptr<OrderKernel> kernel(new OrderKernel(context.state(), caseCount, hitRecord));
+    if (Status status = kernel->createPipelines(); !status) {
+        return status.error();
+    }
+    return kernel;
+}
+
+Status OrderKernel::createPipelines() {
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(gpu::PushConstants)};
+    VkPipelineLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.pushConstantRangeCount = 1;
+    info.pPushConstantRanges = &range;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    const VkResult result =
+        context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineLayout", result);
+    }
+    layout_ = UniquePipelineLayout(context_, layout);
+    Result<std::vector<CompiledModule>> modules = compileOrdering(caseCount_, hitRecord_);
+    if (!modules) {
+        return modules.error();
+    }
+    for (const CompiledModule& module : *modules) {
+        if (Status status = createPipeline(module); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+Status OrderKernel::createPipeline(const CompiledModule& module) {
+    const VkDevice device = context_.handles.device;
+    VkShaderModuleCreateInfo moduleInfo{};
+    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    moduleInfo.codeSize = module.spirv.size() * sizeof(std::uint32_t);
+    moduleInfo.pCode = module.spirv.data();
+    VkShaderModule handle = VK_NULL_HANDLE;
+    VkResult result = context_.vk.CreateShaderModule(device, &moduleInfo, nullptr, &handle);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateShaderModule", result);
+    }
+    const UniqueShaderModule owner(context_, handle);
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = handle;
+    info.stage.pName = "main";
+    info.layout = layout_.get();
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    result = context_.vk.CreateComputePipelines(device, context_.pipelineCache, 1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateComputePipelines", result);
+    }
+    pipelines_.emplace(module.key, UniquePipeline(context_, pipeline));
+    return okStatus();
+}
+
+}  // namespace glint::testing

@@ -1,0 +1,174 @@
+// Every ordering gives each hit one slot of its bucket, and the check on the device sees where that is not
+// so.
+#include "render/harness.h"
+#include "render/order_problems.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+using package::HitRecordFormat;
+using package::Ordering;
+
+constexpr Ordering kOrderings[] = {Ordering::GlobalAtomics, Ordering::WaveLoop, Ordering::WaveAggregated,
+                                   Ordering::WaveBallot, Ordering::LocalHistogram};
+static_assert(std::size(kOrderings) == static_cast<std::size_t>(Ordering::Count));
+
+bool holds(Ordering ordering, std::uint32_t bucketCount) {
+    return ordering != Ordering::LocalHistogram || bucketCount <= gpu::kMaxLocalBuckets;
+}
+
+std::unique_ptr<OrderKernel> makeKernel(std::uint32_t bucketCount, HitRecordFormat format) {
+    Result<std::unique_ptr<OrderKernel>> kernel =
+        OrderKernel::create(sharedContext(), bucketCount - 1, format);
+    if (!kernel) {
+        ADD_FAILURE() << toString(kernel.error());
+        return nullptr;
+    }
+    return std::move(*kernel);
+}
+
+void expectDispatch(const gpu::DispatchArguments& arguments, std::uint32_t elements) {
+    const std::uint32_t groups = (elements + gpu::kRayGroupSize - 1) / gpu::kRayGroupSize;
+    EXPECT_EQ(arguments.elementCount, elements);
+    EXPECT_GE(arguments.x * arguments.y * arguments.z, groups);
+    EXPECT_LE(arguments.x, gpu::kMaxRayGroupsX);
+    EXPECT_EQ(arguments.z == 0, elements == 0);
+}
+
+// Against the host: counts, their exclusive scan, and which hits each bucket has.
+void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const OrderResult& result) {
+    std::vector<std::uint32_t> counts(bucketCount);
+    for (std::size_t hit = 0; hit < problem.hits.size(); ++hit) {
+        ++counts[bucketOf(problem, hit, bucketCount)];
+    }
+    std::vector<bool> seen(problem.hits.size());
+    std::uint32_t wrong = 0;
+    std::uint32_t begin = 0;
+    for (std::uint32_t bucket = 0; bucket < bucketCount; ++bucket) {
+        const gpu::BucketRecord& record = result.buckets[bucket];
+        ASSERT_EQ(record.count, counts[bucket]) << "bucket " << bucket;
+        ASSERT_EQ(record.begin, begin) << "bucket " << bucket;
+        ASSERT_EQ(record.cursor, begin + counts[bucket]) << "bucket " << bucket;
+        expectDispatch(result.dispatches[bucket], counts[bucket]);
+        const std::uint32_t room =
+            (counts[bucket] + problem.alignment - 1) / problem.alignment * problem.alignment;
+        for (std::uint32_t i = 0; i < room; ++i) {
+            const std::uint32_t hit = result.slots[begin + i];
+            if (i >= counts[bucket]) {
+                wrong += hit == gpu::kNoHit ? 0 : 1;
+            } else if (hit >= seen.size() || seen[hit] || bucketOf(problem, hit, bucketCount) != bucket) {
+                ++wrong;
+            } else {
+                seen[hit] = true;
+            }
+        }
+        begin += room;
+    }
+    EXPECT_EQ(wrong, 0U) << "slots";
+    expectDispatch(result.dispatches[bucketCount], begin);
+    EXPECT_EQ(result.errors, 0U);
+}
+
+void expectAllOrder(OrderKernel& kernel, std::uint32_t bucketCount, const OrderProblem& problem) {
+    for (const Ordering ordering : kOrderings) {
+        if (holds(ordering, bucketCount)) {
+            SCOPED_TRACE(std::string(nameOf(ordering)));
+            const Result<OrderResult> result = kernel.run(ordering, problem);
+            ASSERT_TRUE(result) << toString(result.error());
+            expectOrdered(problem, bucketCount, *result);
+        }
+    }
+}
+
+class Orderings : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
+    const std::uint32_t bucketCount = GetParam();
+    for (const HitRecordFormat format : {HitRecordFormat::Full, HitRecordFormat::Packed}) {
+        const std::unique_ptr<OrderKernel> kernel = makeKernel(bucketCount, format);
+        ASSERT_NE(kernel, nullptr);
+        for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
+            for (const Spread spread : kSpreads) {
+                // None, one, less than a workgroup, one in each bucket, and a last workgroup that is not
+                // full.
+                for (const std::uint32_t rays : {0U, 1U, 37U, bucketCount, 4099U}) {
+                    OrderProblem problem = makeProblem(spread, bucketCount, rays);
+                    problem.alignment = alignment;
+                    SCOPED_TRACE(std::string(nameOf(format)) + ", " + nameOf(spread) + ", rays " +
+                                 std::to_string(rays) + ", alignment " + std::to_string(alignment));
+                    expectAllOrder(*kernel, bucketCount, problem);
+                }
+            }
+        }
+    }
+    expectNoValidationMessages();
+}
+
+// 2^5, 2^8 and 2^10 are where ballots and scans take another word or round; 1024 is the most that
+// local-histogram holds.
+INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
+                         ::testing::Values(1U, 2U, 31U, 32U, 33U, 255U, 256U, 257U, 1024U, 1025U),
+                         ::testing::PrintToStringParamName());
+
+TEST(OrderingsOfManyHits, FillDispatchesOfTwoDimensions) {
+    constexpr std::uint32_t kBuckets = 33;
+    constexpr std::uint32_t kRays = gpu::kMaxRayGroupsX * gpu::kRayGroupSize + 1001;
+    const std::unique_ptr<OrderKernel> kernel = makeKernel(kBuckets, HitRecordFormat::Packed);
+    ASSERT_NE(kernel, nullptr);
+    expectAllOrder(*kernel, kBuckets, makeProblem(Spread::Skewed, kBuckets, kRays));
+    expectNoValidationMessages();
+}
+
+constexpr std::uint32_t kFaultBuckets = 5;
+constexpr std::uint32_t kFaultRays = 5 * 101;
+constexpr std::uint32_t kBucketWords = sizeof(gpu::BucketRecord) / sizeof(std::uint32_t);
+
+struct FaultCase {
+    const char* name;
+    std::uint32_t errors;  // at least
+    std::vector<OrderFault> faults;
+};
+
+// Of hits in turn: bucket 1 has 101, of them number 3 and every fifth after it; bucket 2 begins at slot 256
+// (a multiple of 64) and has hit 2.
+std::vector<FaultCase> faultCases() {
+    using Where = OrderFault::Where;
+    return {
+        {"a hit twice, and one lost", 1, {{Where::Slots, 130, 3}, {Where::Slots, 131, 3}}},
+        {"a hit in another bucket", 2, {{Where::Slots, 130, 2}}},
+        {"two buckets with each other's hits", 2, {{Where::Slots, 130, 2}, {Where::Slots, 260, 3}}},
+        {"a slot that was not written", 1, {{Where::Slots, 256, gpu::kNoHit}}},
+        {"a hit that there is not", 1, {{Where::Slots, 130, kFaultRays}}},
+        {"a hit in a gap", 1, {{Where::Slots, 128 + 101, 3}}},
+        {"the count of a bucket", 1, {{Where::Buckets, 1 * kBucketWords + 0, 100}}},
+        {"where a bucket begins", 1, {{Where::Buckets, 2 * kBucketWords + 1, 192}}},
+        {"where a bucket ends", 1, {{Where::Buckets, 4 * kBucketWords + 2, 4 * 128 + 100}}},
+        {"where all begin", 1, {{Where::Buckets, 0 * kBucketWords + 1, 1}}},
+    };
+}
+
+TEST(OrderCheck, FindsEveryFault) {
+    const std::unique_ptr<OrderKernel> kernel = makeKernel(kFaultBuckets, HitRecordFormat::Full);
+    ASSERT_NE(kernel, nullptr);
+    OrderProblem problem = makeProblem(Spread::InTurn, kFaultBuckets, kFaultRays);
+    problem.alignment = gpu::kRayGroupSize;
+    for (std::uint32_t hit : {2U, 3U}) {
+        ASSERT_EQ(bucketOf(problem, hit, kFaultBuckets), 4 - hit);
+    }
+    for (const Ordering ordering : kOrderings) {
+        for (const FaultCase& fault : faultCases()) {
+            const Result<OrderResult> result = kernel->run(ordering, problem, fault.faults);
+            ASSERT_TRUE(result) << toString(result.error());
+            EXPECT_GE(result->errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
+        }
+    }
+    expectNoValidationMessages();
+}
+
+}  // namespace

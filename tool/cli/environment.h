@@ -1,0 +1,28 @@
+// The environment map of glint render: options, file, what there is to say of it.
+#pragma once
+
+#include "cli/options.h"
+
+#include <glint/environment.h>
+#include <glint/renderer.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct EnvironmentArguments {
+    std::string file;       // empty: no environment map
+    double rotation = 0.0;  // degrees
+    double intensity = 1.0;
+    void apply(FrameOptions& frame) const;
+};
+void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments);
+
+// Reads a .hdr or .exr file and makes the map; appends warnings and notes. Errors of readRadiance() and
+// Environment::create(), with the file as their place.
+Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
+                                                     std::vector<Diagnostic>& notes);
+
+}  // namespace glint

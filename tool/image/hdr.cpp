@@ -1,0 +1,110 @@
+#include "image/hdr.h"
+
+#include "image/image_file.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#ifndef __clang_analyzer__  // not ours to lint
+#define STB_IMAGE_IMPLEMENTATION
+#endif
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_HDR
+#define STBI_NO_STDIO
+#include <stb_image.h>
+
+namespace glint {
+
+namespace {
+
+// A run of 127 pixels takes 2 bytes in each of 4 channels.
+constexpr std::int64_t kMaxPixelsPerByte = 16;
+// stb_image asks for 4 bytes of a flat pixel, and otherwise for its whole buffer.
+constexpr int kPixelBytes = 4;
+
+// Hands stb_image the file, and notes when it asks for what is not there: it takes that as black.
+class Reader {
+public:
+    explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    static const stbi_io_callbacks& callbacks() {
+        static constexpr stbi_io_callbacks kCallbacks{
+            [](void* user, char* data, int size) { return static_cast<Reader*>(user)->read(data, size); },
+            [](void* user, int n) { static_cast<Reader*>(user)->skip(n); },
+            [](void* user) { return static_cast<Reader*>(user)->atEnd() ? 1 : 0; }};
+        return kCallbacks;
+    }
+    bool ranOut() const {
+        return ranOut_;
+    }
+
+private:
+    int read(char* data, int size) {
+        const std::size_t count = std::min(static_cast<std::size_t>(size), bytes_.size() - position_);
+        if (count == 0 || (size < kPixelBytes && count < static_cast<std::size_t>(size))) {
+            ranOut_ = true;
+        }
+        std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(position_), count, data);
+        position_ += count;
+        return static_cast<int>(count);
+    }
+    void skip(int n) {
+        const auto target = static_cast<std::ptrdiff_t>(position_) + n;
+        position_ = static_cast<std::size_t>(
+            std::clamp<std::ptrdiff_t>(target, 0, static_cast<std::ptrdiff_t>(bytes_.size())));
+    }
+    bool atEnd() const {
+        return position_ == bytes_.size();
+    }
+
+    std::span<const std::uint8_t> bytes_;
+    std::size_t position_ = 0;
+    bool ranOut_ = false;
+};
+
+struct StbFree {
+    void operator()(float* pixels) const {
+        stbi_image_free(pixels);
+    }
+};
+
+Diagnostic formatError(const std::string& where, const std::string& message) {
+    return makeError("image-format", where, message, "write it again from the program that made it");
+}
+
+}  // namespace
+
+Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::string& where) {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    Reader header(bytes);
+    if (stbi_info_from_callbacks(&Reader::callbacks(), &header, &width, &height, &channels) == 0) {
+        return formatError(where, "is no Radiance picture (.hdr) that can be read");
+    }
+    if (Status checked = checkImageSize(width, height, where); !checked) {
+        return checked.error();
+    }
+    const std::int64_t count = std::int64_t{width} * height;
+    if (count / kMaxPixelsPerByte > static_cast<std::int64_t>(bytes.size())) {
+        return formatError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
+                                      " pixels, but has only " + std::to_string(bytes.size()) + " bytes");
+    }
+    Reader reader(bytes);
+    const std::unique_ptr<float, StbFree> pixels(
+        stbi_loadf_from_callbacks(&Reader::callbacks(), &reader, &width, &height, &channels, STBI_rgb_alpha));
+    if (!pixels) {
+        return formatError(where,
+                           std::string("is no Radiance picture that can be read: ") + stbi_failure_reason());
+    }
+    if (reader.ranOut()) {
+        return formatError(where, "ends early, or has a broken scan line");
+    }
+    LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+    image.pixels.resize(static_cast<std::size_t>(count));
+    std::memcpy(image.pixels.data(), pixels.get(), image.pixels.size() * sizeof(image.pixels[0]));
+    return image;
+}
+
+}  // namespace glint

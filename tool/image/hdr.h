@@ -1,0 +1,18 @@
+// Radiance RGBE pictures (.hdr) in memory.
+#pragma once
+
+#include "base/files.h"
+
+#include <glint/renderer.h>
+#include <glint/result.h>
+
+#include <span>
+#include <string>
+
+namespace glint {
+
+// Linear RGB, alpha 1, first row on top; run-length encoded or flat, 32-bit_rle_rgbe, -Y +X. EXPOSURE is not
+// applied. Errors "image-format", "image-size".
+Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::string& where);
+
+}  // namespace glint
