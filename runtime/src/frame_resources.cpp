@@ -108,7 +108,8 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         MemoryUse use;
     } wanted[] = {
         {frame.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
-        {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage, MemoryUse::Device},
+        {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <system_error>
 #include <thread>
 
 namespace glint {
@@ -17,8 +18,8 @@ namespace {
 constexpr std::uint32_t kLevelSamples = 1U << 23;
 constexpr std::uint32_t kMinSamples = 32;
 constexpr std::uint32_t kMaxSamples = 1024;
-// Samples of the map, which all texels share: less than 1 % off for the light of a sun.
-constexpr std::uint32_t kMapSamples = 256;
+// Samples of the map, which all texels share: a lamp that has a tenth of the light gets 100.
+constexpr std::uint32_t kMapSamples = 1024;
 constexpr std::uint32_t kRowsAtOnce = 4;
 constexpr std::uint32_t kMaxThreads = 64;
 
@@ -34,14 +35,13 @@ public:
         : alpha2_(static_cast<float>(std::pow(roughness, 4.0))),
           scale_(static_cast<float>(alpha2_ / (4.0 * std::numbers::pi))) {}
 
-    // D / 4, per steradian. GGX with its denominator 1 - (1 - α²)(n·h)² as a sum of positive terms.
-    float density(float x) const {
+    // What a sample counts under the balance heuristic: the weight D x / 4 of its direction over the samples
+    // per steradian there, `lobeSamples` by the lobe and `mapDensity` by the map. The lobe samples directions
+    // above the surface only, 1 / (1 + α²) of it: with D / 4 = s / q², both are multiplied by q². GGX's
+    // denominator q = 1 - (1 - α²)(n·h)² is a sum of positive terms.
+    float balance(float x, float lobeSamples, float mapDensity) const {
         const float q = alpha2_ + (1.0F - alpha2_) * 0.5F * (1.0F - x);
-        return scale_ / (q * q);
-    }
-    // Of directions above the surface only: the share of the lobe there is 1 / (1 + α²).
-    float pdf(float x) const {
-        return density(x) * (1.0F + alpha2_);
+        return scale_ * x / (lobeSamples * scale_ * (1.0F + alpha2_) + mapDensity * q * q);
     }
     // The cosine of a sample, [0, 1] for u in [0, 1].
     double sampleCosine(double u) const {
@@ -64,31 +64,27 @@ double radicalInverse(std::uint32_t i) {
     return bits * 0x1p-32;
 }
 
-struct LobeSample {
-    Vec3 direction;  // in the frame of the lobe, whose axis is z
-    float weight;    // what the lobe weights it with
-    float density;   // expected samples per steradian
-};
-
-std::vector<LobeSample> sampleLobe(const Lobe& lobe, std::uint32_t count) {
-    std::vector<LobeSample> samples;
+// In the frame of the lobe, whose axis is z.
+std::vector<Vec3> sampleLobe(const Lobe& lobe, std::uint32_t count) {
+    std::vector<Vec3> samples;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double x = lobe.sampleCosine((i + 0.5) / count);
         const double azimuth = 2.0 * std::numbers::pi * radicalInverse(i);
         const double sine = std::sqrt(std::max(1.0 - x * x, 0.0));
-        const auto cosine = static_cast<float>(x);
-        samples.push_back({{static_cast<float>(sine * std::cos(azimuth)),
-                            static_cast<float>(sine * std::sin(azimuth)), cosine},
-                           lobe.density(cosine) * cosine,
-                           static_cast<float>(count) * lobe.pdf(cosine)});
+        samples.push_back({static_cast<float>(sine * std::cos(azimuth)),
+                           static_cast<float>(sine * std::sin(azimuth)), static_cast<float>(x)});
     }
     return samples;
 }
 
-struct Light {
-    Vec3 direction;
-    Radiance radiance;
-    float density;  // expected samples per steradian
+// Samples of the map side by side, for vector instructions.
+constexpr std::size_t kLanes = 16;
+using Lanes = std::array<float, kLanes>;
+struct Lights {
+    std::array<Lanes, 3> direction{};
+    std::array<Lanes, 3> radiance{};
+    Lanes samples{};  // that each stands for; 0: none
+    Lanes density{};  // expected samples per steradian
 };
 
 // The map as the samplers see it: radiance, and expected map samples per steradian.
@@ -100,17 +96,19 @@ public:
         for (std::size_t i = 0; i < map.texels.size(); ++i) {
             const Radiance& c = map.texels[i];
             texels_.push_back({c[0], c[1], c[2], static_cast<float>(kMapSamples * distribution.pdf(i))});
+            if (expectedSamples(i) >= 1.0) {
+                addLight(directionOf(i), i, expectedSamples(i));
+            }
         }
         for (std::uint32_t i = 0; i < kMapSamples; ++i) {
             const MapSample sample = distribution.sample((i + 0.5) / kMapSamples, radicalInverse(i));
-            const auto& [x, y, z] = sample.direction;
-            lights_.push_back({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)},
-                               map.texels[sample.texel],
-                               texels_[sample.texel][3]});
+            if (expectedSamples(sample.texel) < 1.0) {
+                addLight(sample.direction, sample.texel, 1.0);
+            }
         }
     }
 
-    const std::vector<Light>& lights() const {
+    const std::vector<Lights>& lights() const {
         return lights_;
     }
     const std::array<float, 4>& at(Vec3 d) const {
@@ -123,19 +121,49 @@ public:
     }
 
 private:
+    // Texels that expect a sample or more are taken as that many at their centres: no chance in the light of
+    // a sun.
+    double expectedSamples(std::size_t texel) const {
+        return texels_[texel][3] *
+               texelSolidAngle(static_cast<std::uint32_t>(texel / width_), width_, height_);
+    }
+    Direction directionOf(std::size_t texel) const {
+        const double polar = std::numbers::pi * (static_cast<double>(texel / width_) + 0.5) / height_;
+        const double azimuth =
+            2.0 * std::numbers::pi * ((static_cast<double>(texel % width_) + 0.5) / width_ - 0.5);
+        return {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
+    }
+    void addLight(const Direction& direction, std::size_t texel, double samples) {
+        const std::size_t lane = lightCount_++ % kLanes;
+        if (lane == 0) {
+            lights_.emplace_back();
+        }
+        Lights& lights = lights_.back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            lights.direction[i][lane] = static_cast<float>(direction[i]);
+            lights.radiance[i][lane] = texels_[texel][i];
+        }
+        lights.samples[lane] = static_cast<float>(samples);
+        lights.density[lane] = texels_[texel][3];
+    }
+
     std::uint32_t width_;
     std::uint32_t height_;
     std::vector<std::array<float, 4>> texels_;
-    std::vector<Light> lights_;
+    std::vector<Lights> lights_;
+    std::size_t lightCount_ = 0;
 };
 
 // A weighted mean of radiance: no greater than the greatest of it.
 class Mean {
 public:
     void add(float r, float g, float b, float weight) {
-        sum_[0] += weight * r;
-        sum_[1] += weight * g;
-        sum_[2] += weight * b;
+        addSum(weight * r, weight * g, weight * b, weight);
+    }
+    void addSum(float r, float g, float b, float weight) {
+        sum_[0] += r;
+        sum_[1] += g;
+        sum_[2] += b;
         total_ += weight;
     }
     Radiance value() const {
@@ -149,8 +177,8 @@ private:
 };
 
 // `turn`: of the lobe's samples about its axis, so that neighbours err in different ways.
-Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<LobeSample>& samples,
-                  double polar, double azimuth, double turn) {
+Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3>& samples, double polar,
+                  double azimuth, double turn) {
     const double sinP = std::sin(polar);
     const double cosP = std::cos(polar);
     const double sinA = std::sin(azimuth);
@@ -164,20 +192,30 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Lobe
     const double s = std::sin(turn);
     const Vec3 t = vec(c * cosP * cosA - s * sinA, -c * sinP, c * cosP * sinA + s * cosA);
     const Vec3 b = vec(-s * cosP * cosA - c * sinA, s * sinP, -s * cosP * sinA + c * cosA);
-    const auto lobeDensity = static_cast<float>(samples.size());
+    const auto lobeSamples = static_cast<float>(samples.size());
     Mean mean;
-    for (const LobeSample& sample : samples) {
-        const Vec3 l = sample.direction;
-        const auto& texel = source.at({l.x * t.x + l.y * b.x + l.z * n.x, l.x * t.y + l.y * b.y + l.z * n.y,
-                                       l.x * t.z + l.y * b.z + l.z * n.z});
-        mean.add(texel[0], texel[1], texel[2], sample.weight / (sample.density + texel[3]));
+    for (const Vec3& l : samples) {
+        const auto& [red, green, blue, density] =
+            source.at({l.x * t.x + l.y * b.x + l.z * n.x, l.x * t.y + l.y * b.y + l.z * n.y,
+                       l.x * t.z + l.y * b.z + l.z * n.z});
+        mean.add(red, green, blue, lobe.balance(l.z, lobeSamples, density));
     }
-    for (const Light& light : source.lights()) {
-        const float x = light.direction.x * n.x + light.direction.y * n.y + light.direction.z * n.z;
-        if (x > 0.0F) {
-            const float weight = lobe.density(x) * x / (lobeDensity * lobe.pdf(x) + light.density);
-            mean.add(light.radiance[0], light.radiance[1], light.radiance[2], weight);
+    std::array<Lanes, 4> sums{};
+    for (const Lights& lights : source.lights()) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const float x =
+                lights.direction[0][i] * n.x + lights.direction[1][i] * n.y + lights.direction[2][i] * n.z;
+            // max(x, 0), which the compiler would branch for.
+            const float above = 0.5F * (x + std::abs(x));
+            const float weight = lights.samples[i] * lobe.balance(above, lobeSamples, lights.density[i]);
+            sums[0][i] += weight * lights.radiance[0][i];
+            sums[1][i] += weight * lights.radiance[1][i];
+            sums[2][i] += weight * lights.radiance[2][i];
+            sums[3][i] += weight;
         }
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        mean.addSum(sums[0][i], sums[1][i], sums[2][i], sums[3][i]);
     }
     return mean.value();
 }
@@ -197,14 +235,18 @@ void forEachRow(std::uint32_t rows, const Work& work) {
     const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
     std::vector<std::jthread> helpers;
     for (std::uint32_t i = 1; i < threads; ++i) {
-        helpers.emplace_back(loop);
+        try {
+            helpers.emplace_back(loop);
+        } catch (const std::system_error&) {
+            break;  // those that there are do the work
+        }
     }
     loop();
 }
 
 RadianceMap filterLevel(const Source& source, double roughness, std::uint32_t width, std::uint32_t height) {
     const Lobe lobe(roughness);
-    const std::vector<LobeSample> samples =
+    const std::vector<Vec3> samples =
         sampleLobe(lobe, std::clamp(kLevelSamples / (width * height), kMinSamples, kMaxSamples));
     RadianceMap level{width, height, {}};
     level.texels.resize(std::size_t{width} * height);

@@ -7,9 +7,17 @@
 #include <bit>
 #include <cstring>
 #include <set>
+#include <span>
 
 namespace glint {
 namespace {
+
+// As PackageHeader::contentHash says.
+std::uint64_t contentHash(package::PackageHeader header, std::span<const std::uint8_t> file) {
+    header.contentHash = 0;
+    return XXH3_64bits_withSeed(file.data() + sizeof(header), file.size() - sizeof(header),
+                                XXH3_64bits(&header, sizeof(header)));
+}
 
 static_assert(std::endian::native == std::endian::little, "packages are little endian and read in place");
 
@@ -44,7 +52,7 @@ Status readHeader(Package::State& state, const std::string& where) {
     if (bytes.size() > header.fileBytes) {
         return makeError("package-altered", where, "the file is longer than its header says", kRecompile);
     }
-    if (XXH3_64bits(bytes.data() + sizeof(header), bytes.size() - sizeof(header)) != header.contentHash) {
+    if (contentHash(header, bytes) != header.contentHash) {
         return makeError("package-altered", where, "the contents differ from the hash in the header",
                          kRecompile);
     }

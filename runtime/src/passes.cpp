@@ -1,4 +1,5 @@
 // The passes of a frame in order, with labels, timers and barriers.
+#include "pass_dependencies.h"
 #include "renderer_state.h"
 
 #include <cstddef>
@@ -7,44 +8,6 @@ namespace glint {
 namespace {
 
 using package::ModuleRole;
-
-// Everything before against everything after: frames follow each other, whoever recorded the one before.
-constexpr MemoryDependency kAllToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-
-// Dependencies of the passes, which run in `stages`.
-struct PassDependencies {
-    explicit PassDependencies(VkPipelineStageFlags2 stages)
-        // Fills count as clears or as copies, depending on the edition of the specification.
-        : clearToPasses{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                        kRasterStage | stages,
-                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT |
-                            VK_ACCESS_2_SHADER_WRITE_BIT},
-          rasterToPasses{kRasterStage, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, stages,
-                         VK_ACCESS_2_SHADER_READ_BIT},
-          passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
-                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
-          passesToCopy{stages | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                       VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                       VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT} {}
-
-    MemoryDependency clearToPasses;
-    MemoryDependency rasterToPasses;
-    MemoryDependency passToPass;    // also into indirect arguments, which the dispatching passes read
-    MemoryDependency passesToCopy;  // counters that no pass touched were last written by a fill
-};
-
-VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
-    const bool rayPipeline = choice.tracer == package::kTracerRayPipeline;
-    return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-           (rayPipeline ? VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR : VK_PIPELINE_STAGE_2_NONE);
-}
-
-constexpr MemoryDependency kCopyToHost{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
 
 constexpr VkStridedDeviceAddressRegionKHR kNoCallables{};
 

@@ -43,6 +43,9 @@ struct Pipelines {
     double creationMs = 0.0;
 };
 
+// What decides which of the package's modules the choice has.
+package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
+
 // Stages that push constants are for.
 VkShaderStageFlags pushStages(const Context::State& context);
 

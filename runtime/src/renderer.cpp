@@ -1,5 +1,6 @@
 // Renderer: creation, frame constants, results.
 #include "camera.h"
+#include "readback.h"
 #include "renderer_choice.h"
 #include "renderer_state.h"
 #include "vulkan_error.h"
@@ -126,45 +127,6 @@ Diagnostic notRecorded() {
                      "record a frame, submit it and wait for it first");
 }
 
-// The accumulated image, into memory that the host reads.
-void recordReadback(const Renderer::State& state, VkCommandBuffer commands, const Buffer& target) {
-    recordDependency(state.context, commands,
-                     {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {state.size.width, state.size.height, 1};
-    state.context.vk.CmdCopyImageToBuffer(commands, state.frame.images[gpu::kBindingAccumulated].handle.get(),
-                                          VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
-    recordDependency(state.context, commands,
-                     {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-}
-
-Result<LinearImage> readBack(Renderer::State& state, CommandRunner& runner) {
-    MemoryPool pool(state.context);
-    LinearImage image;
-    image.width = state.size.width;
-    image.height = state.size.height;
-    image.pixels.resize(std::size_t{image.width} * image.height);
-    const std::size_t bytes = image.pixels.size() * sizeof(image.pixels[0]);
-    Result<Buffer> buffer =
-        createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
-    if (!buffer) {
-        return buffer.error();
-    }
-    Result<VkCommandBuffer> commands = runner.begin();
-    if (!commands) {
-        return commands.error();
-    }
-    recordReadback(state, *commands, *buffer);
-    if (Status status = runner.submitAndWait(); !status) {
-        return status.error();
-    }
-    std::memcpy(image.pixels.data(), buffer->mapped, bytes);
-    return image;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
@@ -255,7 +217,11 @@ Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sa
             return status.error();
         }
     }
-    return readBack(*state_, *runner);
+    auto pixels = readFrameImage(*state_, *runner, gpu::kBindingAccumulated);
+    if (!pixels) {
+        return pixels.error();
+    }
+    return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
 }
 
 Result<std::vector<PassTiming>> Renderer::timings() {
@@ -303,8 +269,20 @@ Result<FrameCounters> Renderer::counters() {
     return counters;
 }
 
+package::Tracer Renderer::tracer() const {
+    return state_->choice.tracer;
+}
+
+package::Ordering Renderer::ordering() const {
+    return state_->choice.ordering;
+}
+
 double Renderer::pipelineCreationMs() const {
     return state_->pipelines.creationMs;
+}
+
+Renderer::State& Renderer::state() {
+    return *state_;
 }
 
 }  // namespace glint

@@ -46,12 +46,27 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                      "compile the package with --tracer all");
 }
 
-}  // namespace
-
-package::Ordering defaultOrdering(std::uint32_t bucketCount) {
-    // Few buckets collide in memory, and shared memory holds their counts.
+// As measured: docs/reflections.md, "Orderings". On a CPU an atomic costs little more than what saves one. On
+// a GPU hits of one bucket wait for each other in memory, unless their workgroup or subgroup adds them up
+// first.
+package::Ordering orderingFor(VkPhysicalDeviceType device, std::uint32_t bucketCount) {
+    if (device == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+        return package::Ordering::GlobalAtomics;
+    }
     return bucketCount <= gpu::kMaxLocalBuckets ? package::Ordering::LocalHistogram
                                                 : package::Ordering::WaveBallot;
+}
+
+package::Ordering orderingOn(const Context::State& context, std::uint32_t bucketCount) {
+    VkPhysicalDeviceProperties properties{};
+    context.instance.GetPhysicalDeviceProperties(context.handles.physicalDevice, &properties);
+    return orderingFor(properties.deviceType, bucketCount);
+}
+
+}  // namespace
+
+package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount) {
+    return orderingOn(context.state(), bucketCount);
 }
 
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
@@ -71,7 +86,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     PipelineChoice choice;
     choice.strategy = options.strategy;
     choice.tracer = *tracer;
-    choice.ordering = options.ordering.value_or(defaultOrdering(package.bucketCount()));
+    choice.ordering = options.ordering.value_or(orderingOn(context, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
     if (choice.ordering >= package::Ordering::Count) {
         return notOne("ordering");

@@ -1,10 +1,8 @@
 #include "requirements.h"
 
 #include "interop/frame.h"
-#include "vulkan_error.h"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -60,15 +58,6 @@ constexpr TracerNeeds kTracerNeeds[] = {
     {package::kTracerRayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME, kRayQueryFeatures},
     {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
 };
-
-// Of every device and of every tracer.
-template <typename Work>
-void forEachFeature(const Work& work) {
-    std::ranges::for_each(kFeatures, work);
-    for (const TracerNeeds& needs : kTracerNeeds) {
-        std::ranges::for_each(needs.features, work);
-    }
-}
 
 bool hasExtension(const DeviceReport& report, const char* name) {
     return std::ranges::find(report.extensions, name) != report.extensions.end();
@@ -139,6 +128,17 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
     }
 }
 
+void clearFeatures(DeviceReport& report) {
+    for (const RequiredFeature& feature : kFeatures) {
+        feature.bit(report.features) = VK_FALSE;
+    }
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        for (const RequiredFeature& feature : needs.features) {
+            feature.bit(report.features) = VK_FALSE;
+        }
+    }
+}
+
 std::uint32_t tracersOf(const DeviceReport& report) {
     std::uint32_t tracers = 0;
     for (const TracerNeeds& needs : kTracerNeeds) {
@@ -189,117 +189,6 @@ std::vector<std::string> missingFrom(const DeviceReport& report) {
         missing.emplace_back("a queue family with graphics and compute");
     }
     return missing;
-}
-
-namespace {
-
-Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
-    std::vector<VkExtensionProperties> extensions;
-    VkResult result = VK_INCOMPLETE;
-    // Layers may come and go between the two calls.
-    while (result == VK_INCOMPLETE) {
-        std::uint32_t count = 0;
-        result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-        if (result == VK_SUCCESS) {
-            extensions.resize(count);
-            result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-            extensions.resize(count);
-        }
-    }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkEnumerateDeviceExtensionProperties", result);
-    }
-    for (const VkExtensionProperties& extension : extensions) {
-        report.extensions.emplace_back(extension.extensionName);
-    }
-    return okStatus();
-}
-
-// Below Vulkan 1.3 the chains of queryFeatures() are not defined: the version is then all that is reported.
-void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
-    VkPhysicalDeviceVulkan11Properties subgroup{};
-    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &subgroup;
-    table.GetPhysicalDeviceProperties2(device, &properties);
-    report.subgroupStages = subgroup.subgroupSupportedStages;
-    report.subgroupOperations = subgroup.subgroupSupportedOperations;
-    const VkPhysicalDeviceLimits& limits = properties.properties.limits;
-    report.maxPushConstantBytes = limits.maxPushConstantsSize;
-    report.maxWorkgroupThreads =
-        std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
-
-    table.GetPhysicalDeviceFeatures2(device, &report.features.features);
-}
-
-bool hasGraphicsQueue(const InstanceTable& table, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    table.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    table.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    return std::ranges::any_of(families, [](const VkQueueFamilyProperties& family) {
-        return (family.queueFlags & kNeeded) == kNeeded;
-    });
-}
-
-}  // namespace
-
-Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
-    VkPhysicalDeviceProperties properties{};
-    table.GetPhysicalDeviceProperties(device, &properties);
-    report.apiVersion = properties.apiVersion;
-    if (Status status = queryExtensions(table, device, report); !status) {
-        return status;
-    }
-    // A structure of an extension that the device lacks is left alone by it: start from nothing.
-    forEachFeature([&](const RequiredFeature& feature) { feature.bit(report.features) = VK_FALSE; });
-    if (report.apiVersion >= DeviceRequirements::kApiVersion) {
-        queryFeatures(table, device, report);
-    }
-    report.hasQueue = hasGraphicsQueue(table, device);
-    return okStatus();
-}
-
-namespace {
-
-// Fills `report` through the system's loader; names what is missing for that.
-std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
-    if (device == VK_NULL_HANDLE) {
-        return {"a physical device"};
-    }
-    Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
-    if (!library) {
-        return {"a Vulkan loader (libvulkan.so.1)"};
-    }
-    // The loader exports these functions for any instance; the handle says which driver answers.
-    InstanceTable table;
-#define GLINT_LOAD(name)                                                         \
-    table.name = reinterpret_cast<PFN_vk##name>((*library)->symbol("vk" #name)); \
-    if (table.name == nullptr) {                                                 \
-        return {"vk" #name " in the Vulkan loader"};                             \
-    }
-    GLINT_INSTANCE_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
-    if (Status status = queryDevice(table, device, report); !status) {
-        return {status.error().message};
-    }
-    return {};
-}
-
-}  // namespace
-
-std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
-    DeviceReport report;
-    std::vector<std::string> missing = askLoader(device, report);
-    return missing.empty() ? missingFrom(report) : missing;
-}
-
-std::uint32_t deviceTracers(VkPhysicalDevice device) {
-    DeviceReport report;
-    const bool complete = askLoader(device, report).empty() && missingFrom(report).empty();
-    return complete ? tracersOf(report) : 0U;
 }
 
 std::string joinNames(const std::vector<std::string>& names) {

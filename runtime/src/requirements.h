@@ -29,6 +29,9 @@ std::vector<std::string> missingFrom(const DeviceReport& report);
 // package::Tracer bits of which `report` has every extension and feature.
 std::uint32_t tracersOf(const DeviceReport& report);
 
+// Takes every feature out of `report`.
+void clearFeatures(DeviceReport& report);
+
 // Fills `report` by asking `device`. Error "vulkan-call".
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);
 

@@ -52,18 +52,24 @@ bool isHidden(ScreenPoint point, ivec2 place) {
     return dot(point.position - surface.xyz, normalOf(surface)) <= 0.0;
 }
 
-// Whether a point that its own pixel does not hide is free of the neighbour's surface on the other side of the line,
-// too: then the line passes nothing that is as large as a pixel.
-bool isClear(ScreenPoint point, vec2 pixel, bool steep) {
-    vec2 side = vec2(fract(pixel.x) < 0.5 ? -1.0 : 1.0, fract(pixel.y) < 0.5 ? -1.0 : 1.0);
-    return !isHidden(point, insideImage(pixel + (steep ? vec2(side.x, 0.0) : vec2(0.0, side.y))));
+// Whether no surface of the pixels around hides the point, either: then what is as large as a pixel is not between it and
+// its neighbours on the line, even where a silhouette passes between their centres.
+bool isClear(ScreenPoint point) {
+    bool clear = true;
+    for (int i = 0; clear && i < 9; ++i) {
+        ivec2 place = point.place + ivec2(i % 3, i / 3) - 1;
+        clear = i == 4 ||
+                !isHidden(point, clamp(place, ivec2(0), ivec2(GLINT_FRAME.width, GLINT_FRAME.height) - 1));
+    }
+    return clear;
 }
 
-// Halves the part of the line from `free`, where nothing hides the ray, to `hidden` until it is below half a pixel.
-// A hit is there if the surface faces the ray, is not the one that it leaves, and is no farther in front of it than it
-// is taken to be thick.
-ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, float hidden, float stride) {
-    for (float width = stride; width > 0.5; width *= 0.5) {
+// Halves the part of the line from `free`, where nothing hides the ray, to `hidden` until it is below 1/64 pixel, as
+// depths may change much within one, and takes the surface there for a hit if the ray is at most its thickness behind it,
+// was in front of its plane a pixel earlier, so that it meets the side that the camera sees, and if it is not the one
+// that the ray leaves. `pixel`: share of the line.
+ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, float hidden, float pixel) {
+    while (hidden - free > 0.015625 * pixel) {
         float middle = 0.5 * (free + hidden);
         ScreenPoint point = screenPoint(ray, origin, direction, middle);
         if (isHidden(point, point.place)) {
@@ -75,9 +81,10 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
     ScreenPoint point = screenPoint(ray, origin, direction, hidden);
     float seen = imageLoad(radianceImage, point.place).w;
     bool thick = point.depth - seen <= GLINT_FRAME.screenThickness * seen;
-    bool faces = dot(normalOf(imageLoad(positionImage, point.place)), direction) < 0.0;
-    bool other = point.place != insideImage(ray.begin);
-    return ScreenMarch(thick && faces && other, point.place, 0.0);
+    vec3 before = screenPoint(ray, origin, direction, max(free - pixel, 0.0)).position;
+    vec4 surface = imageLoad(positionImage, point.place);
+    bool crossed = dot(before - surface.xyz, normalOf(surface)) > 0.0;
+    return ScreenMarch(thick && crossed && point.place != insideImage(ray.begin), point.place, 0.0);
 }
 
 // Ends at the first surface that hides the ray, whether that is a hit or not: behind it anything may be. Where the steps
@@ -106,12 +113,12 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
         }
         ScreenPoint point = screenPoint(ray, origin, direction, share);
         if (isHidden(point, point.place)) {
-            ScreenMarch hit = hitBetween(ray, origin, direction, free, share, stride);
+            ScreenMarch hit = hitBetween(ray, origin, direction, free, share, 1.0 / pixels);
             result.found = hit.found;
             result.place = hit.place;
             break;
         }
-        clear = clear && isClear(point, screenPixel(ray, share), steep);
+        clear = clear && isClear(point);
         result.distance = clear ? lastClear : result.distance;
         lastClear = point.distance;
         free = share;

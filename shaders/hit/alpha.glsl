@@ -3,7 +3,7 @@
 #include "hit/features.glsl"
 
 // Whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. Reads mip 0: traversal knows no
-// footprint.
+// footprint. What the module has of its cases says nothing here: a ray of any case meets masks of all.
 bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
     Features features = GLINT_HIT_FEATURES(geometry);
     MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
@@ -11,17 +11,17 @@ bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics)
                          geometry.indices.data[3u * primitive + 2u]);
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     float alpha = material.baseColorFactor.a;
-    if (hasInput(features, GLINT_BASE_COLOR_TEXTURE)) {
+    if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
         TextureRecord record = material.textures[kTextureBaseColor];
         vec2 uv = vec2(0.0);
-        if (hasInput(features, GLINT_TEXCOORD_0) && record.texCoord == 0u) {
+        if (inputOfKey(features, GLINT_TEXCOORD_0) && record.texCoord == 0u) {
             uv = weights.x * geometry.texCoords0.data[corner.x] + weights.y * geometry.texCoords0.data[corner.y] +
                  weights.z * geometry.texCoords0.data[corner.z];
-        } else if (hasInput(features, GLINT_TEXCOORD_1)) {
+        } else if (inputOfKey(features, GLINT_TEXCOORD_1)) {
             uv = weights.x * geometry.texCoords1.data[corner.x] + weights.y * geometry.texCoords1.data[corner.y] +
                  weights.z * geometry.texCoords1.data[corner.z];
         }
-        if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
+        if (inputOfKey(features, GLINT_TEXTURE_TRANSFORM)) {
             uv = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         }
         alpha *= textureLod(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
@@ -29,7 +29,7 @@ bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics)
                             uv, 0.0)
                      .a;
     }
-    if (hasInput(features, GLINT_VERTEX_COLOR)) {
+    if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
         alpha *= dot(weights, vec3(geometry.colors.data[corner.x].a, geometry.colors.data[corner.y].a,
                                    geometry.colors.data[corner.z].a));
     }

@@ -24,17 +24,23 @@ vec3 octahedralDecode(vec2 e) {
     return normalize(vec3(e.x + (e.x >= 0.0 ? -t : t), e.y + (e.y >= 0.0 ? -t : t), z));
 }
 
+// What decides where a ray starts and where it goes is `precise`: each shader rounds it in the same way, or a shadow ray at
+// the edge of something would depend on the strategy that shades it.
+
 // A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms) or is no number.
 // Scaled first, so that no square leaves the range of floats: good for lengths from 1e-37 to 1e37.
 vec3 directionOr(vec3 v, vec3 fallback) {
-    vec3 scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
-    float squared = dot(scaled, scaled);
+    precise vec3 scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
+    precise float squared = dot(scaled, scaled);
+    precise vec3 direction = scaled * inversesqrt(squared);
     // 1 to 3; 0, infinity and NaN leave the range.
-    return squared > 0.5 && squared < 4.0 ? scaled * inversesqrt(squared) : fallback;
+    return squared > 0.5 && squared < 4.0 ? direction : fallback;
 }
 
 vec3 transformPoint(vec4 rows[3], vec3 p) {
-    return vec3(dot(rows[0], vec4(p, 1.0)), dot(rows[1], vec4(p, 1.0)), dot(rows[2], vec4(p, 1.0)));
+    precise vec3 point =
+        vec3(dot(rows[0], vec4(p, 1.0)), dot(rows[1], vec4(p, 1.0)), dot(rows[2], vec4(p, 1.0)));
+    return point;
 }
 
 vec3 transformVector(vec4 rows[3], vec3 v) {
@@ -42,7 +48,8 @@ vec3 transformVector(vec4 rows[3], vec3 v) {
 }
 
 vec3 transformNormal(vec3 rows[3], vec3 n) {
-    return vec3(dot(rows[0], n), dot(rows[1], n), dot(rows[2], n));
+    precise vec3 normal = vec3(dot(rows[0], n), dot(rows[1], n), dot(rows[2], n));
+    return normal;
 }
 
 // A triangle in its mesh's space, and a point on it.
@@ -60,21 +67,22 @@ struct TrianglePoint {
 float planeError(vec3 n, TrianglePoint point, vec4 objectToWorld[3], vec3 normalToWorld[3]) {
     const float kSixteenRoundings = 1.0 / 1048576.0;
     // The plane's normal in the mesh's space, in metres of the world for one of the mesh.
-    vec3 r = abs(n.x * objectToWorld[0].xyz + n.y * objectToWorld[1].xyz + n.z * objectToWorld[2].xyz);
+    precise vec3 r = abs(n.x * objectToWorld[0].xyz + n.y * objectToWorld[1].xyz + n.z * objectToWorld[2].xyz);
     // Interpolation and intersection, which mixes the axes: a triangle in the plane z = 0 is met at a rounded z, too.
     vec3 extent = abs(point.edge1) + abs(point.edge2);
     float largestExtent = max(extent.x, max(extent.y, extent.z));
-    float object = dot(r, abs(point.corner) + vec3(largestExtent));
+    precise float object = dot(r, abs(point.corner) + vec3(largestExtent));
     // Into the world. The terms are no smaller than their sum: this bounds the world's coordinates, too.
-    vec3 terms = vec3(dot(abs(objectToWorld[0]), vec4(abs(point.position), 1.0)),
+    precise vec3 terms = vec3(dot(abs(objectToWorld[0]), vec4(abs(point.position), 1.0)),
                       dot(abs(objectToWorld[1]), vec4(abs(point.position), 1.0)),
                       dot(abs(objectToWorld[2]), vec4(abs(point.position), 1.0)));
-    float world = dot(abs(n), terms);
+    precise float world = dot(abs(n), terms);
     // And back: by the inverse, which is the transposed cofactors over the determinant.
-    vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r), dot(abs(normalToWorld[2]), r));
-    float determinant = dot(objectToWorld[0].xyz, normalToWorld[0]);
-    float back = dot(inverse, terms) / determinant;
+    precise vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r), dot(abs(normalToWorld[2]), r));
+    precise float determinant = dot(objectToWorld[0].xyz, normalToWorld[0]);
+    precise float back = dot(inverse, terms) / determinant;
     // Past a condition of 1000 an origin so far off would leave the scene's detail behind.
-    float most = 1024.0 * (object + world);
-    return kSixteenRoundings * (object + world + (back < most ? back : most));
+    precise float most = 1024.0 * (object + world);
+    precise float bound = kSixteenRoundings * (object + world + (back < most ? back : most));
+    return bound;
 }

@@ -25,7 +25,8 @@ struct Hit {
 // Where a ray from the surface starts: off it, on the side that `direction` points to.
 vec3 rayOrigin(Hit hit, vec3 direction) {
     float side = dot(hit.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
-    return hit.position + side * hit.clearance * hit.geometricNormal;
+    precise vec3 origin = hit.position + side * hit.clearance * hit.geometricNormal;
+    return origin;
 }
 
 // A point of a triangle, world.

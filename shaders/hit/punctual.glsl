@@ -15,11 +15,11 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     if (light.type == kLightDirectional) {
         return LightSample(-light.direction, kFarDistance, light.intensity);
     }
-    vec3 toLight = light.position - position;
-    float squared = dot(toLight, toLight);
-    float distance = sqrt(squared);
+    precise vec3 toLight = light.position - position;
+    precise float squared = dot(toLight, toLight);
+    precise float distance = sqrt(squared);
     // A light at the point itself lights no side of it.
-    vec3 direction = squared > 0.0 ? toLight / distance : vec3(0.0);
+    precise vec3 direction = squared > 0.0 ? toLight / distance : vec3(0.0);
     // Inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
     float attenuation = 1.0 / max(squared, kMinSquaredDistance);
     if (light.range > 0.0) {

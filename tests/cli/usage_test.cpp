@@ -9,7 +9,7 @@ namespace {
 
 class Usage : public CommandTest {};
 
-const std::vector<std::string> kCommands{"compile", "explain", "inspect", "render", "compare"};
+const std::vector<std::string> kCommands{"compile", "explain", "inspect", "render", "compare", "lint"};
 
 bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -77,7 +77,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         {{"compile", "-o", "x"}, "SCENE"},
         {{"compile", "a.gltf", "b.gltf", "-o", "x"}, "b.gltf"},
         {{"compile", "a.gltf", "-o", "x", "--merge", "famly"}, "did you mean family?"},
-        {{"compile", "a.gltf", "-o", "x", "--strategy", "vis"}, "none of uber, visibility, all"},
+        {{"compile", "a.gltf", "-o", "x", "--strategy", "vis"}, "none of uber, visibility, sorted-uber, hit-shaders, all"},
         {{"compile", "a.gltf", "-o", "x", "--emit", "glsl,heder"}, "did you mean header?"},
         {{"compile", "a.gltf", "-o", "x", "--max-shaders", "-1"}, "from 0 to"},
         {{"compile", "a.gltf", "-o", "x", "--jobs", "many"}, "\"many\""},
@@ -126,7 +126,8 @@ TEST_F(Usage, MissingFilesExitWithOneAndNameTheFile) {
                                                       {"explain", "none.gltf"},
                                                       {"inspect", "none.gltf"},
                                                       {"render", "none.gltf", "-o", "x.png"},
-                                                      {"compare", "none.gltf.png", "b.png"}};
+                                                      {"compare", "none.gltf.png", "b.png"},
+                                                      {"lint", "none.gltf"}};
     for (const std::vector<std::string>& line : lines) {
         const Outcome outcome = run(line);
         EXPECT_EQ(outcome.exit, 1) << line[0];

@@ -75,8 +75,15 @@ LoadedScene::~LoadedScene() = default;
 
 LinearImage LoadedScene::render(package::Strategy strategy, const RenderSetup& setup,
                                 FrameCounters* counters) const {
+    return render(RendererOptions{.strategy = strategy}, setup, counters);
+}
+
+LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setup,
+                                FrameCounters* counters) const {
+    options.width = setup.width;
+    options.height = setup.height;
     Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), *package_, *gpuScene_, {strategy, setup.width, setup.height});
+        Renderer::create(sharedContext(), *package_, *gpuScene_, options);
     if (!renderer) {
         ADD_FAILURE() << toString(renderer.error());
         return {};

@@ -28,7 +28,7 @@ struct RenderSetup {
     FrameOptions frame;
 };
 
-// A scene compiled under one policy with both strategies, loaded through the package on disk and uploaded.
+// A scene compiled under one policy, loaded through the package on disk and uploaded.
 class LoadedScene {
 public:
     // Compiles into a temporary folder of its own. On failure ok() is false and the test has failed.
@@ -43,11 +43,17 @@ public:
         return compiled_;
     }
     // Only if ok().
+    const Package& package() const {
+        return *package_;
+    }
     GpuScene& gpuScene() const {
         return *gpuScene_;
     }
     // An image of no size where rendering failed; the test has failed then. `counters` may be null.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
+                       FrameCounters* counters = nullptr) const;
+    // The size is that of the setup.
+    LinearImage render(RendererOptions options, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
 
 private:

@@ -53,6 +53,16 @@ Result<std::unique_ptr<OrderKernel>> OrderKernel::create(Context& context, std::
     if (Status status = kernel->createPipelines(); !status) {
         return status.error();
     }
+    Result<Timer> timer = Timer::create(context.state(), kTimes);
+    if (!timer) {
+        return timer.error();
+    }
+    kernel->timer_ = std::move(*timer);
+    Result<CommandRunner> runner = CommandRunner::create(context.state());
+    if (!runner) {
+        return runner.error();
+    }
+    kernel->runner_ = std::move(*runner);
     return kernel;
 }
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,20 +47,25 @@ public:
     static Result<std::unique_ptr<OrderKernel>> create(Context& context, std::uint32_t caseCount,
                                                        package::HitRecordFormat hitRecord);
 
+    ~OrderKernel();
+    OrderKernel(const OrderKernel&) = delete;
+    OrderKernel& operator=(const OrderKernel&) = delete;
+
+    // What run() puts in order, until the next call.
+    Status load(const OrderProblem& problem);
     // Slots that hold no hit are kNoHit.
-    Result<OrderResult> run(package::Ordering ordering, const OrderProblem& problem,
-                            std::span<const OrderFault> faults = {});
+    Result<OrderResult> run(package::Ordering ordering, std::span<const OrderFault> faults = {});
 
 private:
     struct Buffers;
+    static constexpr std::uint32_t kTimes = 3;  // stretches of the timer: count, offset, copy
 
-    OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord)
-        : context_(context), caseCount_(caseCount), hitRecord_(hitRecord) {}
+    OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord);
     Status createPipelines();
     Status createPipeline(const CompiledModule& module);
     Status createBuffers(const OrderProblem& problem, Buffers& buffers) const;
     void recordPasses(VkCommandBuffer commands, package::Ordering ordering, const Buffers& buffers,
-                      std::span<const OrderFault> faults, const Timer& timer) const;
+                      std::span<const OrderFault> faults) const;
     void recordInput(VkCommandBuffer commands, const Buffers& buffers) const;
     void recordOutput(VkCommandBuffer commands, const Buffers& buffers) const;
     OrderResult readResult(const Buffers& buffers) const;
@@ -70,6 +76,9 @@ private:
     package::HitRecordFormat hitRecord_;
     UniquePipelineLayout layout_;
     std::map<package::ModuleKey, UniquePipeline> pipelines_;
+    std::optional<Timer> timer_;
+    std::optional<CommandRunner> runner_;
+    std::unique_ptr<Buffers> buffers_;
 };
 
 }  // namespace glint::testing

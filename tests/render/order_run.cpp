@@ -17,7 +17,6 @@ using package::ModuleRole;
 constexpr std::uint32_t kCountTime = 0;
 constexpr std::uint32_t kOffsetTime = 1;
 constexpr std::uint32_t kCopyTime = 2;
-constexpr std::uint32_t kTimes = 3;
 
 // Workgroups of the check: it takes any number.
 constexpr std::uint32_t kCheckGroups = 64;
@@ -146,31 +145,31 @@ void OrderKernel::bind(VkCommandBuffer commands, package::ModuleKey key) const {
 }
 
 void OrderKernel::recordPasses(VkCommandBuffer commands, package::Ordering ordering, const Buffers& buffers,
-                               std::span<const OrderFault> faults, const Timer& timer) const {
+                               std::span<const OrderFault> faults) const {
     const DeviceTable& vk = context_.vk;
     const auto index = static_cast<std::uint32_t>(ordering);
     const auto wait = [&] { recordDependency(context_, commands, kEverything); };
     gpu::PushConstants pushed{};
     pushed.frame = buffers.constants.address;
     vk.CmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), &pushed);
-    timer.recordReset(commands);
+    timer_->recordReset(commands);
     bind(commands, {ModuleRole::RayDispatch});
     vk.CmdDispatch(commands, 1, 1, 1);
     wait();
-    timer.recordBegin(commands, kCountTime);
+    timer_->recordBegin(commands, kCountTime);
     bind(commands, {ModuleRole::BucketCount, index});
     vk.CmdDispatchIndirect(commands, buffers.rayDispatch.handle.get(), 0);
-    timer.recordEnd(commands, kCountTime);
+    timer_->recordEnd(commands, kCountTime);
     wait();
-    timer.recordBegin(commands, kOffsetTime);
+    timer_->recordBegin(commands, kOffsetTime);
     bind(commands, {ModuleRole::BucketOffset});
     vk.CmdDispatch(commands, 1, 1, 1);
-    timer.recordEnd(commands, kOffsetTime);
+    timer_->recordEnd(commands, kOffsetTime);
     wait();
-    timer.recordBegin(commands, kCopyTime);
+    timer_->recordBegin(commands, kCopyTime);
     bind(commands, {ModuleRole::BucketCopy, index});
     vk.CmdDispatchIndirect(commands, buffers.rayDispatch.handle.get(), 0);
-    timer.recordEnd(commands, kCopyTime);
+    timer_->recordEnd(commands, kCopyTime);
     wait();
     for (const OrderFault& fault : faults) {
         const Buffer& target = fault.where == OrderFault::Where::Slots ? buffers.slots : buffers.buckets;
@@ -251,33 +250,30 @@ OrderResult OrderKernel::readResult(const Buffers& buffers) const {
     return result;
 }
 
-Result<OrderResult> OrderKernel::run(package::Ordering ordering, const OrderProblem& problem,
-                                     std::span<const OrderFault> faults) {
-    Buffers buffers(context_);
-    if (Status status = createBuffers(problem, buffers); !status) {
-        return status.error();
-    }
-    Result<Timer> timer = Timer::create(context_, kTimes);
-    if (!timer) {
-        return timer.error();
-    }
-    Result<CommandRunner> runner = CommandRunner::create(context_);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
+OrderKernel::OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord)
+    : context_(context), caseCount_(caseCount), hitRecord_(hitRecord) {}
+
+OrderKernel::~OrderKernel() = default;
+
+Status OrderKernel::load(const OrderProblem& problem) {
+    buffers_ = std::make_unique<Buffers>(context_);
+    return createBuffers(problem, *buffers_);
+}
+
+Result<OrderResult> OrderKernel::run(package::Ordering ordering, std::span<const OrderFault> faults) {
+    Result<VkCommandBuffer> commands = runner_->begin();
     if (!commands) {
         return commands.error();
     }
-    recordInput(*commands, buffers);
-    recordPasses(*commands, ordering, buffers, faults, *timer);
-    recordOutput(*commands, buffers);
-    if (Status status = runner->submitAndWait(); !status) {
+    recordInput(*commands, *buffers_);
+    recordPasses(*commands, ordering, *buffers_, faults);
+    recordOutput(*commands, *buffers_);
+    if (Status status = runner_->submitAndWait(); !status) {
         return status.error();
     }
-    OrderResult result = readResult(buffers);
-    if (timer->available()) {
-        const Result<std::vector<double>> times = timer->read(kTimes);
+    OrderResult result = readResult(*buffers_);
+    if (timer_->available()) {
+        const Result<std::vector<double>> times = timer_->read(kTimes);
         if (!times) {
             return times.error();
         }

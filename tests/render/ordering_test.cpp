@@ -76,10 +76,12 @@ void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const
 }
 
 void expectAllOrder(OrderKernel& kernel, std::uint32_t bucketCount, const OrderProblem& problem) {
+    const Status loaded = kernel.load(problem);
+    ASSERT_TRUE(loaded) << toString(loaded.error());
     for (const Ordering ordering : kOrderings) {
         if (holds(ordering, bucketCount)) {
             SCOPED_TRACE(std::string(nameOf(ordering)));
-            const Result<OrderResult> result = kernel.run(ordering, problem);
+            const Result<OrderResult> result = kernel.run(ordering);
             ASSERT_TRUE(result) << toString(result.error());
             expectOrdered(problem, bucketCount, *result);
         }
@@ -115,6 +117,13 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
 INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
                          ::testing::Values(1U, 2U, 31U, 32U, 33U, 255U, 256U, 257U, 1024U, 1025U),
                          ::testing::PrintToStringParamName());
+
+TEST(DefaultOrdering, HoldsAnyNumberOfBuckets) {
+    for (const std::uint32_t bucketCount :
+         {1U, gpu::kMaxLocalBuckets, gpu::kMaxLocalBuckets + 1, 1U << 20U}) {
+        EXPECT_TRUE(holds(defaultOrdering(sharedContext(), bucketCount), bucketCount)) << bucketCount;
+    }
+}
 
 TEST(OrderingsOfManyHits, FillDispatchesOfTwoDimensions) {
     constexpr std::uint32_t kBuckets = 33;
@@ -158,12 +167,14 @@ TEST(OrderCheck, FindsEveryFault) {
     ASSERT_NE(kernel, nullptr);
     OrderProblem problem = makeProblem(Spread::InTurn, kFaultBuckets, kFaultRays);
     problem.alignment = gpu::kRayGroupSize;
+    const Status loaded = kernel->load(problem);
+    ASSERT_TRUE(loaded) << toString(loaded.error());
     for (std::uint32_t hit : {2U, 3U}) {
         ASSERT_EQ(bucketOf(problem, hit, kFaultBuckets), 4 - hit);
     }
     for (const Ordering ordering : kOrderings) {
         for (const FaultCase& fault : faultCases()) {
-            const Result<OrderResult> result = kernel->run(ordering, problem, fault.faults);
+            const Result<OrderResult> result = kernel->run(ordering, fault.faults);
             ASSERT_TRUE(result) << toString(result.error());
             EXPECT_GE(result->errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
         }

@@ -37,8 +37,8 @@ bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::uint64_t hashBytes(std::span<const std::uint8_t> bytes) {
-    return XXH3_64bits(bytes.data(), bytes.size());
+std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
 }
 
 std::uint64_t hashBytes(std::string_view text) {

@@ -15,7 +15,7 @@ namespace glint {
 using Bytes = std::vector<std::uint8_t>;
 
 // XXH3, 64 bits.
-std::uint64_t hashBytes(std::span<const std::uint8_t> bytes);
+std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed = 0);
 std::uint64_t hashBytes(std::string_view text);
 // 16 lower-case hexadecimal digits.
 std::string hexHash(std::uint64_t hash);

@@ -2,6 +2,7 @@
 #include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/coverage.h"
 #include "cli/environment.h"
 #include "cli/plan_choice.h"
 #include "cli/render_input.h"
@@ -51,6 +52,7 @@ struct RenderArguments {
     std::string sun = "auto";
     bool validate = false;
     std::string stats;
+    std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
     bool json = false;
@@ -85,8 +87,8 @@ SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
 }
 
 // The package that is asked for, checked, or one that is made now; fills in what the report says of it.
-Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan, const Scene& scene,
-                              RenderReport& report) {
+Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan, std::uint32_t tracers,
+                              const Scene& scene, RenderReport& report) {
     if (!arguments.package.empty()) {
         Result<Package> package = Package::load(arguments.package);
         if (!package) {
@@ -98,7 +100,7 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOption
     }
     const Clock::time_point start = Clock::now();
     CompileSettings settings;
-    arguments.tracing.apply(settings);
+    arguments.tracing.apply(settings, tracers);
     settings.environmentMap = !arguments.environment.file.empty();
     settings.plan = plan;
     arguments.accuracy.apply(settings);
@@ -137,11 +139,9 @@ RendererOptions rendererOptions(const RenderArguments& arguments, const RenderRe
     options.strategy = strategyOf(arguments);
     options.width = report.width;
     options.height = report.height;
-    // A package may have the one tracer only.
-    if (arguments.package.empty()) {
-        options.tracer = options.strategy == package::kStrategyHitShaders
-                             ? package::kTracerRayPipeline
-                             : tracerNamed(arguments.tracing.tracers.front());
+    const std::string& tracer = arguments.tracing.tracers.front();
+    if (tracer != "auto" && options.strategy != package::kStrategyHitShaders) {
+        options.tracer = tracerNamed(tracer);
     }
     options.checkOrder = arguments.validate;
     arguments.frame.apply(options);
@@ -162,6 +162,8 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
     if (!renderer) {
         return renderer.error();
     }
+    report.tracer = std::string(package::nameOf((*renderer)->tracer()));
+    report.ordering = std::string(package::nameOf((*renderer)->ordering()));
     report.pipelineCreationMs = (*renderer)->pipelineCreationMs();
 
     FrameOptions frame;
@@ -196,6 +198,13 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
     }
     report.passes = std::move(*passes);
     report.counters = std::move(*counters);
+    if (!arguments.coverage.empty()) {
+        Result<std::vector<PixelPath>> paths = (*renderer)->readCoverage();
+        if (!paths) {
+            return paths.error();
+        }
+        report.paths = std::move(*paths);
+    }
     return image;
 }
 
@@ -230,6 +239,12 @@ Status writeResults(const RenderArguments& arguments, const LinearImage& image, 
     if (Status written = writeImage(arguments.output, image, report.exposure); !written) {
         return written;
     }
+    if (!arguments.coverage.empty()) {
+        const DisplayImage map = coverageMap(report.paths, report.width, report.height);
+        if (Status written = writeImage(arguments.coverage, map); !written) {
+            return written;
+        }
+    }
     return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
 }
 
@@ -255,7 +270,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
         return environment.error();
     }
     console.progress("compiling " + arguments.scene);
-    const Result<Package> package = obtainPackage(arguments, plan, scene, report);
+    const Result<Package> package = obtainPackage(arguments, plan, (*context)->handles().tracers, scene, report);
     if (!package) {
         return package.error();
     }
@@ -288,7 +303,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     parseSize(arguments.size, report.width, report.height);
 
     Status status = checkOutputFile(arguments.output);
-    for (const std::string& file : {arguments.stats, arguments.profileOutput}) {
+    for (const std::string& file : {arguments.stats, arguments.coverage, arguments.profileOutput}) {
         if (status && !file.empty()) {
             status = checkOutputFile(file);
         }
@@ -366,6 +381,13 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
         .group("Device");
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addImageOutput(
+        command, "--coverage", arguments.coverage, {".png"},
+        "write how each pixel of the last sample came to its\n"
+        "reflection; orange: found in screen space; blue: by a\n"
+        "ray that hit; light blue: by a ray that missed; grey: no\n"
+        "ray; black: no surface")
+        .group("Report");
     addText(command, "--profile", arguments.profileOutput, "FILE.json",
             "count the hits of every permutation, for the option\n"
             "--merge profile of compile; needs --merge none (here\n"

@@ -24,6 +24,8 @@ struct RenderReport {
     std::string device;
     std::string driver;
     std::string strategy;
+    std::string tracer;
+    std::string ordering;  // of hits, where the strategy orders them
     std::optional<std::string> merge;  // absent: a package was given
     std::string alpha;
     std::uint32_t width = 0;   // pixels
@@ -40,6 +42,7 @@ struct RenderReport {
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample
     FrameCounters counters;           // of the last sample; nonFinite: of all
+    std::vector<PixelPath> paths;     // of the last sample, row by row; for --coverage only
     std::vector<std::uint64_t> hits;  // by shader ID, of all samples that were given to addHits()
 
     void addHits(const FrameCounters& sample);

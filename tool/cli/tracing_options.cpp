@@ -69,14 +69,17 @@ package::Tracer tracerNamed(const std::string& name) {
     return found == std::end(package::kTracers) ? package::kAllTracers : *found;
 }
 
-void TracingArguments::apply(CompileSettings& settings) const {
+void TracingArguments::apply(CompileSettings& settings, std::uint32_t available) const {
     settings.strategies = 0;
     for (const std::string& name : strategies) {
         settings.strategies |= strategyNamed(name);
     }
     settings.tracers = 0;
     for (const std::string& name : tracers) {
-        settings.tracers |= tracerNamed(name);
+        const bool queries = (available & package::kTracerRayQuery) != 0;
+        settings.tracers |= name != "auto" ? tracerNamed(name)
+                            : queries      ? package::kTracerRayQuery
+                                           : package::kTracerRayPipeline;
     }
     settings.shadows =
         shadows == "deferred" ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
@@ -103,15 +106,17 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments) {
 
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments) {
     arguments.strategies = {"visibility"};
-    arguments.tracers = {"ray-query"};
+    arguments.tracers = {"auto"};
+    std::vector<std::string> tracers = namesOf(package::kTracers);
+    tracers.insert(tracers.begin(), "auto");
     addChoice(command, "--strategy", arguments.strategies.front(), namesOf(package::kStrategies),
               "how hits are shaded; uber: one shader traces and\n"
               "shades; visibility: hits are ordered by shader first,\n"
               "one dispatch a shader; sorted-uber: ordered, and one\n"
               "dispatch; hit-shaders: a ray tracing pipeline")
         .group("Shaders");
-    addChoice(command, "--tracer", arguments.tracers.front(), namesOf(package::kTracers),
-              "what traces rays; hit-shaders: always ray-pipeline")
+    addChoice(command, "--tracer", arguments.tracers.front(), tracers,
+              "what traces rays; auto: ray-query where the device has\nthem; hit-shaders: always ray-pipeline")
         .group("Shaders");
     return addPlacement(command, arguments);
 }

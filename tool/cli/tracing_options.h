@@ -17,7 +17,8 @@ struct TracingArguments {
     std::vector<std::string> tracers;
     std::string shadows = "inline";
     std::string hitRecord = "full";
-    void apply(CompileSettings& settings) const;
+    // `available`: Tracer bits among which "auto" chooses, ray queries first.
+    void apply(CompileSettings& settings, std::uint32_t available = package::kTracerRayQuery) const;
 };
 // --strategy and --tracer of lists, --shadows, --hit-record.
 void addTracingLists(CLI::App& command, TracingArguments& arguments);

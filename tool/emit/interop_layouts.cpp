@@ -94,11 +94,24 @@ constexpr MemberLayout kHitRecord[] = {
     GLINT_MEMBER(HitRecord, ray),
 };
 
+constexpr MemberLayout kPackedHitRecord[] = {
+    GLINT_MEMBER(PackedHitRecord, pixel),
+    GLINT_MEMBER(PackedHitRecord, geometry24_coneLog8),
+    GLINT_MEMBER(PackedHitRecord, primitive_orDirectionOctX),
+    GLINT_MEMBER(PackedHitRecord, barycentrics2x16_orDirectionOctY),
+};
+
+constexpr MemberLayout kShadowRecord[] = {
+    GLINT_MEMBER(ShadowRecord, origin),    GLINT_MEMBER(ShadowRecord, pixel),
+    GLINT_MEMBER(ShadowRecord, direction), GLINT_MEMBER(ShadowRecord, distance),
+    GLINT_MEMBER(ShadowRecord, light),     GLINT_MEMBER(ShadowRecord, pad),
+};
+
 constexpr MemberLayout kDispatchArguments[] = {
-    GLINT_MEMBER(DispatchArguments, x),
-    GLINT_MEMBER(DispatchArguments, y),
-    GLINT_MEMBER(DispatchArguments, z),
-    GLINT_MEMBER(DispatchArguments, elementCount),
+    GLINT_MEMBER(DispatchArguments, x),          GLINT_MEMBER(DispatchArguments, y),
+    GLINT_MEMBER(DispatchArguments, z),          GLINT_MEMBER(DispatchArguments, elementCount),
+    GLINT_MEMBER(DispatchArguments, traceWidth), GLINT_MEMBER(DispatchArguments, traceHeight),
+    GLINT_MEMBER(DispatchArguments, traceDepth), GLINT_MEMBER(DispatchArguments, pad),
 };
 
 constexpr MemberLayout kBucketRecord[] = {
@@ -109,21 +122,50 @@ constexpr MemberLayout kBucketRecord[] = {
 };
 
 constexpr MemberLayout kFrameConstants[] = {
-    GLINT_MEMBER(FrameConstants, worldToClip),    GLINT_MEMBER(FrameConstants, cameraPosition),
-    GLINT_MEMBER(FrameConstants, width),          GLINT_MEMBER(FrameConstants, cameraForward),
-    GLINT_MEMBER(FrameConstants, height),         GLINT_MEMBER(FrameConstants, cameraRight),
-    GLINT_MEMBER(FrameConstants, orthographic),   GLINT_MEMBER(FrameConstants, cameraUp),
-    GLINT_MEMBER(FrameConstants, pixelSpread),    GLINT_MEMBER(FrameConstants, jitter),
-    GLINT_MEMBER(FrameConstants, pixelWidth),     GLINT_MEMBER(FrameConstants, sampleIndex),
-    GLINT_MEMBER(FrameConstants, seed),           GLINT_MEMBER(FrameConstants, lightCount),
-    GLINT_MEMBER(FrameConstants, bucketCount),    GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
-    GLINT_MEMBER(FrameConstants, skyZenith),      GLINT_MEMBER(FrameConstants, skyHorizon),
-    GLINT_MEMBER(FrameConstants, skyGround),      GLINT_MEMBER(FrameConstants, geometries),
-    GLINT_MEMBER(FrameConstants, instances),      GLINT_MEMBER(FrameConstants, materials),
-    GLINT_MEMBER(FrameConstants, lights),         GLINT_MEMBER(FrameConstants, rays),
-    GLINT_MEMBER(FrameConstants, hits),           GLINT_MEMBER(FrameConstants, orderedHits),
-    GLINT_MEMBER(FrameConstants, buckets),        GLINT_MEMBER(FrameConstants, rayDispatch),
-    GLINT_MEMBER(FrameConstants, bucketDispatch), GLINT_MEMBER(FrameConstants, counters),
+    GLINT_MEMBER(FrameConstants, worldToClip),
+    GLINT_MEMBER(FrameConstants, cameraPosition),
+    GLINT_MEMBER(FrameConstants, width),
+    GLINT_MEMBER(FrameConstants, cameraForward),
+    GLINT_MEMBER(FrameConstants, height),
+    GLINT_MEMBER(FrameConstants, cameraRight),
+    GLINT_MEMBER(FrameConstants, orthographic),
+    GLINT_MEMBER(FrameConstants, cameraUp),
+    GLINT_MEMBER(FrameConstants, pixelSpread),
+    GLINT_MEMBER(FrameConstants, jitter),
+    GLINT_MEMBER(FrameConstants, pixelWidth),
+    GLINT_MEMBER(FrameConstants, sampleIndex),
+    GLINT_MEMBER(FrameConstants, seed),
+    GLINT_MEMBER(FrameConstants, lightCount),
+    GLINT_MEMBER(FrameConstants, bucketCount),
+    GLINT_MEMBER(FrameConstants, bucketAlignment),
+    GLINT_MEMBER(FrameConstants, mirrorRoughness),
+    GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
+    GLINT_MEMBER(FrameConstants, maxSampleRadiance),
+    GLINT_MEMBER(FrameConstants, binning),
+    GLINT_MEMBER(FrameConstants, screenSteps),
+    GLINT_MEMBER(FrameConstants, screenThickness),
+    GLINT_MEMBER(FrameConstants, skyZenith),
+    GLINT_MEMBER(FrameConstants, skyHorizon),
+    GLINT_MEMBER(FrameConstants, skyGround),
+    GLINT_MEMBER(FrameConstants, skyHarmonics),
+    GLINT_MEMBER(FrameConstants, environmentLevels),
+    GLINT_MEMBER(FrameConstants, environmentTurn),
+    GLINT_MEMBER(FrameConstants, environmentScale),
+    GLINT_MEMBER(FrameConstants, geometries),
+    GLINT_MEMBER(FrameConstants, instances),
+    GLINT_MEMBER(FrameConstants, materials),
+    GLINT_MEMBER(FrameConstants, lights),
+    GLINT_MEMBER(FrameConstants, rays),
+    GLINT_MEMBER(FrameConstants, hits),
+    GLINT_MEMBER(FrameConstants, packedHits),
+    GLINT_MEMBER(FrameConstants, orderedHits),
+    GLINT_MEMBER(FrameConstants, buckets),
+    GLINT_MEMBER(FrameConstants, visitedHits),
+    GLINT_MEMBER(FrameConstants, rayDispatch),
+    GLINT_MEMBER(FrameConstants, bucketDispatch),
+    GLINT_MEMBER(FrameConstants, shadows),
+    GLINT_MEMBER(FrameConstants, shadowDispatch),
+    GLINT_MEMBER(FrameConstants, counters),
 };
 
 constexpr MemberLayout kPushConstants[] = {
@@ -133,10 +175,11 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(MaterialRecord), GLINT_STRUCT(LightRecord),       GLINT_STRUCT(RayRecord),
-    GLINT_STRUCT(HitRecord),      GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),
-    GLINT_STRUCT(FrameConstants), GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord),    GLINT_STRUCT(InstanceRecord),  GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(MaterialRecord),    GLINT_STRUCT(LightRecord),     GLINT_STRUCT(RayRecord),
+    GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),
+    GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),    GLINT_STRUCT(FrameConstants),
+    GLINT_STRUCT(PushConstants),
 };
 
 }  // namespace

@@ -63,7 +63,10 @@ public:
         file.insert(file.end(), content_.begin(), content_.end());
         header.sectionCount = static_cast<std::uint32_t>(sections_.size());
         header.fileBytes = file.size();
-        header.contentHash = hashBytes(std::span(file).subspan(sizeof header));
+        header.contentHash = 0;
+        std::memcpy(file.data(), &header, sizeof header);
+        const std::span whole(file);
+        header.contentHash = hashBytes(whole.subspan(sizeof header), hashBytes(whole.first(sizeof header)));
         std::memcpy(file.data(), &header, sizeof header);
         return file;
     }

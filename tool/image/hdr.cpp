@@ -20,13 +20,16 @@ namespace {
 
 // A run of 127 pixels takes 2 bytes in each of 4 channels.
 constexpr std::int64_t kMaxPixelsPerByte = 16;
-// stb_image asks for 4 bytes of a flat pixel, and otherwise for its whole buffer.
+// stb_image asks for at most 4 bytes of a flat pixel, and otherwise for its whole buffer.
 constexpr int kPixelBytes = 4;
+// What it finds behind the end of the file: a run of 127 pixels. It would take nothing for runs of no pixels,
+// for ever.
+constexpr char kPastEnd = '\xFF';
 
-// Hands stb_image the file, and notes when it asks for what is not there: it takes that as black.
+// Hands stb_image the file, and notes when it asks for what is not there.
 class Reader {
 public:
-    explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+    Reader(std::span<const std::uint8_t> bytes, bool padded) : bytes_(bytes), padded_(padded) {}
 
     static const stbi_io_callbacks& callbacks() {
         static constexpr stbi_io_callbacks kCallbacks{
@@ -42,11 +45,15 @@ public:
 private:
     int read(char* data, int size) {
         const std::size_t count = std::min(static_cast<std::size_t>(size), bytes_.size() - position_);
-        if (count == 0 || (size < kPixelBytes && count < static_cast<std::size_t>(size))) {
+        if (count == 0 || (size <= kPixelBytes && count < static_cast<std::size_t>(size))) {
             ranOut_ = true;
         }
         std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(position_), count, data);
         position_ += count;
+        if (count == 0 && padded_) {
+            std::fill_n(data, size, kPastEnd);
+            return size;
+        }
         return static_cast<int>(count);
     }
     void skip(int n) {
@@ -59,6 +66,7 @@ private:
     }
 
     std::span<const std::uint8_t> bytes_;
+    bool padded_;
     std::size_t position_ = 0;
     bool ranOut_ = false;
 };
@@ -79,7 +87,8 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
     int width = 0;
     int height = 0;
     int channels = 0;
-    Reader header(bytes);
+    // A header ends where the file does.
+    Reader header(bytes, false);
     if (stbi_info_from_callbacks(&Reader::callbacks(), &header, &width, &height, &channels) == 0) {
         return formatError(where, "is no Radiance picture (.hdr) that can be read");
     }
@@ -91,7 +100,7 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
         return formatError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
                                       " pixels, but has only " + std::to_string(bytes.size()) + " bytes");
     }
-    Reader reader(bytes);
+    Reader reader(bytes, true);
     const std::unique_ptr<float, StbFree> pixels(
         stbi_loadf_from_callbacks(&Reader::callbacks(), &reader, &width, &height, &channels, STBI_rgb_alpha));
     if (!pixels) {

@@ -61,8 +61,10 @@ struct PackageHeader {
     char magic[8];
     std::uint32_t version;
     std::uint32_t sectionCount;
-    std::uint64_t fileBytes;    // of the whole file
-    std::uint64_t contentHash;  // XXH3, 64 bits, of every byte after this header
+    std::uint64_t fileBytes;  // of the whole file
+    // XXH3, 64 bits, of every byte after this header, with the hash of this header as its seed; for that,
+    // contentHash is 0.
+    std::uint64_t contentHash;
     std::uint32_t strategies;   // Strategy bits
     std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
     std::uint32_t caseCount;

@@ -67,7 +67,7 @@ struct RendererOptions {
 };
 
 // The ordering that a renderer uses where none is asked for.
-package::Ordering defaultOrdering(std::uint32_t bucketCount);
+package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount);
 
 // What the rays of a workgroup are sorted by before they join the list.
 enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
@@ -124,6 +124,15 @@ struct FrameCounters {
     std::vector<std::uint32_t> bucketCounts;  // where hits are ordered: misses, then hits by shader ID
 };
 
+// How a pixel came to its reflection.
+enum class PixelPath : std::uint8_t {
+    NoSurface,
+    NoRay,   // rough, unlit, or its sample reflects no light
+    Screen,  // found in screen space
+    Hit,     // by a ray
+    Miss,    // by a ray that left the scene
+};
+
 // RGBA, 32-bit float, linear, first row on top.
 struct LinearImage {
     std::uint32_t width = 0;
@@ -161,10 +170,17 @@ public:
     // Of the last recording that has completed on the device; the caller has waited for it.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
+    // Of each pixel, row by row from the top. Waits for the device.
+    Result<std::vector<PixelPath>> readCoverage();
+
+    // What it runs, where RendererOptions left the choice.
+    package::Tracer tracer() const;
+    package::Ordering ordering() const;
 
     double pipelineCreationMs() const;
 
-    struct State;  // for the runtime's own sources
+    struct State;  // for the runtime's own sources and their tests
+    State& state();
 
 private:
     explicit Renderer(std::unique_ptr<State> state);

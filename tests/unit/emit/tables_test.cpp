@@ -193,8 +193,12 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     EXPECT_EQ(std::memcmp(reader.header.magic, "GLINTPKG", 8), 0);
     EXPECT_EQ(reader.header.version, package::kVersion);
     EXPECT_EQ(reader.header.fileBytes, file->bytes.size());
+    package::PackageHeader unhashed = reader.header;
+    unhashed.contentHash = 0;
+    const std::uint64_t seed =
+        hashBytes({reinterpret_cast<const std::uint8_t*>(&unhashed), sizeof(package::PackageHeader)});
     EXPECT_EQ(reader.header.contentHash,
-              hashBytes(std::span(file->bytes).subspan(sizeof(package::PackageHeader))));
+              hashBytes(std::span(file->bytes).subspan(sizeof(package::PackageHeader)), seed));
     EXPECT_EQ(reader.header.strategies, settings.strategies);
     EXPECT_EQ(reader.header.alphaTested, 1U);
     EXPECT_EQ(reader.header.caseCount, compiled.plan.cases.size());

@@ -21,6 +21,8 @@ TEST_F(ContextTest, NamesItsDeviceAndDriver) {
     EXPECT_NE(context().handles().device, VK_NULL_HANDLE);
     EXPECT_TRUE(missingRequirements(context().handles().physicalDevice).empty());
     EXPECT_FALSE(missingRequirements(VK_NULL_HANDLE).empty());
+    EXPECT_EQ(deviceTracers(context().handles().physicalDevice), context().handles().tracers);
+    EXPECT_EQ(deviceTracers(VK_NULL_HANDLE), 0U);
 }
 
 TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
@@ -32,9 +34,15 @@ TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
     EXPECT_NE(other.error().hint.find(context().deviceName()), std::string::npos);
 }
 
-TEST_F(ContextTest, AdoptedDevicesRenderAndOutliveTheContext) {
+class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};
+
+// Devices with ray queries, and with pipelines beside them.
+INSTANTIATE_TEST_SUITE_P(Tracers, AdoptedContextTest,
+                         ::testing::Values(package::kTracerRayQuery, package::kAllTracers));
+
+TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
     test::HostDevice host;
-    ASSERT_TRUE(host.create());
+    ASSERT_TRUE(host.create(GetParam()));
     const Package package = load(test::makeDeviceSpec());
     TestScene scene;
     scene.meshes = {test::makeSquare(0, 0)};
@@ -73,6 +81,8 @@ TEST_F(ContextTest, AdoptChecksItsHandles) {
         [](DeviceHandles& h) { h.physicalDevice = VK_NULL_HANDLE; },
         [](DeviceHandles& h) { h.device = VK_NULL_HANDLE; },
         [](DeviceHandles& h) { h.queue = VK_NULL_HANDLE; },
+        [](DeviceHandles& h) { h.tracers = 0; },
+        [](DeviceHandles& h) { h.tracers = 4; },
     };
     for (const auto& change : breaks) {
         DeviceHandles handles = good;

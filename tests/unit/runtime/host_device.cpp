@@ -14,7 +14,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT /*
 
 }  // namespace
 
-bool HostDevice::create() {
+bool HostDevice::create(std::uint32_t tracers) {
+    handles_.tracers = tracers;
     Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
     if (!library) {
         return false;
@@ -68,14 +69,15 @@ bool HostDevice::createDevice() {
     std::vector<VkPhysicalDevice> devices(count);
     instance_.EnumeratePhysicalDevices(handles_.instance, &count, devices.data());
     for (VkPhysicalDevice device : devices) {
-        if (handles_.physicalDevice == VK_NULL_HANDLE && missingRequirements(device).empty()) {
+        if (handles_.physicalDevice == VK_NULL_HANDLE &&
+            (deviceTracers(device) & handles_.tracers) == handles_.tracers) {
             handles_.physicalDevice = device;
         }
     }
     if (handles_.physicalDevice == VK_NULL_HANDLE) {
         return false;
     }
-    const DeviceRequirements requirements;
+    const DeviceRequirements requirements(handles_.tracers);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

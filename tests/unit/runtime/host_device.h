@@ -21,8 +21,9 @@ public:
     HostDevice(const HostDevice&) = delete;
     HostDevice& operator=(const HostDevice&) = delete;
 
-    // False where there is no device that has what Glint requires.
-    bool create();
+    // With these tracers (package::Tracer bits) enabled. False where there is no device that has what Glint
+    // requires.
+    bool create(std::uint32_t tracers = package::kTracerRayQuery);
     void destroy();
 
     const DeviceHandles& handles() const {

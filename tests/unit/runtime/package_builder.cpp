@@ -159,7 +159,9 @@ void reseal(std::vector<std::uint8_t>& tables) {
     package::PackageHeader header{};
     std::memcpy(&header, tables.data(), sizeof(header));
     header.fileBytes = tables.size();
-    header.contentHash = XXH3_64bits(tables.data() + sizeof(header), tables.size() - sizeof(header));
+    header.contentHash = 0;
+    header.contentHash = XXH3_64bits_withSeed(tables.data() + sizeof(header), tables.size() - sizeof(header),
+                                              XXH3_64bits(&header, sizeof(header)));
     std::memcpy(tables.data(), &header, sizeof(header));
 }
 

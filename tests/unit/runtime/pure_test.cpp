@@ -184,7 +184,18 @@ TEST(RequirementsTest, EachMissingFeatureIsNamed) {
     };
     EXPECT_EQ(missing([](DeviceReport& r) { r.apiVersion = VK_API_VERSION_1_2; }),
               "Vulkan 1.3 (the device has 1.2)");
-    EXPECT_EQ(missing([](DeviceReport& r) { r.features.rayQuery.rayQuery = VK_FALSE; }), "rayQuery");
+    // Either tracer will do.
+    EXPECT_EQ(missing([](DeviceReport& r) { r.features.rayQuery.rayQuery = VK_FALSE; }), "");
+    EXPECT_EQ(missing([](DeviceReport& r) {
+                  std::erase(r.extensions, std::string("VK_KHR_ray_tracing_pipeline"));
+              }),
+              "");
+    EXPECT_EQ(missing([](DeviceReport& r) {
+                  r.features.rayQuery.rayQuery = VK_FALSE;
+                  r.features.rayPipeline.rayTracingPipelineTraceRaysIndirect = VK_FALSE;
+              }),
+              "VK_KHR_ray_query (rayQuery) or VK_KHR_ray_tracing_pipeline (rayTracingPipeline and "
+              "rayTracingPipelineTraceRaysIndirect)");
     EXPECT_EQ(missing([](DeviceReport& r) {
                   r.features.vulkan12.bufferDeviceAddress = VK_FALSE;
                   r.features.vulkan13.synchronization2 = VK_FALSE;
@@ -192,7 +203,7 @@ TEST(RequirementsTest, EachMissingFeatureIsNamed) {
               }),
               "bufferDeviceAddress, synchronization2 and accelerationStructure");
     EXPECT_EQ(missing([](DeviceReport& r) { r.extensions.erase(r.extensions.begin() + 1); }),
-              "VK_KHR_ray_query");
+              "VK_KHR_deferred_host_operations");
     EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupOperations = VK_SUBGROUP_FEATURE_BALLOT_BIT; }),
               "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
     EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupStages = 0; }),
@@ -201,6 +212,44 @@ TEST(RequirementsTest, EachMissingFeatureIsNamed) {
     EXPECT_EQ(missing([](DeviceReport& r) { r.maxPushConstantBytes = 16; }), "24 bytes of push constants");
     EXPECT_EQ(missing([](DeviceReport& r) { r.hasQueue = false; }),
               "a queue family with graphics and compute");
+}
+
+TEST(RequirementsTest, TracersAreThoseWithEveryFeature) {
+    DeviceReport report;
+    fillReport(report);
+    EXPECT_EQ(tracersOf(report), package::kAllTracers);
+    report.features.rayQuery.rayQuery = VK_FALSE;
+    EXPECT_EQ(tracersOf(report), package::kTracerRayPipeline);
+    report.features.rayPipeline.rayTracingPipeline = VK_FALSE;
+    EXPECT_EQ(tracersOf(report), 0U);
+}
+
+// What a device is created with names nothing of a tracer that was not asked for.
+TEST(RequirementsTest, OnlyTheTracersAskedForAreEnabled) {
+    const auto enabled = [](std::uint32_t tracers) {
+        const DeviceRequirements requirements(tracers);
+        std::uint32_t found = 0;
+        for (const char* extension : requirements.extensions) {
+            found |=
+                std::string(extension) == VK_KHR_RAY_QUERY_EXTENSION_NAME ? package::kTracerRayQuery : 0U;
+            found |= std::string(extension) == VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME
+                         ? package::kTracerRayPipeline
+                         : 0U;
+        }
+        std::uint32_t chained = 0;
+        for (const auto* next = static_cast<const VkBaseInStructure*>(requirements.features.pNext);
+             next != nullptr; next = next->pNext) {
+            chained |= next->sType == requirements.rayQuery.sType ? package::kTracerRayQuery : 0U;
+            chained |= next->sType == requirements.rayPipeline.sType ? package::kTracerRayPipeline : 0U;
+        }
+        EXPECT_EQ(chained, found);
+        return found;
+    };
+    for (const std::uint32_t tracers :
+         {std::uint32_t{package::kTracerRayQuery}, std::uint32_t{package::kTracerRayPipeline},
+          std::uint32_t{package::kAllTracers}}) {
+        EXPECT_EQ(enabled(tracers), tracers);
+    }
 }
 
 TEST(ErrorTest, CallsAndResultsAreNamed) {

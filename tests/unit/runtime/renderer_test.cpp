@@ -248,7 +248,7 @@ TEST_P(RendererTest, BadRequestsAreErrors) {
     }
     const auto noStrategy = Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8});
     ASSERT_FALSE(noStrategy);
-    EXPECT_EQ(noStrategy.error().id, "package-strategy");
+    EXPECT_EQ(noStrategy.error().id, "renderer-options");
     renderer_ = makeRenderer(package, *gpuScene_, GetParam(), 8, 8);
     EXPECT_FALSE(renderer_->render(makeFrame(4.0F), 0));
     FrameOptions frame = makeFrame(4.0F);

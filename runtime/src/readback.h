@@ -1,0 +1,16 @@
+// Images of a frame, back to the host.
+#pragma once
+
+#include "renderer_state.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace glint {
+
+// One of the rgba32f images, by binding; row by row from the top. Waits for the device.
+Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
+                                                         std::uint32_t binding);
+
+}  // namespace glint

@@ -1,0 +1,181 @@
+// Rays are sorted by direction within their workgroup: the list stays whole, and the picture the same.
+#include "render/scene_builder.h"
+#include "render/traced_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedral};
+
+// Mirrors that send rays all round, before unlit walls.
+Scene mirrors() {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    const int wall = addMaterial(scene, unlitMaterial({0.8F, 0.3F, 0.2F}));
+    addInstance(scene, addMesh(scene, makeSphere(mirror, {-1.0F, 0.2F, -2.5F}, 1.0F, 12)));
+    addInstance(scene, addMesh(scene, makeSphere(mirror, {1.4F, 0.4F, -3.0F}, 0.9F, 7)));
+    addInstance(scene, addMesh(scene, makeQuad(mirror, {-9, -1, 0}, {18, 0, 0}, {0, 0, -8})));
+    addInstance(scene, addMesh(scene, makeQuad(wall, {-9, -1, -8}, {18, 0, 0}, {0, 3, 0})));
+    addDirectionalLight(scene, {0, -1, 0}, 1.0F);
+    return scene;
+}
+
+RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height) {
+    return defaultSetup(scene, width, height);
+}
+
+// Each pixel that a ray went out for is in the list once, and nothing else is.
+void expectWhole(const TracedFrame& frame) {
+    std::set<std::uint32_t> pixels;
+    for (const gpu::RayRecord& ray : frame.rays) {
+        ASSERT_LT(ray.pixel, frame.paths.size());
+        EXPECT_TRUE(pixels.insert(ray.pixel).second) << "pixel " << ray.pixel << " twice";
+        EXPECT_TRUE(frame.paths[ray.pixel] == PixelPath::Hit || frame.paths[ray.pixel] == PixelPath::Miss);
+        const gpu::vec3& d = ray.direction;
+        EXPECT_NEAR(d.x * d.x + d.y * d.y + d.z * d.z, 1.0F, 1e-5F);
+    }
+    EXPECT_EQ(pixels.size(), frame.counters.rays);
+}
+
+std::array<double, 2> octahedral(const gpu::vec3& v) {
+    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    const double x = v.x / sum;
+    const double y = v.y / sum;
+    if (v.z >= 0.0F) {
+        return {x, y};
+    }
+    return {std::copysign(1.0 - std::abs(y), x), std::copysign(1.0 - std::abs(x), y)};
+}
+
+// The bin of a direction; -1 where the rounding of another machine might put it into a neighbour.
+int binOf(const gpu::vec3& v, Binning binning) {
+    if (binning == Binning::Sign) {
+        return (v.x < 0.0F ? 1 : 0) + (v.y < 0.0F ? 2 : 0) + (v.z < 0.0F ? 4 : 0);
+    }
+    int bin = 0;
+    int scale = 1;
+    for (const double coordinate : octahedral(v)) {
+        const double cell = 4.0 * coordinate + 4.0;
+        if (std::abs(cell - std::round(cell)) < 1e-4) {
+            return -1;
+        }
+        bin += scale * static_cast<int>(cell);
+        scale *= 8;
+    }
+    return bin;
+}
+
+// The rays of a workgroup follow each other in the list, bin by bin. Returns the most bins of one workgroup.
+std::size_t expectSorted(const TracedFrame& frame, Binning binning, std::uint32_t width) {
+    const std::uint32_t tilesAcross = (width + gpu::kPixelGroupSize - 1) / gpu::kPixelGroupSize;
+    std::map<std::uint32_t, std::set<int>> binsOfTile;
+    std::uint32_t tile = 0;
+    int last = -1;
+    for (std::size_t i = 0; i < frame.rays.size(); ++i) {
+        const gpu::RayRecord& ray = frame.rays[i];
+        const std::uint32_t own =
+            ray.pixel % width / gpu::kPixelGroupSize + ray.pixel / width / gpu::kPixelGroupSize * tilesAcross;
+        if (i == 0 || own != tile) {
+            EXPECT_FALSE(binsOfTile.contains(own)) << "workgroup " << own << " is in two places";
+            tile = own;
+            last = -1;
+        }
+        const int bin = binOf(ray.direction, binning);
+        if (bin >= 0) {
+            EXPECT_GE(bin, last) << "ray " << i;
+            last = bin;
+        }
+        binsOfTile[tile].insert(bin);
+    }
+    std::size_t most = 0;
+    for (const auto& [number, bins] : binsOfTile) {
+        most = std::max(most, bins.size());
+    }
+    return most;
+}
+
+TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
+    const Scene scene = mirrors();
+    const LoadedScene loaded(scene, PlanOptions{});
+    ASSERT_TRUE(loaded.ok());
+    constexpr std::array<std::uint32_t, 2> kSizes[] = {{65, 37}, {64, 40}, {7, 3}, {1, 1}, {9, 100}};
+    for (const auto& [width, height] : kSizes) {
+        LinearImage reference;
+        for (const Binning binning : kBinnings) {
+            SCOPED_TRACE(::testing::Message()
+                         << width << " x " << height << ", binning " << static_cast<std::uint32_t>(binning));
+            RenderSetup setup = setupOf(scene, width, height);
+            setup.frame.binning = binning;
+            const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, setup);
+            ASSERT_FALSE(frame.image.pixels.empty());
+            expectWhole(frame);
+            if (binning != Binning::None) {
+                const std::size_t bins = expectSorted(frame, binning, width);
+                // Nothing would be sorted otherwise.
+                EXPECT_TRUE(width != 65 || bins > 3) << bins;
+            }
+            if (reference.pixels.empty()) {
+                reference = frame.image;
+            }
+            EXPECT_EQ(frame.image.pixels, reference.pixels);
+        }
+    }
+}
+
+TEST(RayBinning, ChangesNothingOfAnyStrategy) {
+    const Scene scene = mirrors();
+    CompileSettings settings;
+    settings.strategies = package::kStrategyVisibility | package::kStrategySortedUber;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = setupOf(scene, 65, 37);
+    setup.samples = 3;
+    setup.frame.screenSteps = 24;
+    LinearImage reference;
+    for (const auto strategy : {package::kStrategyVisibility, package::kStrategySortedUber}) {
+        for (const Binning binning : kBinnings) {
+            setup.frame.binning = binning;
+            const TracedFrame frame = traceFrame(loaded, strategy, setup);
+            ASSERT_FALSE(frame.image.pixels.empty());
+            EXPECT_GT(frame.counters.screenHits, 0U);
+            expectWhole(frame);
+            if (reference.pixels.empty()) {
+                reference = frame.image;
+            }
+            EXPECT_EQ(frame.image.pixels, reference.pixels);
+        }
+    }
+}
+
+TEST(RayBinning, NoRaysMakeAnEmptyList) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, unlitMaterial({0.2F, 0.4F, 0.6F})),
+                                               {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0})));
+    const LoadedScene loaded(scene, PlanOptions{});
+    ASSERT_TRUE(loaded.ok());
+    LinearImage reference;
+    for (const Binning binning : kBinnings) {
+        RenderSetup setup = setupOf(scene, 65, 37);
+        setup.frame.binning = binning;
+        const TracedFrame frame = traceFrame(loaded, package::kStrategyVisibility, setup);
+        ASSERT_FALSE(frame.image.pixels.empty());
+        EXPECT_EQ(frame.counters.rays, 0U);
+        if (reference.pixels.empty()) {
+            reference = frame.image;
+        }
+        EXPECT_EQ(frame.image.pixels, reference.pixels);
+    }
+}
+
+}  // namespace

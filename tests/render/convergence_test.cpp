@@ -1,0 +1,143 @@
+// Glossy reflections converge to one picture, whatever the strategy.
+#include "render/harness.h"
+#include "render/rooms.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+constexpr std::uint32_t kWidth = 24;
+constexpr std::uint32_t kHeight = 16;
+
+double rootMeanSquare(const LinearImage& image, const LinearImage& reference) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
+            sum += difference * difference;
+        }
+    }
+    return std::sqrt(sum / (3.0 * static_cast<double>(image.pixels.size())));
+}
+
+double mean(const LinearImage& image) {
+    double sum = 0.0;
+    for (const auto& pixel : image.pixels) {
+        sum += pixel[0] + pixel[1] + pixel[2];
+    }
+    return sum / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+// Without highlights of points of light in smooth surfaces: a rare sample of one is as bright as the lobe is narrow, and
+// no picture of 4,096 samples has met them all.
+Scene roomWithoutSharpHighlights() {
+    Scene scene = roomOfMaterials();
+    for (Material& material : scene.materials) {
+        material.roughnessFactor = std::max(material.roughnessFactor, 0.25F);
+        material.clearcoat.roughnessFactor = 0.4F;
+    }
+    return scene;
+}
+
+class Convergence : public ::testing::Test {
+protected:
+    Convergence() : scene_(roomWithoutSharpHighlights()) {
+        CompileSettings settings;
+        settings.strategies = package::kAllStrategies;
+        settings.plan.merge = MergePolicy::All;
+        loaded_.emplace(scene_, settings);
+    }
+
+    LinearImage render(package::Strategy strategy, std::uint32_t samples, std::uint32_t seed) {
+        RenderSetup setup = defaultSetup(scene_, kWidth, kHeight);
+        setup.frame.maxReflectionRoughness = 1.0F;
+        setup.frame.seed = seed;
+        setup.samples = samples;
+        return loaded_->render(strategy, setup);
+    }
+
+    Scene scene_;
+    std::optional<LoadedScene> loaded_;
+};
+
+// The slope of error over samples, log over log: -0.5 for independent samples; the scrambled sequence is
+// steeper where what it samples is smooth.
+TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
+    ASSERT_TRUE(loaded_->ok());
+    const LinearImage reference = render(package::kStrategyUber, 4096, 1);
+    ASSERT_FALSE(reference.pixels.empty());
+    double sumX = 0.0;
+    double sumY = 0.0;
+    double sumXX = 0.0;
+    double sumXY = 0.0;
+    int points = 0;
+    for (std::uint32_t samples = 2; samples <= 64; samples *= 2) {
+        double squares = 0.0;
+        constexpr int kSeeds = 4;
+        for (std::uint32_t seed = 2; seed < 2 + kSeeds; ++seed) {
+            const LinearImage image = render(package::kStrategyUber, samples, seed);
+            ASSERT_FALSE(image.pixels.empty());
+            const double error = rootMeanSquare(image, reference);
+            squares += error * error / kSeeds;
+        }
+        const double x = std::log2(samples);
+        const double y = 0.5 * std::log2(squares);
+        std::printf("%u samples: error %.5f\n", samples, std::sqrt(squares));
+        sumX += x;
+        sumY += y;
+        sumXX += x * x;
+        sumXY += x * y;
+        ++points;
+    }
+    const double slope = (points * sumXY - sumX * sumY) / (points * sumXX - sumX * sumX);
+    std::printf("slope %.3f\n", slope);
+    EXPECT_NEAR(slope, -0.5, 0.1);
+}
+
+// Each strategy with seeds of its own.
+TEST_F(Convergence, StrategiesHaveTheSameMean) {
+    ASSERT_TRUE(loaded_->ok());
+    constexpr int kSeeds = 12;
+    struct Estimate {
+        double mean = 0.0;
+        double error = 0.0;  // standard error of the mean
+    };
+    std::vector<Estimate> estimates;
+    std::uint32_t seed = 100;
+    for (const package::Strategy strategy : package::kStrategies) {
+        std::vector<double> means;
+        for (int k = 0; k < kSeeds; ++k) {
+            const LinearImage image = render(strategy, 16, seed++);
+            ASSERT_FALSE(image.pixels.empty());
+            means.push_back(mean(image));
+        }
+        Estimate estimate;
+        for (const double value : means) {
+            estimate.mean += value / kSeeds;
+        }
+        double squares = 0.0;
+        for (const double value : means) {
+            squares += (value - estimate.mean) * (value - estimate.mean);
+        }
+        estimate.error = std::sqrt(squares / (kSeeds * (kSeeds - 1.0)));
+        EXPECT_GT(estimate.error, 0.0);
+        estimates.push_back(estimate);
+    }
+    for (const Estimate& a : estimates) {
+        for (const Estimate& b : estimates) {
+            // Four standard errors of the difference: with fixed seeds, a bias shows and chance does not.
+            EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.error, b.error));
+        }
+    }
+}
+
+}  // namespace

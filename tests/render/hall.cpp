@@ -1,0 +1,74 @@
+#include "render/hall.h"
+
+#include "render/pixel_test.h"
+
+#include <utility>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+Material glossyMaterial(Float3 color, float roughness) {
+    Material material;
+    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
+    material.metallicFactor = 0.0F;
+    material.roughnessFactor = roughness;
+    return material;
+}
+
+Material coatedMaterial(Float3 color) {
+    Material material = glossyMaterial(color, 0.6F);
+    material.clearcoat.given = true;
+    material.clearcoat.factor = 1.0F;
+    material.clearcoat.roughnessFactor = 0.1F;
+    return material;
+}
+
+// A chequerboard of holes.
+Material fenceMaterial(Scene& scene) {
+    Material material = glossyMaterial({0.9F, 0.8F, 0.3F}, 0.4F);
+    material.alphaMode = AlphaMode::Mask;
+    material.doubleSided = true;
+    std::vector<std::uint8_t> texels;
+    for (int i = 0; i < 64; ++i) {
+        const bool solid = (i / 8 + i) % 2 == 0;
+        texels.insert(texels.end(), {255, 255, 255, solid ? std::uint8_t{255} : std::uint8_t{0}});
+    }
+    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 8, 8, std::move(texels));
+    return material;
+}
+
+}  // namespace
+
+Scene hallScene() {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    const int fence = addMaterial(scene, fenceMaterial(scene));
+    const int coated = addMaterial(scene, coatedMaterial(kRed));
+    const int glossy = addMaterial(scene, glossyMaterial(kGreen, 0.3F));
+    const int unlit = addMaterial(scene, unlitMaterial(kBlue));
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
+                                               {0, 0, -8})));
+    Mesh wall;
+    wall.primitives = {makeQuad(coated, {-4, -0.9F, -5}, {3, 0, 0}, {0, 4, 0}),
+                       makeQuad(glossy, {-1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),
+                       makeQuad(unlit, {1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),
+                       makeQuad(fence, {-1, -0.9F, -3}, {2, 0, 0}, {0, 1.5F, 0})};
+    scene.meshes.push_back(wall);
+    addInstance(scene, static_cast<int>(scene.meshes.size()) - 1);
+    // Once more, mirrored, with its fence before the walls of the first.
+    addInstance(scene, static_cast<int>(scene.meshes.size()) - 1, scaling(-1.2, 0.9, 1.1));
+    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = {0.5F, 1.5F, -1.0F};
+    lamp.intensity = 9.0F;
+    scene.lights.push_back(lamp);
+    lamp.type = LightType::Spot;
+    lamp.position = {-2.0F, 1.0F, -1.0F};
+    lamp.direction = {0.0F, 0.0F, -1.0F};
+    scene.lights.push_back(lamp);
+    return scene;
+}
+
+}  // namespace glint::testing

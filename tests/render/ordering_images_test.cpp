@@ -1,0 +1,80 @@
+// A picture does not depend on how its hits were ordered.
+#include "render/harness.h"
+#include "render/rooms.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+using package::Ordering;
+
+class OrderingImages : public ::testing::TestWithParam<package::Strategy> {};
+
+TEST_P(OrderingImages, AreTheSame) {
+    const Scene scene = roomOfMaterials();
+    CompileSettings settings;
+    settings.strategies = GetParam();
+    settings.plan.merge = MergePolicy::None;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    // 77 x 45 pixels are no whole number of workgroups.
+    RenderSetup setup = defaultSetup(scene, 77, 45);
+    setup.frame.maxReflectionRoughness = 1.0F;
+    LinearImage reference;
+    FrameCounters referenceCounters;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(Ordering::Count); ++i) {
+        const auto ordering = static_cast<Ordering>(i);
+        FrameCounters counters;
+        const LinearImage image =
+            loaded.render(RendererOptions{.strategy = GetParam(), .ordering = ordering, .checkOrder = true},
+                          setup, &counters);
+        ASSERT_FALSE(image.pixels.empty());
+        EXPECT_EQ(counters.orderErrors, 0U) << nameOf(ordering);
+        EXPECT_EQ(std::accumulate(counters.bucketCounts.begin(), counters.bucketCounts.end(), 0U),
+                  counters.rays)
+            << nameOf(ordering);
+        if (i == 0) {
+            reference = image;
+            referenceCounters = counters;
+            EXPECT_GE(
+                std::ranges::count_if(counters.bucketCounts, [](std::uint32_t count) { return count > 0; }),
+                5)
+                << "too few buckets to put in order";
+        }
+        EXPECT_EQ(counters.bucketCounts, referenceCounters.bucketCounts) << nameOf(ordering);
+        expectSameImage(image, reference, std::string(nameOf(ordering)));
+    }
+    expectNoValidationMessages();
+}
+
+// The check runs over no rays, too: every bucket has to be empty.
+TEST_P(OrderingImages, NeedNoRays) {
+    const Scene scene = roomOfMaterials();
+    CompileSettings settings;
+    settings.strategies = GetParam();
+    settings.plan.merge = MergePolicy::All;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = defaultSetup(scene, 16, 16);
+    setup.frame.maxReflectionRoughness = -1.0F;
+    FrameCounters counters;
+    const LinearImage image =
+        loaded.render(RendererOptions{.strategy = GetParam(), .checkOrder = true}, setup, &counters);
+    ASSERT_FALSE(image.pixels.empty());
+    EXPECT_EQ(counters.rays, 0U);
+    EXPECT_EQ(counters.orderErrors, 0U);
+    expectNoValidationMessages();
+}
+
+INSTANTIATE_TEST_SUITE_P(Strategies, OrderingImages,
+                         ::testing::Values(package::kStrategyVisibility, package::kStrategySortedUber),
+                         [](const ::testing::TestParamInfo<package::Strategy>& strategy) {
+                             return strategy.param == package::kStrategyVisibility ? "Visibility"
+                                                                                   : "SortedUber";
+                         });
+
+}  // namespace

@@ -1,0 +1,266 @@
+// Ray tracing pipelines: every strategy with every tracer gives the same picture, as does a device without
+// ray queries.
+#include "cli/scene_view.h"
+#include "context_state.h"
+#include "gpu_scene_state.h"
+#include "render/hall.h"
+#include "render/pixel_test.h"
+
+#include <glint/package_modules.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+using package::ShadowPlacement;
+using package::Strategy;
+using package::Tracer;
+
+struct Way {
+    Strategy strategy;
+    Tracer tracer;
+};
+
+std::vector<Way> allWays() {
+    std::vector<Way> ways;
+    for (const Strategy strategy : package::kStrategies) {
+        for (const Tracer tracer : package::kTracers) {
+            if ((package::tracersOf(strategy, package::kAllTracers) & tracer) != 0) {
+                ways.push_back({strategy, tracer});
+            }
+        }
+    }
+    return ways;
+}
+
+std::string nameOf(const Way& way) {
+    return std::string(package::nameOf(way.strategy)) + " with " + std::string(package::nameOf(way.tracer));
+}
+
+RendererOptions optionsOf(const Way& way) {
+    RendererOptions options;
+    options.strategy = way.strategy;
+    options.tracer = way.tracer;
+    return options;
+}
+
+CompileSettings settingsFor(ShadowPlacement shadows, MergePolicy merge) {
+    CompileSettings settings;
+    settings.strategies = package::kAllStrategies;
+    settings.tracers = package::kAllTracers;
+    settings.shadows = shadows;
+    settings.plan.merge = merge;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    return settings;
+}
+
+// Every surface sends a ray.
+RenderSetup hallSetup(const Scene& scene) {
+    RenderSetup setup = defaultSetup(scene, 48, 36);
+    setup.samples = 2;
+    setup.frame.maxReflectionRoughness = 1.0F;
+    return setup;
+}
+
+bool deviceHas(Tracer tracer) {
+    return (sharedContext().handles().tracers & tracer) != 0;
+}
+
+class DeviceWithPipelines : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!deviceHas(package::kTracerRayPipeline)) {
+            GTEST_SKIP() << "the device has no ray tracing pipelines";
+        }
+    }
+};
+
+// All that the settings and the device have.
+void expectAllWaysAgree(const Scene& scene, const CompileSettings& settings, const RenderSetup& setup,
+                        FrameCounters& counters) {
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    std::optional<LinearImage> reference;
+    for (const Way& way : allWays()) {
+        if (!deviceHas(way.tracer) || !loaded.package().supports(way.strategy)) {
+            continue;
+        }
+        SCOPED_TRACE(nameOf(way));
+        FrameCounters counted;
+        const LinearImage image = loaded.render(optionsOf(way), setup, &counted);
+        ASSERT_FALSE(image.pixels.empty());
+        if (!reference) {
+            reference = image;
+            counters = counted;
+        }
+        expectSameImage(image, *reference, nameOf(way));
+        EXPECT_EQ(counted.rays, counters.rays);
+        EXPECT_EQ(counted.shadowRays, counters.shadowRays);
+    }
+}
+
+TEST(RayPipelines, EveryStrategyAndTracerGivesTheSamePicture) {
+    const Scene scene = hallScene();
+    FrameCounters counters;
+    expectAllWaysAgree(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::None), hallSetup(scene),
+                       counters);
+    EXPECT_GT(counters.rays, 900U);
+    EXPECT_EQ(counters.shadowRays, 0U);
+}
+
+TEST(RayPipelines, DeferredShadowsAndSharedCasesToo) {
+    const Scene scene = hallScene();
+    FrameCounters counters;
+    expectAllWaysAgree(scene, settingsFor(ShadowPlacement::Deferred, MergePolicy::All), hallSetup(scene),
+                       counters);
+    EXPECT_GT(counters.rays, 900U);
+    EXPECT_GT(counters.shadowRays, 100U);
+}
+
+TEST(RayPipelines, PackedHitsToo) {
+    const Scene scene = hallScene();
+    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::Family);
+    settings.hitRecord = package::HitRecordFormat::Packed;
+    settings.strategies = package::kOrderedStrategies;
+    FrameCounters counters;
+    expectAllWaysAgree(scene, settings, hallSetup(scene), counters);
+    EXPECT_GT(counters.rays, 900U);
+}
+
+// No surface, so that lists have no elements; then one whose rays all leave.
+TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    const CompileSettings settings = settingsFor(ShadowPlacement::Deferred, MergePolicy::None);
+    FrameCounters counters;
+    expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
+    EXPECT_EQ(counters.rays, 0U);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
+                                               {0, 2, 0})));
+    expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
+    EXPECT_EQ(counters.rays, 32U * 32U);
+    EXPECT_EQ(counters.shadowRays, 0U);
+}
+
+TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
+    const Scene scene = hallScene();
+    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::None);
+    settings.strategies = package::kStrategyHitShaders;
+    const LoadedScene tested(scene, settings);
+    settings.plan.keys.alpha = AlphaPolicy::Opaque;
+    const LoadedScene opaque(scene, settings);
+    ASSERT_TRUE(tested.ok() && opaque.ok());
+    const RenderSetup setup = hallSetup(scene);
+    const LinearImage withHoles = tested.render(package::kStrategyHitShaders, setup);
+    const LinearImage without = opaque.render(package::kStrategyHitShaders, setup);
+    ASSERT_FALSE(withHoles.pixels.empty());
+    EXPECT_NE(withHoles.pixels, without.pixels);
+}
+
+// A mirror that sees a wall whose shader ID no case has.
+TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
+                                               {0, 2, 0})));
+    const int red = addMaterial(scene, unlitMaterial(kRed));
+    addInstance(scene, addMesh(scene, makeQuad(red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
+    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::None));
+    ASSERT_TRUE(loaded.ok());
+    const RenderSetup setup = squareSetup(scene);
+    expectColor(at(loaded.render(package::kStrategyHitShaders, setup), 16, 16), kRed, 1e-4F, "known");
+
+    loaded.gpuScene().state().shaderIds.back() = 77;
+    RendererOptions options = optionsOf({package::kStrategyHitShaders, package::kTracerRayPipeline});
+    options.width = setup.width;
+    options.height = setup.height;
+    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const Result<LinearImage> image = (*renderer)->render(setup.frame);
+    ASSERT_TRUE(image) << toString(image.error());
+    expectColor(at(*image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
+    const Result<FrameCounters> counters = (*renderer)->counters();
+    ASSERT_TRUE(counters) << toString(counters.error());
+    EXPECT_EQ(counters->unknownShader, 32U * 32U);
+    expectNoValidationMessages();
+}
+
+TEST_F(DeviceWithPipelines, RefusesImagesAboveOneDispatch) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::None);
+    settings.strategies = package::kStrategyHitShaders;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    std::uint32_t& limit = sharedContext().state().limits.rayPipeline.maxRayDispatchInvocationCount;
+    const std::uint32_t before = limit;
+    RendererOptions options = optionsOf({package::kStrategyHitShaders, package::kTracerRayPipeline});
+    options.width = options.height = 32;
+    limit = 32 * 32;
+    const auto made = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    limit = 32 * 32 - 1;
+    const auto refused = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    limit = before;
+    EXPECT_TRUE(made);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, "render-size");
+}
+
+// A device with one of the tracers alone renders what the other does; a package for the other is refused.
+class OneTracer : public ::testing::TestWithParam<Tracer> {
+protected:
+    void SetUp() override {
+        if (!deviceHas(GetParam())) {
+            GTEST_SKIP() << "the device lacks this tracer";
+        }
+    }
+};
+
+TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
+    HeadlessOptions headless;
+    headless.validation = Validation::Synchronization;
+    headless.tracers = GetParam();
+    const auto context = Context::createHeadless(headless);
+    ASSERT_TRUE(context) << toString(context.error());
+    EXPECT_EQ((*context)->handles().tracers, GetParam());
+
+    const Scene scene = hallScene();
+    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::All));
+    ASSERT_TRUE(loaded.ok());
+    const RenderSetup setup = hallSetup(scene);
+    const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);
+    const SceneViewData view = makeSceneView(scene);
+    auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
+    ASSERT_TRUE(uploaded) << toString(uploaded.error());
+    for (const Way& way : allWays()) {
+        SCOPED_TRACE(nameOf(way));
+        RendererOptions options = optionsOf(way);
+        options.width = setup.width;
+        options.height = setup.height;
+        auto renderer = Renderer::create(**context, loaded.package(), **uploaded, options);
+        if (way.tracer != GetParam()) {
+            ASSERT_FALSE(renderer);
+            EXPECT_EQ(renderer.error().id, "device-tracer");
+            continue;
+        }
+        ASSERT_TRUE(renderer) << toString(renderer.error());
+        const Result<LinearImage> image = (*renderer)->render(setup.frame, setup.samples);
+        ASSERT_TRUE(image) << toString(image.error());
+        expectSameImage(*image, reference, nameOf(way));
+    }
+    for (const std::string& message : (*context)->validationMessages()) {
+        ADD_FAILURE() << message;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tracers, OneTracer, ::testing::ValuesIn(package::kTracers),
+                         [](const ::testing::TestParamInfo<Tracer>& tracer) {
+                             return tracer.param == package::kTracerRayQuery ? "RayQuery" : "RayPipeline";
+                         });
+
+}  // namespace

@@ -1,0 +1,25 @@
+// A frame with everything that tests want to know of its rays.
+#pragma once
+
+#include "interop/frame.h"
+#include "render/harness.h"
+
+#include <vector>
+
+namespace glint::testing {
+
+struct TracedFrame {
+    LinearImage image;
+    FrameCounters counters;            // of the last sample, as all that follows
+    std::vector<PixelPath> paths;      // of each pixel
+    std::vector<gpu::RayRecord> rays;  // the list; as many as counted
+};
+
+// Renders with the validation layers on and reads back. Of no size where that failed; the test has failed
+// then. Expects of every frame that each pixel has one path, and that paths and counters agree.
+TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, const RenderSetup& setup);
+
+// A sphere of `rows` times twice as many columns of quads, with smooth normals, seen from outside.
+Primitive makeSphere(int material, Float3 centre, float radius, int rows);
+
+}  // namespace glint::testing
