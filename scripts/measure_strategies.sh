@@ -40,8 +40,11 @@ render() {
         --tracer "$tracer" --size 320x180 --spp 3 |
         awk -v stem="$stem" '/^pass of the last sample/ { on = 1; next }
             on && NF > 1 { ms = $NF; $NF = ""; sub(/ +$/, ""); all += ms
-                group = /^(gbuffer|lighting|compose)$/ ? "primary" : /^reflection rays|^ray dispatch/ ? "list" :
-                        /^(count|offset|copy)$/ ? "order" : /^trace/ ? "trace" : "shade"
+                group = "shade"
+                if (/^(gbuffer|lighting|compose)$/) group = "primary"
+                else if (/^reflection rays/ || /^ray dispatch/) group = "list"
+                else if (/^(count|offset|copy)$/) group = "order"
+                else if (/^trace/) group = "trace"
                 sum[group] += ms }
             END { for (g in sum) print sum[g] >> (stem "-" g ".txt"); print all >> (stem "-all.txt") }'
 }

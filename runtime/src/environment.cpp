@@ -88,6 +88,7 @@ Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& l
     }
     state.map = std::move(*image);
     std::vector<Texels> mips;
+    mips.reserve(levels.size());
     for (const RadianceMap& level : levels) {
         mips.push_back(half ? toHalves(level, state.scale) : toFloats(level));
     }

@@ -128,9 +128,10 @@ private:
                texelSolidAngle(static_cast<std::uint32_t>(texel / width_), width_, height_);
     }
     Direction directionOf(std::size_t texel) const {
-        const double polar = std::numbers::pi * (static_cast<double>(texel / width_) + 0.5) / height_;
-        const double azimuth =
-            2.0 * std::numbers::pi * ((static_cast<double>(texel % width_) + 0.5) / width_ - 0.5);
+        const std::size_t row = texel / width_;
+        const std::size_t column = texel % width_;
+        const double polar = std::numbers::pi * (static_cast<double>(row) + 0.5) / height_;
+        const double azimuth = 2.0 * std::numbers::pi * ((static_cast<double>(column) + 0.5) / width_ - 0.5);
         return {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
     }
     void addLight(const Direction& direction, std::size_t texel, double samples) {

@@ -28,15 +28,17 @@ Status checkEnvironment(const Renderer::State& state, const FrameOptions& frame)
                          "set FrameOptions::environment, or compile the package without an environment map");
     }
     if (!state.size.environmentMap && frame.environment != nullptr) {
-        return makeError("environment-unread", "",
-                         "the frame has an environment map, and the package was compiled without one",
-                         "compile the package for an environment map, or leave FrameOptions::environment null");
+        return makeError(
+            "environment-unread", "",
+            "the frame has an environment map, and the package was compiled without one",
+            "compile the package for an environment map, or leave FrameOptions::environment null");
     }
     if (!std::isfinite(frame.environmentRotation) || !std::isfinite(frame.environmentIntensity) ||
         frame.environmentIntensity < 0.0F) {
-        return makeError("frame-options", "",
-                         "environmentRotation is not finite, or environmentIntensity is negative or not finite",
-                         "use radians, and a factor of at least 0");
+        return makeError(
+            "frame-options", "",
+            "environmentRotation is not finite, or environmentIntensity is negative or not finite",
+            "use radians, and a factor of at least 0");
     }
     return okStatus();
 }

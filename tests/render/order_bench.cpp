@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <map>
 #include <memory>
 #include <string>
@@ -142,8 +143,13 @@ int main(int argc, char** argv) {
         std::fputs("usage: bench_ordering [ROUNDS [RAYS]]: two numbers of at least 1\n", stderr);
         return 2;
     }
-    if (const Status status = measureAll(rounds, rays); !status) {
-        fmt::print(stderr, "{}\n", toString(status.error()));
+    try {
+        if (const Status status = measureAll(rounds, rays); !status) {
+            std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_ordering: %s\n", error.what());
         return 1;
     }
     return 0;

@@ -144,21 +144,35 @@ struct FaultCase {
     std::vector<OrderFault> faults;
 };
 
-// Of hits in turn: bucket 1 has 101, of them number 3 and every fifth after it; bucket 2 begins at slot 256
-// (a multiple of 64) and has hit 2.
+// Of hits in turn: each bucket has 101 in 128 slots; bucket 1 has number 3 and every fifth after it, bucket 2
+// number 2. How many errors there are at least follows from which of the rules each slot and bucket breaks.
 std::vector<FaultCase> faultCases() {
     using Where = OrderFault::Where;
+    constexpr std::size_t kCount = 0;
+    constexpr std::size_t kBegin = 1;
+    constexpr std::size_t kCursor = 2;
+    const auto word = [](std::size_t bucket, std::size_t field) { return bucket * kBucketWords + field; };
     return {
         {"a hit twice, and one lost", 1, {{Where::Slots, 130, 3}, {Where::Slots, 131, 3}}},
+        // In the wrong place there, and twice.
         {"a hit in another bucket", 2, {{Where::Slots, 130, 2}}},
         {"two buckets with each other's hits", 2, {{Where::Slots, 130, 2}, {Where::Slots, 260, 3}}},
         {"a slot that was not written", 1, {{Where::Slots, 256, gpu::kNoHit}}},
         {"a hit that there is not", 1, {{Where::Slots, 130, kFaultRays}}},
         {"a hit in a gap", 1, {{Where::Slots, 128 + 101, 3}}},
-        {"the count of a bucket", 1, {{Where::Buckets, 1 * kBucketWords + 0, 100}}},
-        {"where a bucket begins", 1, {{Where::Buckets, 2 * kBucketWords + 1, 192}}},
-        {"where a bucket ends", 1, {{Where::Buckets, 4 * kBucketWords + 2, 4 * 128 + 100}}},
-        {"where all begin", 1, {{Where::Buckets, 0 * kBucketWords + 1, 1}}},
+        // Sum, cursor, dispatch, and a hit past the end.
+        {"the count of a bucket", 4, {{Where::Buckets, word(1, kCount), 100}}},
+        // Sum and dispatch.
+        {"a hit that was not counted",
+         2,
+         {{Where::Buckets, word(4, kCount), 100},
+          {Where::Buckets, word(4, kCursor), 4 * 128 + 100},
+          {Where::Slots, 4 * 128 + 100, gpu::kNoHit}}},
+        // Cursor; ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
+        {"where a bucket begins", 131, {{Where::Buckets, word(2, kBegin), 192}}},
+        {"where a bucket ends", 1, {{Where::Buckets, word(4, kCursor), 4 * 128 + 100}}},
+        // Begin, end, cursor, the first slot, the last.
+        {"where all begin", 5, {{Where::Buckets, word(0, kBegin), 1}}},
     };
 }
 

@@ -33,6 +33,7 @@ inline std::vector<std::uint8_t> encodeHdr(int width, int height,
     std::vector<std::uint8_t> bytes(header.begin(), header.end());
     for (int y = 0; y < height; ++y) {
         std::vector<std::array<std::uint8_t, 4>> row;
+        row.reserve(static_cast<std::size_t>(width));
         for (int x = 0; x < width; ++x) {
             row.push_back(toRgbe(pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                                         static_cast<std::size_t>(x)]));

@@ -87,8 +87,8 @@ SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
 }
 
 // The package that is asked for, checked, or one that is made now; fills in what the report says of it.
-Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan, std::uint32_t tracers,
-                              const Scene& scene, RenderReport& report) {
+Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan,
+                              std::uint32_t tracers, const Scene& scene, RenderReport& report) {
     if (!arguments.package.empty()) {
         Result<Package> package = Package::load(arguments.package);
         if (!package) {
@@ -118,8 +118,9 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
 }
 
 // Null where none is asked for; fills in what the report says of it.
-Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console, const RenderArguments& arguments,
-                                                       Context& context, RenderReport& report) {
+Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
+                                                       const RenderArguments& arguments, Context& context,
+                                                       RenderReport& report) {
     const std::string& file = arguments.environment.file;
     if (file.empty()) {
         return std::unique_ptr<Environment>();
@@ -265,19 +266,22 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     }
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
-    const Result<std::unique_ptr<Environment>> environment = obtainEnvironment(console, arguments, **context, report);
+    const Result<std::unique_ptr<Environment>> environment =
+        obtainEnvironment(console, arguments, **context, report);
     if (!environment) {
         return environment.error();
     }
     console.progress("compiling " + arguments.scene);
-    const Result<Package> package = obtainPackage(arguments, plan, (*context)->handles().tracers, scene, report);
+    const Result<Package> package =
+        obtainPackage(arguments, plan, (*context)->handles().tracers, scene, report);
     if (!package) {
         return package.error();
     }
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const Result<LinearImage> image = renderFrame(**context, *package, data, environment->get(), arguments, camera->view, report);
+    const Result<LinearImage> image =
+        renderFrame(**context, *package, data, environment->get(), arguments, camera->view, report);
     Status valid = checkValidation(console, **context);
     if (!image) {
         return image.error();
@@ -381,12 +385,11 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
         .group("Device");
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
-    addImageOutput(
-        command, "--coverage", arguments.coverage, {".png"},
-        "write how each pixel of the last sample came to its\n"
-        "reflection; orange: found in screen space; blue: by a\n"
-        "ray that hit; light blue: by a ray that missed; grey: no\n"
-        "ray; black: no surface")
+    addImageOutput(command, "--coverage", arguments.coverage, {".png"},
+                   "write how each pixel of the last sample came to its\n"
+                   "reflection; orange: found in screen space; blue: by a\n"
+                   "ray that hit; light blue: by a ray that missed; grey: no\n"
+                   "ray; black: no surface")
         .group("Report");
     addText(command, "--profile", arguments.profileOutput, "FILE.json",
             "count the hits of every permutation, for the option\n"

@@ -12,8 +12,8 @@
 
 namespace glint {
 
-// Error "package-mismatch" unless `package` was compiled for the strategy, for that kind of sky, and from this
-// scene: the same materials, and for each primitive of it the same material and features.
+// Error "package-mismatch" unless `package` was compiled for the strategy, for that kind of sky, and from
+// this scene: the same materials, and for each primitive of it the same material and features.
 Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
                     bool environmentMap, const Scene& scene);
 

@@ -20,12 +20,9 @@ Json toJson(const std::optional<EnvironmentReport>& environment) {
         return nullptr;
     }
     const Environment::Statistics& statistics = environment->statistics;
-    return {{"file", environment->file},
-            {"width", statistics.width},
-            {"height", statistics.height},
-            {"levels", statistics.levels},
-            {"halfFloat", statistics.halfFloat},
-            {"filterMs", statistics.filterMs}};
+    return {{"file", environment->file},         {"width", statistics.width},
+            {"height", statistics.height},       {"levels", statistics.levels},
+            {"halfFloat", statistics.halfFloat}, {"filterMs", statistics.filterMs}};
 }
 
 std::string milliseconds(double value) {
@@ -101,17 +98,17 @@ std::string toText(const RenderReport& report) {
         {"image",
          fmt::format("{}, {} x {}, {} spp", report.image, report.width, report.height, report.samples)},
         {"device", fmt::format("{} ({})", report.device, report.driver)},
-        {"strategy",
-         fmt::format("{}, {}, {} case{}", report.strategy, report.tracer, report.cases,
-                     report.cases == 1 ? "" : "s")},
+        {"strategy", fmt::format("{}, {}, {} case{}", report.strategy, report.tracer, report.cases,
+                                 report.cases == 1 ? "" : "s")},
         {"camera", report.camera},
         {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
         {"BLAS", fmt::format("{} in {}", formatBytes(scene.blasBytes), milliseconds(scene.blasBuildMs))}};
     if (report.environment) {
         const Environment::Statistics& map = report.environment->statistics;
-        rows.push_back({"environment", fmt::format("{}, {} x {}, {} levels in {}", report.environment->file,
-                                                   map.width, map.height, map.levels, milliseconds(map.filterMs))});
+        rows.push_back(
+            {"environment", fmt::format("{}, {} x {}, {} levels in {}", report.environment->file, map.width,
+                                        map.height, map.levels, milliseconds(map.filterMs))});
     }
     if (report.compileMs) {
         rows.push_back({"compile", milliseconds(*report.compileMs)});

@@ -25,7 +25,7 @@ struct RenderReport {
     std::string driver;
     std::string strategy;
     std::string tracer;
-    std::string ordering;  // of hits, where the strategy orders them
+    std::string ordering;              // of hits, where the strategy orders them
     std::optional<std::string> merge;  // absent: a package was given
     std::string alpha;
     std::uint32_t width = 0;   // pixels

@@ -100,7 +100,8 @@ Result<LinearImage> readRadiance(const std::filesystem::path& path) {
     if (!bytes) {
         return bytes.error();
     }
-    return *format == RadianceFormat::Hdr ? decodeHdr(*bytes, path.string()) : decodeExr(*bytes, path.string());
+    return *format == RadianceFormat::Hdr ? decodeHdr(*bytes, path.string())
+                                          : decodeExr(*bytes, path.string());
 }
 
 Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure) {
