@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Pass times of every strategy with every tracer on the gallery and, if given, another scene. Runs are interleaved, so
+# Pass times of every strategy with every tracer on the gallery and, if given, another scene; every surface sends its ray,
+# whatever its roughness. Runs are interleaved, so
 # that a busy machine slows all alike. Prints Markdown: medians with quartiles, milliseconds; and each total over that of
 # uber with ray queries in the same round.
 #
@@ -37,7 +38,7 @@ render() {
         "$bin/glint" compile "$scene" -o "$work/$name.glint" --strategy all --tracer all --merge family > /dev/null
     fi
     "$bin/glint" render "$scene" -o "$work/image.exr" --package "$work/$name.glint" --strategy "$strategy" \
-        --tracer "$tracer" --size 320x180 --spp 3 |
+        --tracer "$tracer" --size 320x180 --spp 3 --max-roughness 1 2> /dev/null |
         awk -v stem="$stem" '/^pass of the last sample/ { on = 1; next }
             on && NF > 1 { ms = $NF; $NF = ""; sub(/ +$/, ""); all += ms
                 group = "shade"
