@@ -1,0 +1,123 @@
+#include "cli/render_arguments.h"
+
+#include "cli/render_profile.h"
+#include "image/image_file.h"
+
+#include <charconv>
+
+namespace glint {
+
+namespace {
+
+void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
+    const std::string group = "Picture";
+    addText(command, "--size", arguments.size, "WxH",
+            "pixels, 1 to 16384 each way (default: " + arguments.size + ")")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                std::uint32_t width = 0;
+                std::uint32_t height = 0;
+                return parseSize(text, width, height) ? std::string()
+                                                      : "\"" + text + "\" is no size such as 960x540";
+            },
+            ""))
+        ->group(group);
+    addInteger(command, "--spp", arguments.samples, 1, 65536, "samples a pixel").group(group);
+    addInteger(command, "--seed", arguments.seed, 0, 0xFFFFFFFFLL, "of the random numbers").group(group);
+    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto",
+            "a camera of the scene by name or number from 0;\nauto: one that frames everything\n"
+            "(default: the first of the scene, else auto)")
+        .group(group);
+    addText(command, "--exposure", arguments.exposure, "auto|EV",
+            "stops, -32 to 32, of PNG files; auto: log-average luminance\nto 18 % grey (default: auto)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                double stops = 0.0;
+                return text == "auto" || parseReal(text, -kMaxExposure, kMaxExposure, stops)
+                           ? std::string()
+                           : "\"" + text + "\" is neither auto nor a number from -32 to 32";
+            },
+            ""))
+        ->group(group);
+    addChoice(command, "--sun", arguments.sun, {"auto", "on", "off"},
+              "add a directional light; auto: if the scene has no light\nand no --environment")
+        .group(group);
+}
+
+void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
+    addText(command, "--device", arguments.device, "NAME",
+            "part of the GPU's name (default: the first that will do)")
+        .group("Device");
+    addFlag(command, "--validate", arguments.validate,
+            "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
+        .group("Device");
+    addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addImageOutput(command, "--coverage", arguments.coverage, {".png"},
+                   "write how each pixel of the last sample came to its\n"
+                   "reflection; orange: found in screen space; blue: by a\n"
+                   "ray that hit; light blue: by a ray that missed; grey: no\n"
+                   "ray; black: no surface")
+        .group("Report");
+    addText(command, "--profile", arguments.profileOutput, "FILE.json",
+            "count the hits of every permutation, for the option\n"
+            "--merge profile of compile; needs --merge none (here\n"
+            "the default then) and --strategy visibility")
+        .group("Report");
+    addFlag(command, "--json", arguments.json, "print times and counters as JSON").group("Report");
+}
+
+}  // namespace
+
+package::Strategy strategyOf(const RenderArguments& arguments) {
+    return strategyNamed(arguments.tracing.strategies.front());
+}
+
+bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, width);
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') {
+        return false;
+    }
+    const auto second = std::from_chars(first.ptr + 1, end, height);
+    return second.ec == std::errc() && second.ptr == end && checkImageSize(width, height, "").ok();
+}
+
+void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
+                      const std::function<void()>& then) {
+    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addVariant(command, arguments->variant);
+    addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
+                   "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
+                   "linear, 32-bit float")
+        .required();
+    addPictureOptions(command, *arguments);
+    addEnvironmentOptions(command, arguments->environment);
+    addFrameOptions(command, arguments->frame);
+    const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
+    std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);
+    for (CLI::Option* option : addAccuracyOptions(command, arguments->accuracy)) {
+        decided.push_back(option);
+    }
+    decided.insert(decided.end(), placed.begin(), placed.end());
+    addText(command, "--package", arguments->package, "DIR",
+            "use this package of the scene instead of compiling it\n"
+            "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
+            "--shadows,\n--hit-record "
+            "and --profile)")
+        .group("Shaders");
+    addDeviceOptions(command, *arguments);
+    command.callback([arguments, decided, then] {
+        for (const CLI::Option* option : decided) {
+            if (option->count() > 0 && !arguments->package.empty()) {
+                throw CLI::ExcludesError(option->get_name(), "--package");
+            }
+        }
+        settleProfileOutput(arguments->profileOutput, arguments->package,
+                            arguments->tracing.strategies.front(), decided.front()->count() > 0,
+                            arguments->plan);
+        settleProfile(arguments->plan);
+        then();
+    });
+}
+
+}  // namespace glint

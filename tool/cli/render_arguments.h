@@ -1,0 +1,50 @@
+// The command line of glint render.
+#pragma once
+
+#include "cli/environment.h"
+#include "cli/options.h"
+#include "cli/tracing_options.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace glint {
+
+constexpr double kMaxExposure = 32.0;  // stops, either way
+
+struct RenderArguments {
+    std::string scene;
+    std::string output;
+    TracingArguments tracing;
+    FrameArguments frame;
+    EnvironmentArguments environment;
+    std::string variant;
+    PlanArguments plan;
+    AccuracyArguments accuracy;
+    std::string package;
+    std::string size = "960x540";
+    std::int64_t samples = 1;
+    std::int64_t seed = 0;
+    std::string camera;
+    std::string exposure = "auto";
+    std::string sun = "auto";
+    bool validate = false;
+    std::string stats;
+    std::string coverage;
+    std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
+    std::string device;
+    bool json = false;
+};
+
+package::Strategy strategyOf(const RenderArguments& arguments);
+
+// "960x540"; false unless it is two numbers that checkImageSize() takes.
+bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
+
+// Declares every option; once the line is parsed and found whole, `then` is called.
+void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
+                      const std::function<void()>& then);
+
+}  // namespace glint
