@@ -21,8 +21,8 @@ public:
     // TRANSFER_DST usage.
     Status copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
                        const DeviceImage& target);
-    // Fills every mip of an image of undefined layout, without blits; otherwise as copyToImage(). `target` needs
-    // TRANSFER_DST usage.
+    // Fills every mip of an image of undefined layout, without blits; otherwise as copyToImage(). `target`
+    // needs TRANSFER_DST usage.
     Status copyMips(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                     const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.

@@ -37,8 +37,8 @@ double mean(const LinearImage& image) {
     return sum / (3.0 * static_cast<double>(image.pixels.size()));
 }
 
-// Without highlights of points of light in smooth surfaces: a rare sample of one is as bright as the lobe is narrow, and
-// no picture of 4,096 samples has met them all.
+// Without highlights of points of light in smooth surfaces: a rare sample of one is as bright as the lobe is
+// narrow, and no picture of 4,096 samples has met them all.
 Scene roomWithoutSharpHighlights() {
     Scene scene = roomOfMaterials();
     for (Material& material : scene.materials) {

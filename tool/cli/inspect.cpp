@@ -20,8 +20,6 @@ namespace glint {
 
 namespace {
 
-using package::ModuleRole;
-
 struct InspectArguments {
     std::string folder;
     bool json = false;

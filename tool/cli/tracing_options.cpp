@@ -115,8 +115,9 @@ std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& 
               "one dispatch a shader; sorted-uber: ordered, and one\n"
               "dispatch; hit-shaders: a ray tracing pipeline")
         .group("Shaders");
-    addChoice(command, "--tracer", arguments.tracers.front(), tracers,
-              "what traces rays; auto: ray-query where the device has\nthem; hit-shaders: always ray-pipeline")
+    addChoice(
+        command, "--tracer", arguments.tracers.front(), tracers,
+        "what traces rays; auto: ray-query where the device has\nthem; hit-shaders: always ray-pipeline")
         .group("Shaders");
     return addPlacement(command, arguments);
 }

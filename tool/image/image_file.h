@@ -1,4 +1,5 @@
-// Image files by extension: .png (8-bit sRGB, tone mapped) and .exr (32-bit float, linear); radiance also from .hdr.
+// Image files by extension: .png (8-bit sRGB, tone mapped) and .exr (32-bit float, linear); radiance also
+// from .hdr.
 #pragma once
 
 #include "image/png.h"

@@ -84,8 +84,8 @@ class Environment;
 struct FrameOptions {
     CameraView camera;
     SkyView sky;
-    // Instead of the gradient, for packages that read one (Package::environmentMap()); those need it, the others
-    // refuse it. A Renderer keeps the map of its last recording alive.
+    // Instead of the gradient, for packages that read one (Package::environmentMap()); those need it, the
+    // others refuse it. A Renderer keeps the map of its last recording alive.
     const Environment* environment = nullptr;
     float environmentRotation = 0.0F;   // about +Y, counter-clockwise as seen from above, radians
     float environmentIntensity = 1.0F;  // times its radiance
