@@ -45,6 +45,7 @@ using glm::any;
 using glm::asin;
 using glm::atan;
 using glm::ceil;
+using glm::bitfieldReverse;
 using glm::clamp;
 using glm::cos;
 using glm::cross;

@@ -5,6 +5,7 @@
 #include "hit/lod.glsl"
 #include "hit/punctual.glsl"
 #include "hit/random.glsl"
+#include "hit/sequence.glsl"
 #include "bsdf/constants.glsl"
 #include "bsdf/exact.glsl"
 #include "bsdf/fresnel.glsl"
@@ -148,6 +149,14 @@ PROBE(RunningMean) {
 
 PROBE(RandomUnit) {
     o[0] = randomUnit(uint(i[0]) * 65537u + uint(i[1]), uint(i[2]), uint(i[3]), uint(i[4]));
+}
+
+// hit/sequence.glsl
+
+PROBE(SequencePair) {
+    vec2 u = sequencePair(uint(i[0]) * 65537u + uint(i[1]), uint(i[2]), uint(i[3]), uint(i[4]));
+    o[0] = u.x;
+    o[1] = u.y;
 }
 
 // bsdf/exact.glsl

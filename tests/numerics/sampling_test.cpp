@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -283,6 +285,31 @@ TEST_P(BsdfSampling, MeanOfWeightsIsTheAlbedo) {
 
 INSTANTIATE_TEST_SUITE_P(Lobes, BsdfSampling, testing::ValuesIn(kFamilies),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// Sobol's points are a (0, m, 2)-net, and Owen's scrambling leaves them one: of 2^m samples each elementary
+// interval of area 2^-m has one, whatever its shape.
+TEST(Sequence, EveryElementaryIntervalHasOneSample) {
+    for (const std::uint32_t pixel : {0U, 1U, 4095U, 0xFFFFFFFFU}) {
+        for (std::uint32_t pair = 0; pair < 3; ++pair) {
+            for (std::uint32_t m = 0; m <= 8; ++m) {
+                const std::uint32_t count = 1U << m;
+                for (std::uint32_t rows = 0; rows <= m; ++rows) {
+                    std::vector<int> cells(count, 0);
+                    for (std::uint32_t sample = 0; sample < count; ++sample) {
+                        const glm::dvec2 u = glsl::sequencePair(pixel, sample, 7U, pair);
+                        ASSERT_TRUE(u.x >= 0.0 && u.x < 1.0 && u.y >= 0.0 && u.y < 1.0);
+                        const auto row = static_cast<std::uint32_t>(u.x * (1U << rows));
+                        const auto column = static_cast<std::uint32_t>(u.y * (1U << (m - rows)));
+                        ++cells[row * (1U << (m - rows)) + column];
+                    }
+                    EXPECT_EQ(std::ranges::count(cells, 1), static_cast<std::ptrdiff_t>(count))
+                        << "pixel " << pixel << ", pair " << pair << ", " << count << " samples, 2^" << rows
+                        << " rows";
+                }
+            }
+        }
+    }
+}
 
 }  // namespace
 }  // namespace glint::numerics
