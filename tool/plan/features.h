@@ -85,7 +85,8 @@ struct Presence {
     std::string droppedBecause;
 };
 
-// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): a row reads in this order, and there is one table.
+// A row reads in this order, and there is one table.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct FeatureInfo {
     Feature feature;
     std::string_view name;       // in the manifest: "baseColorTexture"
