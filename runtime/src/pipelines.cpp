@@ -33,26 +33,6 @@ Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayo
     return okStatus();
 }
 
-Result<VkPipeline> createCompute(Context::State& context, std::span<const std::uint32_t> words,
-                                 Pipelines& pipelines) {
-    Result<UniqueShaderModule> module = createShaderModule(context, words);
-    if (!module) {
-        return module.error();
-    }
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
-    info.layout = pipelines.layout.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,
-                                                              1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateComputePipelines", result);
-    }
-    pipelines.owned.emplace_back(context, pipeline);
-    return pipeline;
-}
-
 // Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
 Result<VkPipeline> createGBuffer(Context::State& context, const Package& package, Pipelines& pipelines) {
     Result<UniqueShaderModule> vertex =
@@ -154,11 +134,12 @@ Status createComputePasses(Context::State& context, const Package& package, cons
         const std::span<const std::uint32_t> words = package.spirv(key);
         auto known = byWords.find(words.data());
         if (known == byWords.end()) {
-            Result<VkPipeline> pipeline = createCompute(context, words, pipelines);
+            Result<UniquePipeline> pipeline = createComputePipeline(context, words, pipelines.layout.get());
             if (!pipeline) {
                 return pipeline.error();
             }
-            known = byWords.emplace(words.data(), *pipeline).first;
+            known = byWords.emplace(words.data(), pipeline->get()).first;
+            pipelines.owned.push_back(std::move(*pipeline));
         }
         PassPipeline pass;
         pass.pipeline = known->second;

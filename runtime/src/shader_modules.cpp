@@ -26,4 +26,23 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
     return info;
 }
 
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout) {
+    Result<UniqueShaderModule> module = createShaderModule(context, words);
+    if (!module) {
+        return module.error();
+    }
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,
+                                                              1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateComputePipelines", result);
+    }
+    return UniquePipeline(context, pipeline);
+}
+
 }  // namespace glint

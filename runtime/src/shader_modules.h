@@ -1,4 +1,4 @@
-// Shader modules, and the stages of pipelines that are made of them.
+// Shader modules, and pipelines of one module.
 #pragma once
 
 #include "device_handle.h"
@@ -13,5 +13,9 @@ Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span
 
 // The entry point is "main".
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
+
+// Error "vulkan-call".
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout);
 
 }  // namespace glint

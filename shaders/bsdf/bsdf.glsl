@@ -35,10 +35,15 @@ struct Bsdf {
     float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, where the lobe is divided by it
 };
 
+// Of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
+vec3 meanFresnel(Bsdf b) {
+    return b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+}
+
 // The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
 // Based Shading at Imageworks" (2017), with the Fresnel of the second and later bounces after Hill (2018).
 vec3 multiScatterFresnel(Bsdf b) {
-    vec3 mean = b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+    vec3 mean = meanFresnel(b);
     return mean * mean * (1.0 - b.meanLoss) / (vec3(1.0) - mean * b.meanLoss);
 }
 
@@ -60,7 +65,7 @@ vec3 specularPassed(Bsdf b, float loss, float bias) {
     vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
     vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
     if (GLINT_ENERGY_COMPENSATION != 0) {
-        vec3 mean = b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+        vec3 mean = meanFresnel(b);
         vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
         again = rest * (vec3(1.0) + mean * (1.0 - b.meanLoss)) / (vec3(1.0) - mean * b.meanLoss);
     }

@@ -35,9 +35,9 @@ vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
-// The same at an interface of relative index eta = n_t / n_i, of the squared cosine and its error. Where light leaves the denser side Schlick's cosine is
-// that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and beyond the critical angle all of it
-// is reflected, whatever f90.
+// The same at an interface of relative index eta = n_t / n_i, by the squared cosine and its error. Where light leaves the
+// denser side Schlick's cosine is that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and
+// beyond the critical angle all of it is reflected, whatever f90.
 vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
         return fresnelSchlick(f0, f90, sqrt(cosine2.x));

@@ -83,27 +83,28 @@ ReflectionSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
 const uint kPairDirection = 0u;
 const uint kPairLobe = 1u;
 
-// A direction of the glossy lobes by one-sample multiple importance sampling (Veach 1997, balance heuristic): `chance` is
-// that of the coat, 0 or 1 where the other lobe has no density here.
-ReflectionSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, float chance, bool coat,
-                              vec2 u) {
+// A direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997, balance heuristic).
+// chances: of base and coat; 0 for a lobe that has no density here.
+ReflectionSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, vec2 chances,
+                              bool choosesCoat) {
     Bsdf b = surface.bsdf;
-    vec3 l = coat ? sampleCoat(b, u) : reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u));
+    vec2 u = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
+    vec3 l = choosesCoat ? sampleCoat(b, u) : reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u));
     vec3 world = toWorld(surface, l);
     ReflectionSample result = ReflectionSample(normalize(world), vec3(0.0), kRayBlack);
     if (l.z <= 0.0 || dot(world, hit.geometricNormal) <= 0.0) {
         return result;
     }
     float pdf = 0.0;
-    if (chance < 1.0) {
+    if (chances.x > 0.0) {
         float basePdf;
         result.weight += traced.base * baseLobe(surface, features, l, basePdf);
-        pdf += (1.0 - chance) * basePdf;
+        pdf += chances.x * basePdf;
     }
-    if (chance > 0.0) {
+    if (chances.y > 0.0) {
         float ofCoat;
         result.weight += vec3(traced.coat * coatLobe(surface, features, l, ofCoat));
-        pdf += chance * ofCoat;
+        pdf += chances.y * ofCoat;
     }
     if (pdf > 0.0 && luminance(result.weight) > 0.0) {
         result.weight /= pdf;
@@ -116,32 +117,29 @@ ReflectionSample glossySample(Hit hit, Surface surface, Features features, Trace
 ReflectionSample sampleReflection(Hit hit, Surface surface, Features features, TracedLobes traced) {
     vec3 base = traced.base * firstBounce(surface, features);
     float coat = traced.coat * coatReflectance(surface, features);
-    if (traced.base <= 0.0 && traced.coat <= 0.0) {
-        return ReflectionSample(vec3(0.0), vec3(0.0), kRayRough);
+    float brought = luminance(base) + coat;
+    if (brought <= 0.0) {
+        return ReflectionSample(vec3(0.0), vec3(0.0), traced.base > 0.0 ? kRayBlack : kRayRough);
     }
     bool baseMirror = isMirror(surface.roughness);
-    bool coatMirror = true;
+    bool coatMirror = isMirror(sqrt(surface.bsdf.clearcoatAlpha));
     float chance = 0.0;
+    bool choosesCoat = false;
     if (hasLobe(features, GLINT_CLEARCOAT) && coat > 0.0) {
-        vec3 normal = toWorld(surface, surface.bsdf.clearcoatNormal);
-        coatMirror = isMirror(sqrt(surface.bsdf.clearcoatAlpha));
         if (baseMirror && coatMirror && surface.bsdf.clearcoatNormal.z > 0.99999) {
             // Within a quarter of a degree: one ray brings both.
             return mirrorSample(hit, surface.normal, base + vec3(coat));
         }
-        chance = coat / (coat + luminance(base));
+        chance = coat / brought;
+        choosesCoat = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x < chance;
     }
-    bool choosesCoat = chance > 0.0 && sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x <
-                                           chance;
-    if (choosesCoat ? coatMirror : baseMirror) {
-        vec3 normal = choosesCoat ? toWorld(surface, surface.bsdf.clearcoatNormal) : surface.normal;
-        return mirrorSample(hit, normal, choosesCoat ? vec3(coat / chance) : base / (1.0 - chance));
+    if (choosesCoat && coatMirror) {
+        return mirrorSample(hit, toWorld(surface, surface.bsdf.clearcoatNormal), vec3(coat / chance));
     }
-    vec2 u = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
+    if (!choosesCoat && baseMirror) {
+        return mirrorSample(hit, surface.normal, base / (1.0 - chance));
+    }
     // A mirror has no density that a glossy direction could share.
-    bool alone = chance > 0.0 && baseMirror != coatMirror;
-    ReflectionSample result =
-        glossySample(hit, surface, features, traced, alone ? (choosesCoat ? 1.0 : 0.0) : chance, choosesCoat, u);
-    result.weight /= alone ? (choosesCoat ? chance : 1.0 - chance) : 1.0;
-    return result;
+    vec2 chances = vec2(baseMirror ? 0.0 : 1.0 - chance, coatMirror ? 0.0 : chance);
+    return glossySample(hit, surface, features, traced, chances, choosesCoat);
 }

@@ -19,8 +19,9 @@ vec3 toWorld(Surface surface, vec3 direction) {
     return direction.x * surface.tangent + direction.y * surface.bitangent + direction.z * surface.normal;
 }
 
-// BSDF times |n·l|, reflected or let through, for light from a direction of the world. geometricNormal is on the viewer's side: where it and the
-// shading normal differ on which side the light is, there is none, or it would leak through the surface.
+// BSDF times |n·l|, reflected or let through, for light from a direction of the world. geometricNormal is on the
+// viewer's side: where it and the shading normal differ on which side the light is, there is none, or it would leak
+// through the surface.
 vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
     vec3 l = toSurface(surface, toLight);
     return l.z * dot(geometricNormal, toLight) > 0.0 ? evaluateBsdf(surface.bsdf, features, l) : vec3(0.0);

@@ -1,6 +1,7 @@
 #include "probe_device.h"
 
 #include "evaluate.h"
+#include "shader_modules.h"
 #include "spirv/compiler.h"
 #include "vulkan_error.h"
 
@@ -129,30 +130,11 @@ Result<ProbePipeline> ProbeDevice::compile(const std::string& glsl, std::string_
     if (!words) {
         return words.error();
     }
-    VkShaderModuleCreateInfo moduleInfo{};
-    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    moduleInfo.codeSize = words->size() * sizeof(std::uint32_t);
-    moduleInfo.pCode = words->data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    VkResult result = state.vk.CreateShaderModule(state.handles.device, &moduleInfo, nullptr, &module);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateShaderModule", result);
+    Result<UniquePipeline> pipeline = createComputePipeline(state, *words, layout_.get());
+    if (!pipeline) {
+        return pipeline.error();
     }
-    const UniqueShaderModule owner(state, module);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.layout = layout_.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    result = state.vk.CreateComputePipelines(state.handles.device, state.pipelineCache, 1, &info, nullptr,
-                                             &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateComputePipelines", result);
-    }
-    return ProbePipeline{UniquePipeline(state, pipeline), inputs, outputs};
+    return ProbePipeline{std::move(*pipeline), inputs, outputs};
 }
 
 Status ProbeDevice::run(const ProbePipeline& pipeline, std::span<const float> inputs,

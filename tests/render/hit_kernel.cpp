@@ -5,6 +5,7 @@
 #include "emit/flatten.h"
 #include "emit/sources.h"
 #include "gpu_scene_state.h"
+#include "shader_modules.h"
 #include "spirv/compiler.h"
 #include "vulkan_error.h"
 
@@ -62,35 +63,17 @@ Status HitKernel::createPipeline(const std::vector<std::uint32_t>& words) {
     layoutInfo.pushConstantRangeCount = 1;
     layoutInfo.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    VkResult result = state.vk.CreatePipelineLayout(device, &layoutInfo, nullptr, &layout);
+    const VkResult result = state.vk.CreatePipelineLayout(device, &layoutInfo, nullptr, &layout);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
     layout_ = UniquePipelineLayout(state, layout);
 
-    VkShaderModuleCreateInfo moduleInfo{};
-    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    moduleInfo.codeSize = words.size() * sizeof(std::uint32_t);
-    moduleInfo.pCode = words.data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    result = state.vk.CreateShaderModule(device, &moduleInfo, nullptr, &module);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateShaderModule", result);
+    Result<UniquePipeline> pipeline = createComputePipeline(state, words, layout_.get());
+    if (!pipeline) {
+        return pipeline.error();
     }
-    const UniqueShaderModule owner(state, module);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.layout = layout_.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    result = state.vk.CreateComputePipelines(device, state.pipelineCache, 1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateComputePipelines", result);
-    }
-    pipeline_ = UniquePipeline(state, pipeline);
+    pipeline_ = std::move(*pipeline);
     return okStatus();
 }
 

@@ -2,6 +2,7 @@
 
 #include "context_state.h"
 #include "emit/modules.h"
+#include "shader_modules.h"
 #include "vulkan_error.h"
 
 #include <fmt/format.h>
@@ -84,38 +85,12 @@ Status OrderKernel::createPipelines() {
         return modules.error();
     }
     for (const CompiledModule& module : *modules) {
-        if (Status status = createPipeline(module); !status) {
-            return status;
+        Result<UniquePipeline> pipeline = createComputePipeline(context_, module.spirv, layout_.get());
+        if (!pipeline) {
+            return pipeline.error();
         }
+        pipelines_.emplace(module.key, std::move(*pipeline));
     }
-    return okStatus();
-}
-
-Status OrderKernel::createPipeline(const CompiledModule& module) {
-    const VkDevice device = context_.handles.device;
-    VkShaderModuleCreateInfo moduleInfo{};
-    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    moduleInfo.codeSize = module.spirv.size() * sizeof(std::uint32_t);
-    moduleInfo.pCode = module.spirv.data();
-    VkShaderModule handle = VK_NULL_HANDLE;
-    VkResult result = context_.vk.CreateShaderModule(device, &moduleInfo, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateShaderModule", result);
-    }
-    const UniqueShaderModule owner(context_, handle);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = handle;
-    info.stage.pName = "main";
-    info.layout = layout_.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    result = context_.vk.CreateComputePipelines(device, context_.pipelineCache, 1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateComputePipelines", result);
-    }
-    pipelines_.emplace(module.key, UniquePipeline(context_, pipeline));
     return okStatus();
 }
 

@@ -62,7 +62,6 @@ private:
 
     OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord);
     Status createPipelines();
-    Status createPipeline(const CompiledModule& module);
     Status createBuffers(const OrderProblem& problem, Buffers& buffers) const;
     void recordPasses(VkCommandBuffer commands, package::Ordering ordering, const Buffers& buffers,
                       std::span<const OrderFault> faults) const;
