@@ -115,14 +115,14 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
     }
 }
 
-PartsOfMesh partition(const Package& package, const SceneView& scene,
+PartsOfMesh partition(const PackageScene& known, const SceneView& scene,
                       std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
                       std::vector<MeshPart>& parts) {
     std::map<std::pair<std::uint32_t, bool>, std::vector<std::vector<TriangleRange>>> members;
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {
         const PrimitiveView& view = scene.primitives[i];
         if (primitives[i].triangleCount > 0) {
-            const std::uint32_t flags = package.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+            const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
             appendRanges(i, primitives[i].triangleCount, capacity,
                          members[{view.mesh, (flags & gpu::kGeometryDoubleSided) != 0}]);
         }
@@ -154,10 +154,10 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
     return uploaded;
 }
 
-Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
                                 std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity) {
     SceneLayout layout;
-    const PartsOfMesh partsOfMesh = partition(package, scene, primitives, capacity, layout.parts);
+    const PartsOfMesh partsOfMesh = partition(known, scene, primitives, capacity, layout.parts);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
@@ -173,7 +173,7 @@ Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
             for (const TriangleRange& range : layout.parts[part].ranges) {
                 const PrimitiveView& view = scene.primitives[range.primitive];
                 const GpuPrimitive& primitive = primitives[range.primitive];
-                const package::PrimitiveEntry& entry = *package.findPrimitive(view.mesh, view.primitive);
+                const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
                 layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
                                         layout.parts[part].doubleSided,
                                         (record.flags & gpu::kInstanceMirrored) != 0});

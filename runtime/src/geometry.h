@@ -77,7 +77,7 @@ struct SceneLayout {
 
 // Pure. `primitives` are those of uploadPrimitives(); the capacity is at least one triangle. Error
 // "scene-geometries": more records than the 24 bits of a custom index can number.
-Result<SceneLayout> layOutScene(const Package& package, const SceneView& scene,
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
                                 std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity);
 
 }  // namespace glint

@@ -23,7 +23,7 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
-Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene,
+Status uploadData(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
                   SceneLayout& layout) {
     Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
     if (!uploader) {
@@ -35,7 +35,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         return primitives.error();
     }
     state.primitives = std::move(*primitives);
-    Result<SceneLayout> laidOut = layOutScene(package, scene, state.primitives, blasCapacity(state.context));
+    Result<SceneLayout> laidOut = layOutScene(known, scene, state.primitives, blasCapacity(state.context));
     if (!laidOut) {
         return laidOut.error();
     }
@@ -59,8 +59,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
-    const std::vector<gpu::MaterialRecord> materials =
-        materialsWithSizes(state.context, package, scene.images);
+    const std::vector<gpu::MaterialRecord> materials = materialsWithSizes(state.context, known, scene.images);
     if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
         return s;
     }
@@ -68,23 +67,23 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         return s;
     }
     Result<std::vector<DeviceImage>> textures =
-        uploadTextures(state.context, state.pool, **uploader, package.textures(), scene.images);
+        uploadTextures(state.context, state.pool, **uploader, known.textures, scene.images);
     if (!textures) {
         return textures.error();
     }
     state.textures = std::move(*textures);
-    state.statistics.narrowedTextures = countNarrowed(state.context, package.textures(), scene.images);
+    state.statistics.narrowedTextures = countNarrowed(state.context, known.textures, scene.images);
     return (*uploader)->finish();
 }
 
-Status buildBottomLevels(GpuScene::State& state, const Package& package, const SceneView& scene,
+Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
                          const SceneLayout& layout) {
     std::vector<BlasInput> inputs;
     for (const MeshPart& part : layout.parts) {
         BlasInput input;
         for (const TriangleRange& range : part.ranges) {
             const PrimitiveView& view = scene.primitives[range.primitive];
-            const std::uint32_t flags = package.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+            const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
             const GpuPrimitive& primitive = state.primitives[range.primitive];
             const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
             input.geometries.push_back({primitive.positions, indices, primitive.vertexCount, range.count,
@@ -145,21 +144,28 @@ Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const Scene
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
                                                    const SceneView& scene) {
     Context::State& contextState = context.state();
-    if (Status s = checkScene(package, scene, contextState.limits.core.maxImageDimension2D); !s) {
+    if (scene.packageScene >= package.sceneCount()) {
+        return makeError("scene-package", "",
+                         "scene " + std::to_string(scene.packageScene) +
+                             " is not in the package, which has " + std::to_string(package.sceneCount()),
+                         "find its index by Package::findScene()");
+    }
+    const PackageScene known = package.scene(scene.packageScene);
+    if (Status s = checkScene(known, scene, contextState.limits.core.maxImageDimension2D); !s) {
         return s.error();
     }
     auto state = std::make_unique<State>(contextState);
     SceneLayout layout;
-    if (Status s = uploadData(*state, package, scene, layout); !s) {
+    if (Status s = uploadData(*state, known, scene, layout); !s) {
         return s.error();
     }
-    if (Status s = buildBottomLevels(*state, package, scene, layout); !s) {
+    if (Status s = buildBottomLevels(*state, known, scene, layout); !s) {
         return s.error();
     }
     if (Status s = buildTopLevel(*state, scene, layout); !s) {
         return s.error();
     }
-    Result<std::vector<UniqueSampler>> samplers = createSamplers(contextState, package.samplers());
+    Result<std::vector<UniqueSampler>> samplers = createSamplers(contextState, known.samplers);
     if (!samplers) {
         return samplers.error();
     }

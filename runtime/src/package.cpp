@@ -51,7 +51,7 @@ bool Package::alphaTested() const {
 }
 
 package::PackageShape Package::shape() const {
-    return shapeOf(state_->header);
+    return shapeOf(*state_);
 }
 
 package::HitRecordFormat Package::hitRecord() const {
@@ -78,20 +78,25 @@ std::span<const package::ModuleEntry> Package::modules() const {
     return state_->modules;
 }
 
-std::span<const package::PrimitiveEntry> Package::primitives() const {
-    return state_->primitives;
+std::uint32_t Package::sceneCount() const {
+    return static_cast<std::uint32_t>(state_->scenes.size());
 }
 
-std::span<const package::TextureEntry> Package::textures() const {
-    return state_->textures;
+PackageScene Package::scene(std::uint32_t index) const {
+    const package::SceneEntry& entry = state_->scenes[index];
+    return {string(entry.name), state_->materials.subspan(entry.firstMaterial, entry.materialCount),
+            state_->primitives.subspan(entry.firstPrimitive, entry.primitiveCount),
+            state_->textures.subspan(entry.firstTexture, entry.textureCount),
+            state_->samplers.subspan(entry.firstSampler, entry.samplerCount)};
 }
 
-std::span<const package::SamplerEntry> Package::samplers() const {
-    return state_->samplers;
-}
-
-std::span<const gpu::MaterialRecord> Package::materials() const {
-    return state_->materials;
+std::optional<std::uint32_t> Package::findScene(std::string_view name) const {
+    for (std::uint32_t index = 0; index < sceneCount(); ++index) {
+        if (string(state_->scenes[index].name) == name) {
+            return index;
+        }
+    }
+    return std::nullopt;
 }
 
 std::string_view Package::string(package::StringRef ref) const {
@@ -113,13 +118,13 @@ std::span<const std::uint32_t> Package::spirv(const package::ModuleKey& key) con
     return words == state_->spirv.end() ? std::span<const std::uint32_t>{} : words->second;
 }
 
-const package::PrimitiveEntry* Package::findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const {
+const package::PrimitiveEntry* PackageScene::findPrimitive(std::uint32_t mesh,
+                                                           std::uint32_t primitive) const {
     const auto key = [](const package::PrimitiveEntry& entry) {
         return std::tuple(entry.mesh, entry.primitive);
     };
-    const auto found =
-        std::ranges::lower_bound(state_->primitives, std::tuple(mesh, primitive), std::less<>{}, key);
-    const bool same = found != state_->primitives.end() && key(*found) == std::tuple(mesh, primitive);
+    const auto found = std::ranges::lower_bound(primitives, std::tuple(mesh, primitive), std::less<>{}, key);
+    const bool same = found != primitives.end() && key(*found) == std::tuple(mesh, primitive);
     return same ? &*found : nullptr;
 }
 

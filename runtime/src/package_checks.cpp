@@ -66,7 +66,7 @@ Status checkModules(const Package::State& state, const std::string& where) {
             return altered(where, "module " + describe(key) + " is there twice");
         }
     }
-    const std::vector<package::ModuleKey> required = package::requiredModules(shapeOf(state.header));
+    const std::vector<package::ModuleKey> required = package::requiredModules(shapeOf(state));
     for (const package::ModuleKey& key : required) {
         if (present.erase(key) == 0) {
             return altered(where, "the package lacks its module " + describe(key));
@@ -121,20 +121,24 @@ Status checkCases(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
-Status checkPrimitive(const Package::State& state, const package::PrimitiveEntry& entry,
-                      const std::string& where) {
+Status checkPrimitive(const Package::State& state, const package::SceneEntry& scene,
+                      const package::PrimitiveEntry& entry, const std::string& where) {
     const std::string name =
         "primitive " + std::to_string(entry.primitive) + " of mesh " + std::to_string(entry.mesh);
     if (entry.shaderId >= state.header.caseCount) {
         return altered(where, name + " has shader ID " + std::to_string(entry.shaderId) + " of " +
                                   std::to_string(state.header.caseCount));
     }
-    if (entry.materialIndex >= state.materials.size()) {
+    if (entry.materialIndex >= scene.materialCount) {
         return altered(where, name + " has material " + std::to_string(entry.materialIndex) + " of " +
-                                  std::to_string(state.materials.size()));
+                                  std::to_string(scene.materialCount));
     }
     const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32 | entry.featureLobes;
     const package::CaseEntry& shadedBy = state.cases[entry.shaderId];
+    if (shadedBy.keyCount == 0) {
+        return altered(where,
+                       name + " has shader ID " + std::to_string(entry.shaderId) + ", which is retired");
+    }
     // The key may hold more than its case knows: lobes that primary surfaces have and hits do not keep.
     if ((shadedBy.always & ~key) != 0) {
         return altered(where, name + " lacks features that its case takes for granted");
@@ -150,28 +154,32 @@ Status checkPrimitive(const Package::State& state, const package::PrimitiveEntry
     return okStatus();
 }
 
-Status checkPrimitives(const Package::State& state, const std::string& where) {
+Status checkPrimitives(const Package::State& state, const package::SceneEntry& scene,
+                       const std::string& where) {
     const auto key = [](const package::PrimitiveEntry& entry) {
         return std::tuple(entry.mesh, entry.primitive);
     };
     const package::PrimitiveEntry* previous = nullptr;
-    for (const package::PrimitiveEntry& entry : state.primitives) {
+    for (const package::PrimitiveEntry& entry :
+         state.primitives.subspan(scene.firstPrimitive, scene.primitiveCount)) {
         if (previous != nullptr && key(*previous) >= key(entry)) {
             return altered(where, "the primitives are not in order");
         }
         previous = &entry;
-        if (Status status = checkPrimitive(state, entry, where); !status) {
+        if (Status status = checkPrimitive(state, scene, entry, where); !status) {
             return status;
         }
     }
     return okStatus();
 }
 
-Status checkTextures(const Package::State& state, const std::string& where) {
+Status checkMaterials(const Package::State& state, const package::SceneEntry& scene,
+                      const std::string& where) {
     // A slot that no key reads holds zero, whether or not there is a texture zero.
-    const std::size_t textureEnd = std::max<std::size_t>(state.textures.size(), 1);
-    const std::size_t samplerEnd = std::max<std::size_t>(state.samplers.size(), 1);
-    for (const gpu::MaterialRecord& material : state.materials) {
+    const std::uint32_t textureEnd = std::max(scene.textureCount, 1U);
+    const std::uint32_t samplerEnd = std::max(scene.samplerCount, 1U);
+    for (const gpu::MaterialRecord& material :
+         state.materials.subspan(scene.firstMaterial, scene.materialCount)) {
         for (const gpu::TextureRecord& texture : material.textures) {
             if (texture.textureIndex >= textureEnd || texture.samplerIndex >= samplerEnd ||
                 texture.texCoord > 1) {
@@ -180,6 +188,52 @@ Status checkTextures(const Package::State& state, const std::string& where) {
             }
         }
     }
+    return okStatus();
+}
+
+// A range of a section, which follows the range of the scene before.
+struct SceneRange {
+    std::uint32_t package::SceneEntry::*first;
+    std::uint32_t package::SceneEntry::*count;
+    std::size_t total;
+};
+
+Status checkScenes(const Package::State& state, const std::string& where) {
+    using Entry = package::SceneEntry;
+    if (state.scenes.empty()) {
+        return altered(where, "there is no scene");
+    }
+    for (const SceneRange& range :
+         {SceneRange{&Entry::firstMaterial, &Entry::materialCount, state.materials.size()},
+          SceneRange{&Entry::firstPrimitive, &Entry::primitiveCount, state.primitives.size()},
+          SceneRange{&Entry::firstTexture, &Entry::textureCount, state.textures.size()},
+          SceneRange{&Entry::firstSampler, &Entry::samplerCount, state.samplers.size()}}) {
+        std::uint64_t end = 0;
+        for (const Entry& scene : state.scenes) {
+            if (scene.*range.first != end) {
+                return altered(where, "the scenes' parts of a section overlap or leave a gap");
+            }
+            end += scene.*range.count;
+        }
+        if (end != range.total) {
+            return altered(where, "the scenes' parts of a section are not the whole of it");
+        }
+    }
+    std::set<std::string_view> names;
+    for (const Entry& scene : state.scenes) {
+        if (!inStrings(state, scene.name) || !names.insert(text(state, scene.name)).second) {
+            return altered(where, "the name of a scene is out of range, or there twice");
+        }
+        for (const auto check : {checkPrimitives, checkMaterials}) {
+            if (Status status = check(state, scene, where); !status) {
+                return status;
+            }
+        }
+    }
+    return okStatus();
+}
+
+Status checkSamplers(const Package::State& state, const std::string& where) {
     if (!std::ranges::all_of(state.textures, [](const auto& texture) { return texture.srgb <= 1; })) {
         return altered(where, "a texture has an unknown colour space");
     }
@@ -195,12 +249,20 @@ Status checkTextures(const Package::State& state, const std::string& where) {
 
 }  // namespace
 
-package::PackageShape shapeOf(const package::PackageHeader& header) {
-    return {header.strategies, header.tracers, header.shadows, header.alphaTested != 0, header.caseCount};
+package::PackageShape shapeOf(const Package::State& state) {
+    const package::PackageHeader& header = state.header;
+    package::PackageShape shape{header.strategies, header.tracers, header.shadows, header.alphaTested != 0,
+                                header.caseCount};
+    for (std::uint32_t id = 0; id < state.cases.size(); ++id) {
+        if (state.cases[id].keyCount == 0) {
+            shape.retired.push_back(id);
+        }
+    }
+    return shape;
 }
 
 Status checkTables(const Package::State& state, const std::string& where) {
-    for (const auto check : {checkHeader, checkCases, checkModules, checkPrimitives, checkTextures}) {
+    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkSamplers}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

@@ -28,11 +28,13 @@ struct Package::State {
     std::span<const package::SamplerEntry> samplers;
     std::span<const char> strings;
     std::span<const package::CaseEntry> cases;
+    std::span<const package::SceneEntry> scenes;
     // By file name: entries that name one file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };
 
-package::PackageShape shapeOf(const package::PackageHeader& header);
+// Of the header and the cases.
+package::PackageShape shapeOf(const Package::State& state);
 
 // Reads the header, the section table and the spans out of state.tables. `where` is the file's name.
 // Errors: "package-foreign" (no package), "package-version", "package-truncated", "package-altered".

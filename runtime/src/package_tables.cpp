@@ -99,6 +99,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.strings);
         case package::SectionKind::Cases:
             return readSection(state, section, where, state.cases);
+        case package::SectionKind::Scenes:
+            return readSection(state, section, where, state.scenes);
     }
     return makeError(
         "package-altered", where,
@@ -131,7 +133,7 @@ Status readTables(Package::State& state, const std::string& where) {
             return status;
         }
     }
-    constexpr std::size_t kSectionKinds = 7;
+    constexpr std::size_t kSectionKinds = 8;
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
                          "the package has " + std::to_string(seen.size()) + " of " +

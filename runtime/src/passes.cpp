@@ -223,6 +223,9 @@ private:
         pushed_.bucket = 0;
         dispatchList("shade miss", pass(ModuleRole::ShadeMiss), arguments, 0);
         for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
+            if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
+                continue;  // a retired shader ID, whose bucket stays empty
+            }
             pushed_.bucket = 1 + shaderId;
             dispatchList("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId], arguments,
                          1 + shaderId);

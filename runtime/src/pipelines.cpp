@@ -144,7 +144,8 @@ Status createComputePasses(Context::State& context, const Package& package, cons
         PassPipeline pass;
         pass.pipeline = known->second;
         if (key.role == ModuleRole::ShadeCase) {
-            pipelines.cases.push_back(pass);
+            pipelines.cases.resize(package.caseCount());
+            pipelines.cases[key.index] = pass;
         } else {
             pipelines.passes[key.role] = pass;
         }

@@ -46,21 +46,25 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
     // By miss index: rays of the list, shadow rays.
     source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
     source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
-    std::vector<std::uint32_t> groups;
+    std::map<std::uint32_t, std::uint32_t> groups;  // by shader ID; retired ones have none
     std::map<const std::uint32_t*, std::uint32_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
         const SpirvWords words = rayWords(package, ModuleRole::HitCase, shaderId);
+        if (words.empty()) {
+            continue;
+        }
         const auto [known, fresh] =
             byWords.emplace(words.data(), static_cast<std::uint32_t>(source.closestHit.size()));
         if (fresh) {
             source.closestHit.push_back(words);
         }
-        groups.push_back(known->second);
+        groups[shaderId] = known->second;
     }
     const auto unknown = static_cast<std::uint32_t>(source.closestHit.size());
     source.closestHit.push_back(rayWords(package, ModuleRole::HitUnknown));
     for (const std::uint32_t shaderId : shaderIds) {
-        source.hitRecords.push_back(shaderId < groups.size() ? groups[shaderId] : unknown);
+        const auto group = groups.find(shaderId);
+        source.hitRecords.push_back(group != groups.end() ? group->second : unknown);
     }
     return source;
 }
@@ -68,15 +72,18 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
 // Cases that trace their shadow rays: one pipeline, a ray generation shader for each distinct module.
 Status createRayCases(Context::State& context, const Package& package, Pipelines& pipelines) {
     std::vector<SpirvWords> shaders;
-    std::vector<std::size_t> shaderOfCase;
+    std::map<std::uint32_t, std::size_t> shaderOfCase;  // by shader ID; retired ones have none
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
         const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
+        if (words.empty()) {
+            continue;
+        }
         const auto [known, fresh] = byWords.emplace(words.data(), shaders.size());
         if (fresh) {
             shaders.push_back(words);
         }
-        shaderOfCase.push_back(known->second);
+        shaderOfCase[shaderId] = known->second;
     }
     if (shaders.empty()) {
         return okStatus();
@@ -86,8 +93,9 @@ Status createRayCases(Context::State& context, const Package& package, Pipelines
     if (!passes) {
         return passes.error();
     }
-    for (const std::size_t shader : shaderOfCase) {
-        pipelines.cases.push_back((*passes)[shader]);
+    pipelines.cases.resize(package.caseCount());
+    for (const auto& [shaderId, shader] : shaderOfCase) {
+        pipelines.cases[shaderId] = (*passes)[shader];
     }
     return okStatus();
 }

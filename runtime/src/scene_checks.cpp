@@ -79,7 +79,7 @@ std::tuple<std::uint32_t, std::uint32_t> keyOf(const PrimitiveView& view) {
     return {view.mesh, view.primitive};
 }
 
-Status checkPrimitives(const Package& package, std::span<const PrimitiveView> primitives) {
+Status checkPrimitives(const PackageScene& known, std::span<const PrimitiveView> primitives) {
     const PrimitiveView* previous = nullptr;
     for (const PrimitiveView& view : primitives) {
         const std::string where = placeOf(view.mesh, view.primitive);
@@ -88,7 +88,7 @@ Status checkPrimitives(const Package& package, std::span<const PrimitiveView> pr
                              "sort them by mesh, then primitive");
         }
         previous = &view;
-        const package::PrimitiveEntry* entry = package.findPrimitive(view.mesh, view.primitive);
+        const package::PrimitiveEntry* entry = known.findPrimitive(view.mesh, view.primitive);
         if (entry == nullptr) {
             return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
         }
@@ -103,12 +103,12 @@ Status checkPrimitives(const Package& package, std::span<const PrimitiveView> pr
 }
 
 // Every primitive that the package has for an instance's mesh must be among the scene's.
-Status checkInstances(const Package& package, const SceneView& scene) {
+Status checkInstances(const PackageScene& known, const SceneView& scene) {
     std::set<std::uint32_t> used;
     for (const InstanceView& instance : scene.instances) {
         used.insert(instance.mesh);
     }
-    for (const package::PrimitiveEntry& entry : package.primitives()) {
+    for (const package::PrimitiveEntry& entry : known.primitives) {
         if (!used.contains(entry.mesh)) {
             continue;
         }
@@ -121,8 +121,8 @@ Status checkInstances(const Package& package, const SceneView& scene) {
     return okStatus();
 }
 
-Status checkImages(const Package& package, std::span<const ImageView> images, std::uint32_t maxImageSize) {
-    for (const package::TextureEntry& texture : package.textures()) {
+Status checkImages(const PackageScene& known, std::span<const ImageView> images, std::uint32_t maxImageSize) {
+    for (const package::TextureEntry& texture : known.textures) {
         const std::string where = "image " + std::to_string(texture.image);
         if (texture.image >= images.size()) {
             return makeError(
@@ -172,14 +172,14 @@ Status checkLights(std::span<const LightView> lights) {
 
 }  // namespace
 
-Status checkScene(const Package& package, const SceneView& scene, std::uint32_t maxImageSize) {
-    if (Status status = checkPrimitives(package, scene.primitives); !status) {
+Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize) {
+    if (Status status = checkPrimitives(known, scene.primitives); !status) {
         return status;
     }
-    if (Status status = checkInstances(package, scene); !status) {
+    if (Status status = checkInstances(known, scene); !status) {
         return status;
     }
-    if (Status status = checkImages(package, scene.images, maxImageSize); !status) {
+    if (Status status = checkImages(known, scene.images, maxImageSize); !status) {
         return status;
     }
     return checkLights(scene.lights);

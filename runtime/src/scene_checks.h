@@ -19,6 +19,6 @@ inline constexpr std::uint32_t kInputTangents = 1U << 11;
 
 // Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
 // scene), "scene-image", "scene-light". Their place is "mesh 3, primitive 1", "image 2" or "light 0".
-Status checkScene(const Package& package, const SceneView& scene, std::uint32_t maxImageSize);
+Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize);
 
 }  // namespace glint

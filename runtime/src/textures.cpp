@@ -124,11 +124,11 @@ std::uint32_t countNarrowed(const Context::State& context, std::span<const packa
         }));
 }
 
-std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const Package& package,
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const PackageScene& known,
                                                     std::span<const ImageView> images) {
-    std::vector<gpu::MaterialRecord> materials(package.materials().begin(), package.materials().end());
-    const std::span<const package::TextureEntry> textures = package.textures();
-    const std::span<const package::SamplerEntry> samplers = package.samplers();
+    std::vector<gpu::MaterialRecord> materials(known.materials.begin(), known.materials.end());
+    const std::span<const package::TextureEntry> textures = known.textures;
+    const std::span<const package::SamplerEntry> samplers = known.samplers;
     for (gpu::MaterialRecord& material : materials) {
         for (gpu::TextureRecord& record : material.textures) {
             if (record.textureIndex < textures.size()) {

@@ -27,7 +27,7 @@ std::uint32_t countNarrowed(const Context::State& context, std::span<const packa
 // The package's materials with the sizes of their textures and the anisotropy of their samplers, which
 // texture gradients need: a size query in a shader is a fetch of its own, and lavapipe answers it for one
 // lane where the index differs. Requires an image for each texture.
-std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const Package& package,
+std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const PackageScene& known,
                                                     std::span<const ImageView> images);
 
 // One sampler a SamplerEntry; at least one. Error "scene-samplers".

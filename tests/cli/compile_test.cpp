@@ -72,14 +72,14 @@ TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
                   .exit,
               0);
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
-    EXPECT_EQ(manifest.at("variant"), "Day");
+    EXPECT_EQ(manifest.at("scenes")[0].at("variant"), "Day");
     const nlohmann::json& settings = manifest.at("settings");
     EXPECT_EQ(settings.at("hitLobes"), nlohmann::json({"unlit", "specularGlossiness", "ior", "specular"}));
     EXPECT_EQ(settings.at("energyCompensation"), false);
     EXPECT_EQ(settings.at("textureLod"), "mip0");
     const nlohmann::json inspected = run({"inspect", "package", "--json"}).json();
     EXPECT_EQ(inspected.at("settings"), settings);
-    EXPECT_EQ(inspected.at("variant"), "Day");
+    EXPECT_EQ(inspected.at("scenes")[0].at("variant"), "Day");
 }
 
 TEST_F(CompileCommand, EmitChoosesWhatElseIsWritten) {

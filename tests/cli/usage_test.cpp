@@ -75,7 +75,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         {{"compile", "a.gltf", "--outptu=x"}, "did you mean --output?"},
         {{"compile", "a.gltf"}, "-o DIR"},
         {{"compile", "-o", "x"}, "SCENE"},
-        {{"compile", "a.gltf", "b.gltf", "-o", "x"}, "b.gltf"},
+        {{"explain", "a.gltf", "b.gltf"}, "b.gltf"},
         {{"compile", "a.gltf", "-o", "x", "--merge", "famly"}, "did you mean family?"},
         {{"compile", "a.gltf", "-o", "x", "--strategy", "vis"},
          "none of uber, visibility, sorted-uber, hit-shaders, all"},

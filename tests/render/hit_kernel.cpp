@@ -22,7 +22,7 @@ Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const Loade
     if (!text) {
         return text.error();
     }
-    const Result<SourceSet> sources = makeSourceSet(scene, loaded.compiled().plan, {});
+    const Result<SourceSet> sources = makeSourceSet(SceneList({&scene, 1}), loaded.compiled().plan, {});
     if (!sources) {
         return sources.error();
     }

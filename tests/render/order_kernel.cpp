@@ -25,18 +25,20 @@ Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
     for (std::uint32_t i = 0; i < caseCount; ++i) {
         Case shaderCase;
         shaderCase.shaderId = static_cast<int>(i);
+        shaderCase.keys = {static_cast<int>(i)};
         shaderCase.name = fmt::format("Case{}", i);
         plan.cases.push_back(std::move(shaderCase));
     }
     const Scene scene;
+    const SceneList scenes({&scene, 1});
     CompileSettings settings;
     settings.strategies = package::kStrategySortedUber;
     settings.hitRecord = hitRecord;
-    const Result<SourceSet> sources = makeSourceSet(scene, plan, settings);
+    const Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources.error();
     }
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, plan, *sources, settings);
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
     if (!modules) {
         return modules.error();
     }

@@ -5,11 +5,11 @@
 #include "cli/commands.h"
 #include "cli/held_signals.h"
 #include "cli/plan_choice.h"
+#include "cli/read_scenes.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "cli/tracing_options.h"
 #include "emit/json.h"
-#include "gltf/import.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace glint {
 
@@ -26,7 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct CompileArguments {
-    std::string scene;
+    std::vector<std::string> scenes;
     std::string output;
     TracingArguments tracing;
     std::string variant;
@@ -44,7 +45,8 @@ struct CompileArguments {
 // What there is to tell at the end. The package is absent after a dry run.
 struct Outcome {
     const CompileArguments& arguments;
-    const Scene& scene;
+    const SceneList& scenes;
+    std::span<const Diagnostic> warnings;
     const Plan& plan;
     const CompiledPackage* package = nullptr;
     double milliseconds = 0.0;
@@ -91,6 +93,9 @@ Json shadersToJson(const Outcome& outcome) {
     const std::map<int, const CompiledModule*> modules = caseModules(outcome.package);
     Json list = Json::array();
     for (const Case& shader : outcome.plan.cases) {
+        if (shader.isRetired()) {
+            continue;
+        }
         Json entry{{"id", shader.shaderId},
                    {"name", shader.name},
                    {"always", featuresToJson(shader.always)},
@@ -98,7 +103,7 @@ Json shadersToJson(const Outcome& outcome) {
                    {"keys", shader.keys.size()},
                    {"share", shareToJson(shader.share)},
                    {"reason", toString(shader.reason)},
-                   {"materials", materialsToJson(outcome.scene, shader.materials)}};
+                   {"materials", materialsToJson(outcome.scenes, shader.materials)}};
         const auto found = modules.find(shader.shaderId);
         if (found != modules.end()) {
             const CompiledModule& module = *found->second;
@@ -117,28 +122,29 @@ Json toJson(const Outcome& outcome) {
     const CompiledPackage* package = outcome.package;
     const auto orNull = [&](auto value) { return package ? Json(value()) : Json(nullptr); };
     return {{"counts",
-             {{"materials", outcome.scene.materials.size()},
+             {{"scenes", outcome.scenes.scenes().size()},
+              {"materials", outcome.scenes.materials().size()},
               {"keysPossible", countToJson(outcome.plan.keysPossible)},
               {"keysPresent", outcome.plan.keys.size()},
-              {"cases", outcome.plan.cases.size()},
+              {"cases", caseCount(outcome.plan)},
               {"uniqueSpirv", orNull([&] { return package->uniqueSpirv; })}}},
             {"spirvBytes", orNull([&] { return package->spirvBytes; })},
             {"packageBytes", orNull([&] { return outcome.packageBytes(); })},
             {"milliseconds", outcome.milliseconds},
-            {"variant", variantToJson(outcome.scene)},
+            {"variant", textOrNull(outcome.scenes.variant())},
             {"shaders", shadersToJson(outcome)},
-            {"dropped", droppedToJson(outcome.scene, outcome.plan)},
-            {"warnings", glint::toJson(outcome.scene.warnings)},
+            {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
+            {"warnings", glint::toJson(outcome.warnings)},
             {"output", orNull([&] { return outcome.arguments.output; })}};
 }
 
 std::string toText(const Outcome& outcome) {
     const Plan& plan = outcome.plan;
     std::vector<std::vector<std::string>> rows{
-        {"materials", fmt::format("{}", outcome.scene.materials.size())},
+        {"materials", fmt::format("{}", outcome.scenes.materials().size())},
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
         {"keys present", fmt::format("{}", plan.keys.size())},
-        {"cases", fmt::format("{}", plan.cases.size())}};
+        {"cases", fmt::format("{}", caseCount(plan))}};
     if (outcome.package != nullptr) {
         rows.push_back({"unique SPIR-V", fmt::format("{}", outcome.package->uniqueSpirv)});
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
@@ -160,13 +166,11 @@ int fail(const Console& console, const Diagnostic& error) {
     return kExitFailed;
 }
 
-int planOnly(const Console& console, const CompileArguments& arguments, const Scene& scene,
-             const PlanOptions& options, Clock::time_point start) {
-    const Plan plan = makePlan(scene.materials, planningInputs(scene), options);
-    if (const std::optional<std::string> excess = describeExcess(plan, options)) {
-        return fail(console, makeError("max-shaders", scene.path, *excess));
+int planOnly(const Console& console, Outcome outcome, const PlanOptions& options, Clock::time_point start) {
+    if (const std::optional<std::string> excess = describeExcess(outcome.plan, options)) {
+        return fail(console, makeError("max-shaders", outcome.scenes.path(), *excess));
     }
-    tell(console, Outcome{arguments, scene, plan}, start);
+    tell(console, outcome, start);
     return kExitDone;
 }
 
@@ -178,31 +182,33 @@ Status writeWhole(const CompiledPackage& package, const std::string& folder) {
 
 int compile(const Console& console, const CompileArguments& arguments) {
     const Clock::time_point start = Clock::now();
-    console.progress("reading " + arguments.scene);
+    console.progress("reading " + join(arguments.scenes));
     ImportOptions import;
     import.variant = arguments.variant;
-    Result<Scene> scene = importScene(arguments.scene, import);
-    if (!scene) {
-        return fail(console, scene.error());
+    const Result<std::vector<Scene>> scenes = readScenes(arguments.scenes, import);
+    if (!scenes) {
+        return fail(console, scenes.error());
     }
-    Result<PlanChoice> plan = choosePlan(arguments.plan, *scene);
+    const SceneList list(*scenes);
+    Result<PlanChoice> plan = choosePlan(arguments.plan, list);
     if (!plan) {
         return fail(console, plan.error());
     }
-    scene->warnings.insert(scene->warnings.end(), plan->warnings.begin(), plan->warnings.end());
-    console.report(scene->warnings);
+    std::vector<Diagnostic> warnings = warningsOf(*scenes);
+    warnings.insert(warnings.end(), plan->warnings.begin(), plan->warnings.end());
+    console.report(warnings);
     console.report(plan->notes);
-    if (arguments.warningsAsErrors && !scene->warnings.empty()) {
-        return fail(console,
-                    makeError("werror", arguments.scene, "has warnings, and --werror makes them errors",
-                              "mend them, or leave out --werror"));
+    if (arguments.warningsAsErrors && !warnings.empty()) {
+        return fail(console, makeError("werror", list.path(), "has warnings, and --werror makes them errors",
+                                       "mend them, or leave out --werror"));
     }
     if (arguments.dryRun) {
-        return planOnly(console, arguments, *scene, plan->options, start);
+        const Plan made = makePlan(list.materials(), list.primitives(), plan->options);
+        return planOnly(console, Outcome{arguments, list, warnings, made}, plan->options, start);
     }
-    console.progress("compiling " + arguments.scene);
+    console.progress("compiling " + join(arguments.scenes));
     const Result<CompiledPackage> package =
-        compilePackage(*scene, settingsOf(arguments, std::move(plan->options)));
+        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)));
     if (!package) {
         return fail(console, package.error());
     }
@@ -210,7 +216,7 @@ int compile(const Console& console, const CompileArguments& arguments) {
     if (Status written = writeWhole(*package, arguments.output); !written) {
         return fail(console, written.error());
     }
-    tell(console, Outcome{arguments, *scene, package->plan, &*package}, start);
+    tell(console, Outcome{arguments, list, warnings, package->plan, &*package}, start);
     return kExitDone;
 }
 
@@ -245,7 +251,9 @@ void addCompile(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CompileArguments>();
     CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
                                    "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
-    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
+    addTexts(command, "SCENE", arguments->scenes, "FILE",
+             "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
+        .required();
     addVariant(command, arguments->variant);
     addOutputOptions(command, *arguments);
     addShaderOptions(command, *arguments);

@@ -31,8 +31,7 @@ struct ExplainArguments {
 
 // The scene, and what planning makes of it.
 struct Planned {
-    const Scene& scene;
-    std::vector<PrimitiveInputs> inputs;
+    const SceneList& scenes;
     PlanOptions options;
     Plan plan;
 };
@@ -42,11 +41,11 @@ using Drop = std::pair<std::string, std::string>;  // feature, reason
 // What a material asks for and does not get, over all of its primitives.
 std::set<Drop> dropsOf(const Planned& planned, int material) {
     std::set<Drop> drops;
-    for (const PrimitiveInputs& inputs : planned.inputs) {
+    for (const PrimitiveInputs& inputs : planned.scenes.primitives()) {
         if (inputs.material == material) {
             std::vector<Drop> found;
-            makeKey(planned.scene.materials[static_cast<std::size_t>(material)], inputs, planned.options.keys,
-                    &found);
+            makeKey(planned.scenes.materials()[static_cast<std::size_t>(material)], inputs,
+                    planned.options.keys, &found);
             drops.insert(found.begin(), found.end());
         }
     }
@@ -67,7 +66,7 @@ std::vector<const Key*> keysOf(const Planned& planned, int material) {
 std::vector<std::string> primitivesOf(const Planned& planned, const Key& key, int material) {
     std::vector<std::string> pointers;
     for (const int index : key.primitives) {
-        const PrimitiveInputs& inputs = planned.inputs[static_cast<std::size_t>(index)];
+        const PrimitiveInputs& inputs = planned.scenes.primitives()[static_cast<std::size_t>(index)];
         if (inputs.material == material) {
             pointers.push_back(fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive));
         }
@@ -85,7 +84,7 @@ std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int
     std::set<FeatureMask> masks;
     for (const int index : key.primitives) {
         const auto primitive = static_cast<std::size_t>(index);
-        if (planned.inputs[primitive].material == material) {
+        if (planned.scenes.primitives()[primitive].material == material) {
             masks.insert(planned.plan.primaryMaskOfPrimitive[primitive]);
         }
     }
@@ -123,7 +122,7 @@ Json toJson(const Planned& planned, int material) {
         dropped.push_back(Json{{"feature", feature}, {"reason", reason}});
     }
     return {{"index", material},
-            {"name", materialName(planned.scene, material)},
+            {"name", planned.scenes.materialName(material)},
             {"keys", keys},
             {"dropped", dropped}};
 }
@@ -143,7 +142,7 @@ std::string sharesText(const Planned& planned, const Key& key, const Case& shade
 }
 
 std::string toText(const Planned& planned, int material) {
-    std::string text = fmt::format("material {}: {}\n", material, materialName(planned.scene, material));
+    std::string text = fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
     const std::vector<const Key*> keys = keysOf(planned, material);
     if (keys.empty()) {
         return text + "  no primitive uses it: no key, no shader\n";
@@ -183,8 +182,8 @@ std::string variantsText(const Scene& scene) {
 }
 
 // Every material of that number, else of that name; all if none is asked for.
-Result<std::vector<int>> chooseMaterials(const Scene& scene, const std::string& wanted) {
-    const int count = static_cast<int>(scene.materials.size());
+Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::string& wanted) {
+    const int count = static_cast<int>(scenes.materials().size());
     int number = -1;
     const char* end = wanted.data() + wanted.size();
     const auto parsed = std::from_chars(wanted.data(), end, number);
@@ -194,14 +193,14 @@ Result<std::vector<int>> chooseMaterials(const Scene& scene, const std::string& 
     std::vector<int> chosen;
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) {
-        names.push_back(materialName(scene, i));
+        names.push_back(scenes.materialName(i));
         if (wanted.empty() || names.back() == wanted) {
             chosen.push_back(i);
         }
     }
     if (chosen.empty() && !wanted.empty()) {
         return makeError(
-            "material-unknown", scene.path,
+            "material-unknown", scenes.path(),
             fmt::format("has no material \"{}\" (it has {}){}", wanted, count, suggestion(wanted, names)),
             "use a name, or a number from 0");
     }
@@ -217,20 +216,21 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const Result<std::vector<int>> materials = chooseMaterials(*scene, arguments.material);
+    const SceneList scenes({&*scene, 1});
+    const Result<std::vector<int>> materials = chooseMaterials(scenes, arguments.material);
     if (!materials) {
         console.report(materials.error());
         return kExitFailed;
     }
-    Result<PlanChoice> choice = choosePlan(arguments.plan, *scene);
+    Result<PlanChoice> choice = choosePlan(arguments.plan, scenes);
     if (!choice) {
         console.report(choice.error());
         return kExitFailed;
     }
     console.report(choice->warnings);
     console.report(choice->notes);
-    Planned planned{*scene, planningInputs(*scene), std::move(choice->options), {}};
-    planned.plan = makePlan(scene->materials, planned.inputs, planned.options);
+    Planned planned{scenes, std::move(choice->options), {}};
+    planned.plan = makePlan(scenes.materials(), scenes.primitives(), planned.options);
     if (const std::optional<std::string> excess = describeExcess(planned.plan, planned.options)) {
         console.report(makeWarning("max-shaders", scene->path, *excess));
     }
@@ -244,7 +244,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
                                          {"merge", arguments.plan.merge},
                                          {"alpha", arguments.plan.alpha},
                                          {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
-                                         {"variant", variantToJson(*scene)},
+                                         {"variant", textOrNull(scene->variant)},
                                          {"variants", scene->variants},
                                          {"materials", list}}));
         return kExitDone;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <interop/scene.h>
 #include <map>
 #include <memory>
@@ -31,10 +32,17 @@ struct Module {
 };
 
 struct Contents {
+    // Those that are not retired.
+    std::size_t cases() const {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            package.cases(), [](const package::CaseEntry& entry) { return entry.keyCount > 0; }));
+    }
+
     const Package& package;
     const Manifest& manifest;
     std::vector<Module> modules;
-    std::map<std::uint32_t, std::set<std::uint32_t>> materials;  // by shader ID
+    std::map<std::uint32_t, std::set<std::pair<std::uint32_t, std::uint32_t>>>
+        materials;  // (scene, index) by shader ID
 };
 
 Result<Contents> gather(const Package& package, const Manifest& manifest) {
@@ -47,16 +55,18 @@ Result<Contents> gather(const Package& package, const Manifest& manifest) {
         }
         contents.modules.push_back({&entry, *statistics});
     }
-    for (const package::PrimitiveEntry& primitive : package.primitives()) {
-        contents.materials[primitive.shaderId].insert(primitive.materialIndex);
+    for (std::uint32_t scene = 0; scene < package.sceneCount(); ++scene) {
+        for (const package::PrimitiveEntry& primitive : package.scene(scene).primitives) {
+            contents.materials[primitive.shaderId].insert({scene, primitive.materialIndex});
+        }
     }
     return contents;
 }
 
-std::string nameOf(const Contents& contents, std::uint32_t material) {
+std::string nameOf(const Contents& contents, const std::pair<std::uint32_t, std::uint32_t>& material) {
     const auto found = contents.manifest.materialNames.find(material);
     return found != contents.manifest.materialNames.end() ? found->second
-                                                          : fmt::format("material {}", material);
+                                                          : fmt::format("material {}", material.second);
 }
 
 // Modules that share a file count once.
@@ -97,8 +107,10 @@ Json shadersToJson(const Contents& contents) {
         Json materials = Json::array();
         const auto found = contents.materials.find(id);
         if (found != contents.materials.end()) {
-            for (const std::uint32_t material : found->second) {
-                materials.push_back(Json{{"index", material}, {"name", nameOf(contents, material)}});
+            for (const auto& material : found->second) {
+                materials.push_back(Json{{"scene", material.first},
+                                         {"index", material.second},
+                                         {"name", nameOf(contents, material)}});
             }
         }
         list.push_back(Json{{"id", id},
@@ -108,6 +120,25 @@ Json shadersToJson(const Contents& contents) {
                             {"keys", shader.keyCount},
                             {"materials", materials}});
         ++id;
+    }
+    return list;
+}
+
+// Empty: none.
+std::string variantOf(const Contents& contents, std::uint32_t scene) {
+    return scene < contents.manifest.variants.size() ? contents.manifest.variants[scene] : std::string();
+}
+
+Json scenesToJson(const Contents& contents) {
+    Json list = Json::array();
+    for (std::uint32_t i = 0; i < contents.package.sceneCount(); ++i) {
+        const PackageScene scene = contents.package.scene(i);
+        list.push_back(Json{{"name", std::string(scene.name)},
+                            {"variant", textOrNull(variantOf(contents, i))},
+                            {"materials", scene.materials.size()},
+                            {"primitives", scene.primitives.size()},
+                            {"textures", scene.textures.size()},
+                            {"samplers", scene.samplers.size()}});
     }
     return list;
 }
@@ -123,7 +154,7 @@ Json toJson(const Contents& contents, const std::string& folder) {
             {"tracers", tracerNames(package.shape().tracers)},
             {"merge", contents.manifest.merge},
             {"alpha", package.alphaTested() ? "tested" : "opaque"},
-            {"variant", contents.manifest.variant.empty() ? Json(nullptr) : Json(contents.manifest.variant)},
+            {"scenes", scenesToJson(contents)},
             {"settings",
              {{"hitLobes", contents.manifest.hitLobes},
               {"energyCompensation", contents.manifest.energyCompensation},
@@ -132,17 +163,26 @@ Json toJson(const Contents& contents, const std::string& folder) {
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
               {"sky", package.environmentMap() ? "map" : "gradient"}}},
             {"counts",
-             {{"materials", package.materials().size()},
-              {"primitives", package.primitives().size()},
-              {"cases", package.caseCount()},
+             {{"cases", contents.cases()},
               {"buckets", package.bucketCount()},
-              {"textures", package.textures().size()},
-              {"samplers", package.samplers().size()},
               {"modules", package.modules().size()},
               {"uniqueSpirv", files}}},
             {"spirvBytes", bytes},
             {"shaders", shadersToJson(contents)},
             {"modules", modulesToJson(contents)}};
+}
+
+std::string sceneTable(const Contents& contents) {
+    std::vector<std::vector<std::string>> rows{
+        {"scene", "variant", "materials", "primitives", "textures", "samplers"}};
+    for (std::uint32_t i = 0; i < contents.package.sceneCount(); ++i) {
+        const PackageScene scene = contents.package.scene(i);
+        const std::string variant = variantOf(contents, i);
+        rows.push_back({std::string(scene.name), variant.empty() ? "-" : variant,
+                        fmt::format("{}", scene.materials.size()), fmt::format("{}", scene.primitives.size()),
+                        fmt::format("{}", scene.textures.size()), fmt::format("{}", scene.samplers.size())});
+    }
+    return formatTable(rows);
 }
 
 std::string shaderTable(const Contents& contents) {
@@ -195,17 +235,14 @@ std::string toText(const Contents& contents, const std::string& folder) {
          {"hit record", std::string(package::nameOf(package.hitRecord()))},
          {"merge", contents.manifest.merge},
          {"alpha", package.alphaTested() ? "tested" : "opaque"},
-         {"variant", contents.manifest.variant.empty() ? "-" : contents.manifest.variant},
          {"hit lobes", hitLobesText(contents.manifest)},
          {"energy compensation", contents.manifest.energyCompensation ? "on" : "off"},
          {"texture LOD", contents.manifest.textureLod},
-         {"materials", fmt::format("{}", package.materials().size())},
-         {"primitives", fmt::format("{}", package.primitives().size())},
-         {"textures", fmt::format("{}", package.textures().size())},
-         {"cases", fmt::format("{}", package.caseCount())},
+         {"cases", fmt::format("{}", contents.cases())},
          {"SPIR-V",
           fmt::format("{} modules, {} unique, {}", package.modules().size(), files, formatBytes(bytes))}});
-    return summary + "\n" + shaderTable(contents) + "\n" + moduleTable(contents);
+    return summary + "\n" + sceneTable(contents) + "\n" + shaderTable(contents) + "\n" +
+           moduleTable(contents);
 }
 
 int inspect(const Console& console, const InspectArguments& arguments) {

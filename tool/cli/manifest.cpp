@@ -21,8 +21,10 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         Manifest manifest;
         manifest.toolVersion = json.at("toolVersion").get<std::string>();
         manifest.merge = json.at("merge").get<std::string>();
-        const auto& variant = json.at("variant");
-        manifest.variant = variant.is_null() ? "" : variant.get<std::string>();
+        for (const auto& scene : json.at("scenes")) {
+            const auto& variant = scene.at("variant");
+            manifest.variants.push_back(variant.is_null() ? "" : variant.get<std::string>());
+        }
         const auto& settings = json.at("settings");
         manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
         manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
@@ -31,7 +33,8 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
             for (const auto& material : shader.at("materials")) {
                 const auto name = material.at("name").get<std::string>();
                 if (!name.empty()) {
-                    manifest.materialNames[material.at("index").get<std::uint32_t>()] = name;
+                    manifest.materialNames[{material.at("scene").get<std::uint32_t>(),
+                                            material.at("index").get<std::uint32_t>()}] = name;
                 }
             }
         }

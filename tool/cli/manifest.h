@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -14,12 +15,12 @@ namespace glint {
 struct Manifest {
     std::string toolVersion;
     std::string merge;
-    std::string variant;  // empty: none
+    std::vector<std::string> variants;  // by scene; empty: none
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
     std::string textureLod;
-    std::map<std::uint32_t, std::string>
-        materialNames;  // of the materials that have one and that shaders list
+    // By scene and index: of the materials that have one and that shaders list.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
 };
 
 // Errors of readFile(), and "manifest-format" where the file is not JSON or lacks a member.

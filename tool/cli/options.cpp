@@ -171,6 +171,14 @@ CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& v
     });
 }
 
+CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
+                      const std::string& type, const std::string& help) {
+    CLI::Option* option = command.add_option(flags, values, help)->type_name(type)->allow_extra_args();
+    return check(option, [](const std::string& text) {
+        return text.empty() ? std::string("is empty") : std::string();
+    });
+}
+
 CLI::Option& addImageOutput(CLI::App& command, const std::string& flags, std::string& value,
                             const std::vector<std::string>& extensions, const std::string& help) {
     CLI::Option* option = command.add_option(flags, value, help)->type_name("IMAGE");

@@ -37,6 +37,9 @@ CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value,
 // A path or a name: any text but the empty one.
 CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
                      const std::string& help);
+// One or more.
+CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
+                      const std::string& type, const std::string& help);
 // An image to write: error unless its extension is one of `extensions`.
 CLI::Option& addImageOutput(CLI::App& command, const std::string& flags, std::string& value,
                             const std::vector<std::string>& extensions, const std::string& help);

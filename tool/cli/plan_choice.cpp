@@ -2,7 +2,6 @@
 
 #include "cli/report.h"
 #include "cli/table.h"
-#include "gltf/import.h"
 
 #include <fmt/format.h>
 
@@ -106,7 +105,7 @@ void takeHits(const Profile& profile, const Profile& expected, const std::string
 
 }  // namespace
 
-Result<PlanChoice> choosePlan(const PlanArguments& arguments, const Scene& scene) {
+Result<PlanChoice> choosePlan(const PlanArguments& arguments, const SceneList& scenes) {
     PlanChoice choice;
     choice.options = arguments.options();
     if (choice.options.merge != MergePolicy::Profile) {
@@ -117,8 +116,8 @@ Result<PlanChoice> choosePlan(const PlanArguments& arguments, const Scene& scene
         return profile.error();
     }
     const Plan plan =
-        makePlan(scene.materials, planningInputs(scene), {choice.options.keys, MergePolicy::None});
-    const Profile expected = makeProfile(scene, plan, choice.options.keys);
+        makePlan(scenes.materials(), scenes.primitives(), {choice.options.keys, MergePolicy::None});
+    const Profile expected = makeProfile(scenes, plan, choice.options.keys);
     checkSettings(*profile, expected, arguments.profile, choice.warnings);
     if (isStale(*profile, expected)) {
         choice.notes.push_back({Severity::Note, "profile-stale", arguments.profile,

@@ -3,7 +3,7 @@
 
 #include "cli/options.h"
 #include "cli/profile.h"
-#include "gltf/scene.h"
+#include "gltf/scene_list.h"
 
 #include <glint/result.h>
 
@@ -19,6 +19,6 @@ struct PlanChoice {
 
 // The options of the command line, with the hits of its profile where it names one. Warns of keys that the
 // scene has and the profile lacks, and of a profile that was made otherwise. Errors of readProfile().
-Result<PlanChoice> choosePlan(const PlanArguments& arguments, const Scene& scene);
+Result<PlanChoice> choosePlan(const PlanArguments& arguments, const SceneList& scenes);
 
 }  // namespace glint

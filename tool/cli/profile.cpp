@@ -139,19 +139,22 @@ Profile readMembers(Reader& reader, const Json& json) {
 
 }  // namespace
 
-Profile makeProfile(const Scene& scene, const Plan& plan, const KeyOptions& options) {
+Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options) {
     Profile profile;
-    for (const SourceFile& file : scene.files) {
-        profile.sources.push_back({std::filesystem::path(file.path).filename().string(), hexHash(file.hash)});
+    for (const Scene& scene : scenes.scenes()) {
+        for (const SourceFile& file : scene.files) {
+            profile.sources.push_back(
+                {std::filesystem::path(file.path).filename().string(), hexHash(file.hash)});
+        }
     }
-    profile.variant = scene.variant;
+    profile.variant = scenes.variant();
     profile.alpha = toString(options.alpha);
     profile.hitLobes = namesOf(options.keptLobes & kLobeMask);
     for (const Key& key : plan.keys) {
         ProfileKey entry;
         entry.features = namesOf(key.mask);
         for (const int material : key.materials) {
-            entry.materials.push_back(materialName(scene, material));
+            entry.materials.push_back(scenes.materialName(material));
         }
         profile.keys.push_back(std::move(entry));
     }

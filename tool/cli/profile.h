@@ -1,7 +1,7 @@
 // Profiles: how many hits each key had, as `glint render --profile FILE` counts and `--merge profile` reads.
 #pragma once
 
-#include "gltf/scene.h"
+#include "gltf/scene_list.h"
 #include "plan/plan.h"
 
 #include <glint/result.h>
@@ -33,9 +33,9 @@ struct Profile {
     std::vector<ProfileKey> keys;
 };
 
-// What the scene and the plan give; without hits. Requires a plan that gives each key its own case, in the
+// What the scenes and the plan give; without hits. Requires a plan that gives each key its own case, in the
 // order of the keys.
-Profile makeProfile(const Scene& scene, const Plan& plan, const KeyOptions& options);
+Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options);
 
 std::string toText(const Profile& profile);
 

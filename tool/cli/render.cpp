@@ -207,9 +207,10 @@ Status writeResults(const RenderArguments& arguments, const LinearImage& image, 
 }
 
 // Everything between the scene and the files.
-Status render(const Console& console, const RenderArguments& arguments, const Scene& scene,
+Status render(const Console& console, const RenderArguments& arguments, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
-    const SceneViewData data = sceneView(arguments, scene);
+    const Scene& scene = scenes.scenes().front();
+    SceneViewData data = sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     const Result<CameraChoice> camera = chooseCamera(scene, data, arguments.camera, aspect);
     if (!camera) {
@@ -234,6 +235,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     if (!package) {
         return package.error();
     }
+    data.packageScene = sceneIn(*package, scene).value_or(0);
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
@@ -249,7 +251,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
         return done;
     }
     std::vector<Diagnostic> warnings;
-    done = writeProfile(arguments.profileOutput, scene, plan, report.hits, warnings);
+    done = writeProfile(arguments.profileOutput, scenes, plan, report.hits, warnings);
     console.report(warnings);
     return done;
 }
@@ -283,14 +285,15 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const Result<PlanChoice> plan = choosePlan(arguments.plan, *scene);
+    const SceneList scenes({&*scene, 1});
+    const Result<PlanChoice> plan = choosePlan(arguments.plan, scenes);
     if (!plan) {
         console.report(plan.error());
         return kExitFailed;
     }
     console.report(plan->warnings);
     console.report(plan->notes);
-    status = render(console, arguments, *scene, plan->options, report);
+    status = render(console, arguments, scenes, plan->options, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;

@@ -22,6 +22,13 @@ FeatureMask maskOf(const package::PrimitiveEntry& entry) {
 
 }  // namespace
 
+std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene) {
+    if (package.sceneCount() == 1) {
+        return 0;
+    }
+    return package.findScene(std::filesystem::path(scene.path).stem().string());
+}
+
 Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
                     bool environmentMap, const Scene& scene) {
     if (!package.supports(strategy)) {
@@ -34,13 +41,19 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
                          environmentMap ? "compile it with --environment-map, or leave out --environment"
                                         : "give one by --environment, or compile without --environment-map");
     }
-    if (package.materials().size() != scene.materials.size()) {
-        return mismatch(folder, fmt::format("has {} materials, but the scene has {}",
-                                            package.materials().size(), scene.materials.size()));
+    const std::optional<std::uint32_t> index = sceneIn(package, scene);
+    if (!index) {
+        return mismatch(folder, fmt::format("has {} scenes, none of them named {}", package.sceneCount(),
+                                            std::filesystem::path(scene.path).stem().string()));
+    }
+    const PackageScene known = package.scene(*index);
+    if (known.materials.size() != scene.materials.size()) {
+        return mismatch(folder, fmt::format("has {} materials, but the scene has {}", known.materials.size(),
+                                            scene.materials.size()));
     }
     const KeyOptions keys{package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque};
     for (const PrimitiveInputs& inputs : planningInputs(scene)) {
-        const package::PrimitiveEntry* entry = package.findPrimitive(
+        const package::PrimitiveEntry* entry = known.findPrimitive(
             static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));
         const std::string pointer = fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive);
         if (entry == nullptr) {
@@ -52,7 +65,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
             return mismatch(folder, "has another material or other features for the scene's " + pointer);
         }
     }
-    for (const package::TextureEntry& texture : package.textures()) {
+    for (const package::TextureEntry& texture : known.textures) {
         if (texture.image >= scene.images.size()) {
             return mismatch(folder, fmt::format("uses image {}, but the scene has {} images", texture.image,
                                                 scene.images.size()));

@@ -7,10 +7,15 @@
 #include <glint/package.h>
 #include <glint/result.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace glint {
+
+// Which of the package's scenes it is: that of the file's name, or the only one there is.
+std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene);
 
 // Error "package-mismatch" unless `package` was compiled for the strategy, for that kind of sky, and from
 // this scene: the same materials, and for each primitive of it the same material and features.

@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "cli/profile.h"
-#include "gltf/import.h"
 
 namespace glint {
 
@@ -28,10 +27,10 @@ void settleProfileOutput(const std::string& file, const std::string& package, co
     plan.merge = "none";
 }
 
-Status writeProfile(const std::string& file, const Scene& scene, const PlanOptions& options,
+Status writeProfile(const std::string& file, const SceneList& scenes, const PlanOptions& options,
                     std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings) {
-    const Plan plan = makePlan(scene.materials, planningInputs(scene), options);
-    Profile profile = makeProfile(scene, plan, options.keys);
+    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
+    Profile profile = makeProfile(scenes, plan, options.keys);
     std::uint64_t sum = 0;
     for (std::size_t key = 0; key < profile.keys.size(); ++key) {
         const auto shader = static_cast<std::size_t>(plan.keys[key].shaderId);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/options.h"
-#include "gltf/scene.h"
+#include "gltf/scene_list.h"
 
 #include <glint/result.h>
 
@@ -20,7 +20,7 @@ void settleProfileOutput(const std::string& file, const std::string& package, co
 
 // `hits`: by shader ID of a plan with `options`, in which every key has its own case. Adds to `warnings` if
 // there is none. Errors of writeFile().
-Status writeProfile(const std::string& file, const Scene& scene, const PlanOptions& options,
+Status writeProfile(const std::string& file, const SceneList& scenes, const PlanOptions& options,
                     std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings);
 
 }  // namespace glint

@@ -37,24 +37,26 @@ Json featuresToJson(FeatureMask mask) {
     return list;
 }
 
-Json variantToJson(const Scene& scene) {
-    return scene.variant.empty() ? Json(nullptr) : Json(scene.variant);
+Json textOrNull(const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
 }
 
-Json materialsToJson(const Scene& scene, std::span<const int> materials) {
+Json materialsToJson(const SceneList& scenes, std::span<const int> materials) {
     Json list = Json::array();
     for (const int material : materials) {
-        list.push_back(Json{{"index", material}, {"name", materialName(scene, material)}});
+        const SceneList::Place place = scenes.place(material);
+        list.push_back(
+            Json{{"scene", place.scene}, {"index", place.index}, {"name", scenes.materialName(material)}});
     }
     return list;
 }
 
-Json droppedToJson(const Scene& scene, const Plan& plan) {
+Json droppedToJson(const SceneList& scenes, const Plan& plan) {
     Json list = Json::array();
     for (const DroppedFeature& dropped : plan.dropped) {
         list.push_back(Json{{"feature", dropped.feature},
                             {"reason", dropped.reason},
-                            {"materials", materialsToJson(scene, dropped.materials)}});
+                            {"materials", materialsToJson(scenes, dropped.materials)}});
     }
     return list;
 }
@@ -65,14 +67,6 @@ std::string featureList(FeatureMask mask) {
         names.emplace_back(name);
     }
     return join(names);
-}
-
-std::string materialName(const Scene& scene, int material) {
-    if (material == scene.defaultMaterial) {
-        return "(default)";
-    }
-    const std::string& name = scene.materials[static_cast<std::size_t>(material)].name;
-    return name.empty() ? fmt::format("material {}", material) : name;
 }
 
 std::string droppedText(const Plan& plan) {

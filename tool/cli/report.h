@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/console.h"
-#include "gltf/scene.h"
+#include "gltf/scene_list.h"
 #include "plan/plan.h"
 
 #include <glint/result.h>
@@ -25,18 +25,15 @@ std::string toText(const Json& json);
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
 Json featuresToJson(FeatureMask mask);
-// The name, or null.
-Json variantToJson(const Scene& scene);
-// [{"index", "name"}]
-Json materialsToJson(const Scene& scene, std::span<const int> materials);
+// The text, or null where it is empty.
+Json textOrNull(const std::string& text);
+// [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
+Json materialsToJson(const SceneList& scenes, std::span<const int> materials);
 // [{"feature", "reason", "materials"}]
-Json droppedToJson(const Scene& scene, const Plan& plan);
+Json droppedToJson(const SceneList& scenes, const Plan& plan);
 
 // Names of the features of a mask, "a, b", or "-".
 std::string featureList(FeatureMask mask);
-// The glTF name, else "material N"; "(default)" for the material of primitives that have none.
-std::string materialName(const Scene& scene, int material);
-
 // One line for each feature and reason with the number of materials; empty if nothing was dropped.
 std::string droppedText(const Plan& plan);
 

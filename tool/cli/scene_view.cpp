@@ -62,7 +62,7 @@ std::vector<bool> placedMeshes(const Scene& scene) {
 }  // namespace
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights};
+    return {primitives, instances, images, lights, packageScene};
 }
 
 std::array<float, 12> toRows(const Matrix4& matrix) {

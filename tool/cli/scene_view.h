@@ -17,6 +17,7 @@ struct SceneViewData {
     std::vector<LightView> lights;
 
     // Points into this object.
+    std::uint32_t packageScene = 0;  // as in SceneView
     SceneView view() const;
 };
 

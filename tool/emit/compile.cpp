@@ -5,7 +5,7 @@
 #include "emit/modules.h"
 #include "emit/sources.h"
 #include "emit/tables.h"
-#include "gltf/import.h"
+#include "gltf/scene_list.h"
 
 #include <fmt/format.h>
 
@@ -41,33 +41,29 @@ void addModuleFiles(CompiledPackage& package, bool emitGlsl) {
     }
 }
 
-Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& settings) {
+Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings) {
     if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
-        return makeError("strategy", scene.path,
+        return makeError("strategy", scenes.path(),
                          fmt::format("{:#x} is no set of strategies", settings.strategies),
                          "choose among uber, visibility, sorted-uber and hit-shaders");
     }
     if (settings.tracers == 0 || settings.tracers > package::kAllTracers) {
-        return makeError("tracer", scene.path, fmt::format("{:#x} is no set of tracers", settings.tracers),
+        return makeError("tracer", scenes.path(), fmt::format("{:#x} is no set of tracers", settings.tracers),
                          "choose ray-query, ray-pipeline or both");
     }
-    if (Status valid = checkScene(scene); !valid) {
-        return valid.error();
-    }
-    const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
     CompiledPackage package;
-    package.plan = makePlan(scene.materials, primitives, settings.plan);
+    package.plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     if (const auto excess = describeExcess(package.plan, settings.plan)) {
-        return makeError("max-shaders", scene.path, *excess);
+        return makeError("max-shaders", scenes.path(), *excess);
     }
 
     // Plan to GLSL to SPIR-V.
-    Result<SourceSet> made = makeSourceSet(scene, package.plan, settings);
+    Result<SourceSet> made = makeSourceSet(scenes, package.plan, settings);
     if (!made) {
         return made.error();
     }
     const SourceSet& sources = *made;
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scene, package.plan, sources, settings);
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, package.plan, sources, settings);
     if (!modules) {
         return modules.error();
     }
@@ -81,16 +77,16 @@ Result<CompiledPackage> compile(const Scene& scene, const CompileSettings& setti
     // Files; the manifest last, as it lists the others.
     addModuleFiles(package, settings.emitGlsl);
     package.files.push_back(
-        {package::kTablesFile, makeTables(scene, primitives, package.plan, package.modules, settings)});
+        {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
-        Result<std::string> header = makeHeader(scene, package.plan, sources, settings.plan);
+        Result<std::string> header = makeHeader(scenes, package.plan, sources, settings.plan);
         if (!header) {
             return header.error();
         }
         package.files.push_back({package::kHeaderFile, toBytes(*header)});
     }
     std::ranges::sort(package.files, {}, &PackageFile::name);
-    package.files.push_back({package::kManifestFile, toBytes(makeManifest(scene, package, settings))});
+    package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});
     std::ranges::sort(package.files, {}, &PackageFile::name);
     return package;
 }
@@ -121,11 +117,20 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
     return names;
 }
 
-Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {
+Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings) {
+    if (scenes.empty()) {
+        return makeError("scene-missing", "", "there is no scene to compile", "name at least one");
+    }
+    const std::string where = scenes.front().path;
     try {
-        return compile(scene, settings);
+        for (const Scene& scene : scenes) {
+            if (Status valid = checkScene(scene); !valid) {
+                return valid.error();
+            }
+        }
+        return compile(SceneList(scenes), settings);
     } catch (const std::exception& error) {
-        return makeError("internal", scene.path, fmt::format("compiling failed: {}", error.what()),
+        return makeError("internal", where, fmt::format("compiling failed: {}", error.what()),
                          "this is a defect of Glint, or memory ran out");
     }
 }

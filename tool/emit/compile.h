@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,9 +68,13 @@ struct CompiledPackage {
     std::uint64_t spirvBytes = 0;  // of the unique modules
 };
 
-// Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
-// line (a defect of Glint itself).
-Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings);
+// `scenes`: at least one; they share the cases, and each has its own tables. Errors: too many cases
+// ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and line (a defect of Glint
+// itself).
+Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings);
+inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {
+    return compilePackage(std::span(&scene, 1), settings);
+}
 
 // Replaces the contents of `folder` by the package: files that did not change keep their time stamps, files
 // of the earlier package that are no longer part of it go, tables.bin goes last so that a reader never sees a

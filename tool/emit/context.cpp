@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
 #include <vector>
 
 namespace glint {
@@ -20,11 +19,12 @@ std::string featureList(FeatureMask mask) {
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string materialList(const Scene& scene, const std::vector<int>& materials) {
+std::string materialList(const SceneList& scenes, const std::vector<int>& materials) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < materials.size() && i < kMaxNamesListed; ++i) {
-        const std::string& name = scene.materials[materials[i]].name;
-        names.push_back(name.empty() ? fmt::format("material {}", materials[i]) : commentText(name));
+        const std::string& name = scenes.materials()[materials[i]].name;
+        names.push_back(name.empty() ? fmt::format("material {}", scenes.place(materials[i]).index)
+                                     : commentText(name));
     }
     std::string list = fmt::format("{}", fmt::join(names, ", "));
     if (materials.size() > kMaxNamesListed) {
@@ -54,7 +54,7 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
-void addCase(mustache::data& context, const Scene& scene, const Case& shaderCase) {
+void addCase(mustache::data& context, const SceneList& scenes, const Case& shaderCase) {
     context.set("id", fmt::format("{}", shaderCase.shaderId));
     context.set("name", shaderCase.name);
     context.set("alwaysLobes", literal(shaderCase.always & kLobeMask));
@@ -63,20 +63,22 @@ void addCase(mustache::data& context, const Scene& scene, const Case& shaderCase
     context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
     context.set("always", featureList(shaderCase.always));
     context.set("sometimes", featureList(shaderCase.sometimes));
-    context.set("materials", materialList(scene, shaderCase.materials));
+    context.set("materials", materialList(scenes, shaderCase.materials));
 }
 
-mustache::data makeContext(const Scene& scene, const Plan& plan, const PlanOptions& options) {
+mustache::data makeContext(const SceneList& scenes, const Plan& plan, const PlanOptions& options) {
     mustache::data context;
     context.set("version", std::string(toolVersion()));
-    context.set("source", commentText(std::filesystem::path(scene.path).filename().string()));
+    context.set("source", commentText(scenes.fileNames()));
     context.set("merge", std::string(toString(options.merge)));
     context.set("alpha", std::string(toString(options.keys.alpha)));
     mustache::data cases(mustache::data::type::list);
     for (const Case& shaderCase : plan.cases) {
-        mustache::data entry;
-        addCase(entry, scene, shaderCase);
-        cases.push_back(entry);
+        if (!shaderCase.isRetired()) {
+            mustache::data entry;
+            addCase(entry, scenes, shaderCase);
+            cases.push_back(entry);
+        }
     }
     context.set("cases", cases);
     return context;

@@ -62,12 +62,27 @@ mustache::data caseMasks(const Plan& plan) {
     return list;
 }
 
-mustache::data materialList(const Scene& scene) {
+mustache::data materialNames(const Scene& scene) {
     mustache::data list(mustache::data::type::list);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         mustache::data entry;
         entry.set("index", fmt::format("{}", i));
         entry.set("literal", quote(scene.materials[i].name));
+        list.push_back(entry);
+    }
+    return list;
+}
+
+mustache::data sceneTables(const SceneList& scenes) {
+    mustache::data list(mustache::data::type::list);
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const Scene& scene = scenes.scenes()[i];
+        mustache::data entry;
+        entry.set("index", fmt::format("{}", i));
+        entry.set("literal", quote(scenes.name(i)));
+        entry.set("hasMaterials", !scene.materials.empty());
+        entry.set("materialCount", fmt::format("{}", scene.materials.size()));
+        entry.set("materialNames", materialNames(scene));
         list.push_back(entry);
     }
     return list;
@@ -106,22 +121,21 @@ std::string headerNamespace(const std::string& scenePath) {
     return name;
 }
 
-Result<std::string> makeHeader(const Scene& scene, const Plan& plan, const SourceSet& sources,
+Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                const PlanOptions& options) {
     Result<std::string> interop = interopDeclarations();
     if (!interop) {
         return interop.error();
     }
-    mustache::data context = makeContext(scene, plan, options);
-    context.set("namespace", headerNamespace(scene.path));
+    mustache::data context = makeContext(scenes, plan, options);
+    context.set("namespace", headerNamespace(scenes.scenes().front().path));
     context.set("interop", *interop);
     context.set("features", featureList());
     context.set("hasCases", !plan.cases.empty());
-    context.set("hasMaterials", !scene.materials.empty());
     context.set("caseCount", fmt::format("{}", plan.cases.size()));
     context.set("caseMasks", caseMasks(plan));
-    context.set("materialCount", fmt::format("{}", scene.materials.size()));
-    context.set("materialNames", materialList(scene));
+    context.set("sceneCount", fmt::format("{}", scenes.scenes().size()));
+    context.set("scenes", sceneTables(scenes));
     context.set("layouts", layoutList());
     return renderTemplate(sources, "glint_tables.h.mustache", context);
 }

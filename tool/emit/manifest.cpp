@@ -66,10 +66,37 @@ Json maxShadersOf(const PlanOptions& options) {
     return budget > 0 ? Json(budget) : Json(nullptr);
 }
 
-Json materialList(const Scene& scene, const std::vector<int>& materials) {
+Json materialList(const SceneList& scenes, const std::vector<int>& materials) {
     Json list = Json::array();
     for (const int material : materials) {
-        list.push_back({{"index", material}, {"name", scene.materials[material].name}});
+        const SceneList::Place place = scenes.place(material);
+        list.push_back({{"scene", place.scene},
+                        {"index", place.index},
+                        {"name", scenes.materials()[static_cast<std::size_t>(material)].name}});
+    }
+    return list;
+}
+
+// Without names, which shaders[] has.
+Json materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
+    Json list = Json::array();
+    for (const int material : materials) {
+        const SceneList::Place place = scenes.place(material);
+        list.push_back({{"scene", place.scene}, {"index", place.index}});
+    }
+    return list;
+}
+
+Json sceneList(const SceneList& scenes) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const Scene& scene = scenes.scenes()[i];
+        list.push_back({{"name", scenes.name(i)},
+                        {"source", std::filesystem::path(scene.path).filename().string()},
+                        {"variant", scene.variant.empty() ? Json(nullptr) : Json(scene.variant)},
+                        {"materials", scene.materials.size()},
+                        {"primitives", scenes.primitivesOf(i).count},
+                        {"sources", sources(scene)}});
     }
     return list;
 }
@@ -101,9 +128,12 @@ Json stages(const CompiledPackage& package, int shaderId) {
     return object;
 }
 
-Json shaders(const Scene& scene, const CompiledPackage& package) {
+Json shaders(const SceneList& scenes, const CompiledPackage& package) {
     Json list = Json::array();
     for (const Case& shaderCase : package.plan.cases) {
+        if (shaderCase.isRetired()) {
+            continue;
+        }
         list.push_back({{"id", shaderCase.shaderId},
                         {"name", shaderCase.name},
                         {"always", featureNames(shaderCase.always)},
@@ -111,7 +141,7 @@ Json shaders(const Scene& scene, const CompiledPackage& package) {
                         {"keys", shaderCase.keys.size()},
                         {"share", shareToJson(shaderCase.share)},
                         {"reason", toString(shaderCase.reason)},
-                        {"materials", materialList(scene, shaderCase.materials)},
+                        {"materials", materialList(scenes, shaderCase.materials)},
                         {"stages", stages(package, shaderCase.shaderId)}});
     }
     return list;
@@ -129,24 +159,25 @@ Json passes(const CompiledPackage& package) {
     return list;
 }
 
-Json keys(const CompiledPackage& package) {
+Json keys(const SceneList& scenes, const CompiledPackage& package) {
     Json list = Json::array();
     for (const Key& key : package.plan.keys) {
         list.push_back({{"features", featureNames(key.mask)},
                         {"mask", fmt::format("{:#018x}", key.mask)},
                         {"primitives", key.primitives.size()},
-                        {"materials", key.materials},
+                        {"materials", materialPlaces(scenes, key.materials)},
                         {"share", shareToJson(key.share)},
                         {"shaderId", key.shaderId}});
     }
     return list;
 }
 
-Json dropped(const CompiledPackage& package) {
+Json dropped(const SceneList& scenes, const CompiledPackage& package) {
     Json list = Json::array();
     for (const DroppedFeature& feature : package.plan.dropped) {
-        list.push_back(
-            {{"feature", feature.feature}, {"materials", feature.materials}, {"reason", feature.reason}});
+        list.push_back({{"feature", feature.feature},
+                        {"materials", materialPlaces(scenes, feature.materials)},
+                        {"reason", feature.reason}});
     }
     return list;
 }
@@ -157,10 +188,10 @@ Json effects() {
                          {"reason", "reflection rays are part of every package"}}});
 }
 
-Json counts(const Scene& scene, const CompiledPackage& package) {
+Json counts(const SceneList& scenes, const CompiledPackage& package) {
     return {
-        {"materials", scene.materials.size()},     {"keysPossible", countToJson(package.plan.keysPossible)},
-        {"keysPresent", package.plan.keys.size()}, {"cases", package.plan.cases.size()},
+        {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
+        {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
         {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
         {"spirvBytes", package.spirvBytes}};
 }
@@ -183,29 +214,27 @@ bool staysInside(const std::filesystem::path& name) {
 
 }  // namespace
 
-std::string makeManifest(const Scene& scene, const CompiledPackage& package,
+std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings) {
     Json manifest;
     manifest["format"] = kManifestFormat;
     manifest["version"] = package::kVersion;
     manifest["toolVersion"] = toolVersion();
-    manifest["source"] = std::filesystem::path(scene.path).filename().string();
-    manifest["sources"] = sources(scene);
+    manifest["scenes"] = sceneList(scenes);
     manifest["strategies"] = strategyNames(settings.strategies);
     manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = toString(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
     manifest["alpha"] = toString(settings.plan.keys.alpha);
     manifest["settings"] = settingsOf(settings);
-    manifest["variant"] = scene.variant.empty() ? Json(nullptr) : Json(scene.variant);
-    manifest["counts"] = counts(scene, package);
+    manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
     manifest["effects"] = effects();
     manifest["features"] = features();
-    manifest["shaders"] = shaders(scene, package);
+    manifest["shaders"] = shaders(scenes, package);
     manifest["passes"] = passes(package);
-    manifest["keys"] = keys(package);
-    manifest["dropped"] = dropped(package);
+    manifest["keys"] = keys(scenes, package);
+    manifest["dropped"] = dropped(scenes, package);
     manifest["files"] = files(package);
     // Names come from the scene: what is not UTF-8 is replaced rather than refused.
     return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "gltf/scene_list.h"
 
 #include <set>
 #include <string>
@@ -12,7 +13,8 @@ namespace glint {
 inline constexpr std::string_view kManifestFormat = "glint-package";
 
 // The text of the manifest; `package` must be complete but for the manifest itself.
-std::string makeManifest(const Scene& scene, const CompiledPackage& package, const CompileSettings& settings);
+std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
+                         const CompileSettings& settings);
 
 // Names of the files that a manifest lists, itself included, as far as they stay in its folder; empty if
 // `text` is no manifest of a package.

@@ -225,22 +225,36 @@ void shareFiles(std::vector<CompiledModule>& modules) {
     }
 }
 
+std::vector<std::uint32_t> retiredIds(const Plan& plan) {
+    std::vector<std::uint32_t> ids;
+    for (const Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired()) {
+            ids.push_back(static_cast<std::uint32_t>(shaderCase.shaderId));
+        }
+    }
+    return ids;
+}
+
 }  // namespace
 
 package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings) {
-    return {settings.strategies, settings.tracers, settings.shadows,
-            settings.plan.keys.alpha == AlphaPolicy::Tested, static_cast<std::uint32_t>(plan.cases.size())};
+    return {settings.strategies,
+            settings.tracers,
+            settings.shadows,
+            settings.plan.keys.alpha == AlphaPolicy::Tested,
+            static_cast<std::uint32_t>(plan.cases.size()),
+            retiredIds(plan)};
 }
 
-Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Plan& plan,
+Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings) {
-    kainjow::mustache::data context = makeContext(scene, plan, settings.plan);
+    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     std::vector<ModuleSource> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(plan, settings))) {
         const bool ofCase = package::findRole(key.role)->repeated == package::Repeated::ByCase;
         if (ofCase) {
-            addCase(context, scene, plan.cases[key.index]);
+            addCase(context, scenes, plan.cases[key.index]);
         }
         const auto* const source = std::ranges::find(kSources, key.role, &RoleSource::role);
         Result<ModuleSource> module =
@@ -251,7 +265,9 @@ Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Pl
         }
         if (key.role == ModuleRole::UberShade || key.role == ModuleRole::SortedShade) {
             for (const Case& shaderCase : plan.cases) {
-                module->functionsApart.push_back("shade" + shaderCase.name);
+                if (!shaderCase.isRetired()) {
+                    module->functionsApart.push_back("shade" + shaderCase.name);
+                }
             }
         }
         modules.push_back(std::move(*module));

@@ -23,7 +23,7 @@ package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings)
 
 // Those that the settings call for, in order of their keys. Errors as renderTemplate() and
 // flatten().
-Result<std::vector<ModuleSource>> makeModuleSources(const Scene& scene, const Plan& plan,
+Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings);
 

@@ -23,9 +23,9 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
     define("SOMETIMES", sometimes);
 }
 
-std::string sceneDefines(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
+std::string sceneDefines(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     const bool hasMasked = std::ranges::any_of(
-        scene.materials, [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
+        scenes.materials(), [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
     const auto flag = [](bool value) { return value ? 1 : 0; };
     std::string text = "// The scene as a whole: features of every primary surface, and of some.\n";
     defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
@@ -71,15 +71,15 @@ SourceLookup SourceSet::lookup() const {
     return [this](std::string_view name) { return find(name); };
 }
 
-Result<SourceSet> makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings) {
+Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     SourceSet sources;
     for (const EmbeddedFile& file : embeddedFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
     sources.add("generated/features.glsl", featureDefines());
-    sources.add("generated/scene.glsl", sceneDefines(scene, plan, settings));
+    sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     Result<std::string> cases =
-        renderTemplate(sources, "cases.glsl.mustache", makeContext(scene, plan, settings.plan));
+        renderTemplate(sources, "cases.glsl.mustache", makeContext(scenes, plan, settings.plan));
     if (!cases) {
         return cases.error();
     }

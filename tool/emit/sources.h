@@ -3,6 +3,7 @@
 
 #include "emit/compile.h"
 #include "emit/flatten.h"
+#include "gltf/scene_list.h"
 
 #include <cstdint>
 #include <map>
@@ -26,7 +27,7 @@ private:
 
 // Embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl". Errors as
 // renderTemplate().
-Result<SourceSet> makeSourceSet(const Scene& scene, const Plan& plan, const CompileSettings& settings);
+Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
 
 // C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();

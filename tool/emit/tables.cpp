@@ -83,18 +83,18 @@ std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPoli
            (material.alphaMode == AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
 }
 
-std::vector<PrimitiveEntry> makePrimitives(const Scene& scene, std::span<const PrimitiveInputs> primitives,
-                                           const Plan& plan, AlphaPolicy alpha) {
+std::vector<PrimitiveEntry> makePrimitives(const SceneList& scenes, SceneList::Range range, const Plan& plan,
+                                           AlphaPolicy alpha) {
     std::vector<PrimitiveEntry> entries;
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const PrimitiveInputs& inputs = primitives[i];
+    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+        const PrimitiveInputs& inputs = scenes.primitives()[i];
         const Key& key = plan.keys[plan.keyOfPrimitive[i]];
-        const Material& material = scene.materials[inputs.material];
+        const Material& material = scenes.materials()[inputs.material];
         PrimitiveEntry entry{};
         entry.mesh = static_cast<std::uint32_t>(inputs.mesh);
         entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
         entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
-        entry.materialIndex = static_cast<std::uint32_t>(inputs.material);
+        entry.materialIndex = static_cast<std::uint32_t>(scenes.place(inputs.material).index);
         const FeatureMask primary = plan.primaryMaskOfPrimitive[i];
         entry.featureLobes = static_cast<std::uint32_t>(primary & kLobeMask);
         entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
@@ -117,6 +117,24 @@ std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
                            static_cast<std::uint32_t>(sampler.mip), sampler.mipmapped ? 1U : 0U});
     }
     return entries;
+}
+
+// The sections that go scene by scene.
+struct SceneTables {
+    std::vector<gpu::MaterialRecord> materials;
+    std::vector<PrimitiveEntry> primitives;
+    std::vector<TextureEntry> textures;
+    std::vector<SamplerEntry> samplers;
+    std::vector<SceneEntry> scenes;
+};
+
+// Adds a scene's elements to those of all, and says where they are.
+template <typename Element>
+void append(std::vector<Element>& all, const std::vector<Element>& own, std::uint32_t& first,
+            std::uint32_t& count) {
+    first = static_cast<std::uint32_t>(all.size());
+    count = static_cast<std::uint32_t>(own.size());
+    all.insert(all.end(), own.begin(), own.end());
 }
 
 Diagnostic indexError(const Scene& scene, std::string what) {
@@ -154,8 +172,8 @@ Status checkScene(const Scene& scene) {
     return okStatus();
 }
 
-Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives, const Plan& plan,
-                 std::span<const CompiledModule> modules, const CompileSettings& settings) {
+Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
+                 const CompileSettings& settings) {
     StringTable strings;
     std::vector<ModuleEntry> moduleEntries;
     for (const CompiledModule& module : modules) {
@@ -167,15 +185,28 @@ Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives
         cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
-    const MaterialTables materials = makeMaterialTables(scene);
-
     const AlphaPolicy alpha = settings.plan.keys.alpha;
+    SceneTables tables;
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const Scene& scene = scenes.scenes()[i];
+        const MaterialTables materials = makeMaterialTables(scene);
+        SceneEntry entry{};
+        entry.name = strings.add(scenes.name(i));
+        append(tables.materials, materials.materials, entry.firstMaterial, entry.materialCount);
+        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha),
+               entry.firstPrimitive, entry.primitiveCount);
+        append(tables.textures, materials.textures, entry.firstTexture, entry.textureCount);
+        append(tables.samplers, makeSamplers(scene), entry.firstSampler, entry.samplerCount);
+        tables.scenes.push_back(entry);
+    }
+
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
-    writer.add(SectionKind::Materials, materials.materials);
-    writer.add(SectionKind::Primitives, makePrimitives(scene, primitives, plan, alpha));
-    writer.add(SectionKind::Textures, materials.textures);
-    writer.add(SectionKind::Samplers, makeSamplers(scene));
+    writer.add(SectionKind::Materials, tables.materials);
+    writer.add(SectionKind::Primitives, tables.primitives);
+    writer.add(SectionKind::Textures, tables.textures);
+    writer.add(SectionKind::Samplers, tables.samplers);
+    writer.add(SectionKind::Scenes, tables.scenes);
     writer.add(SectionKind::Strings, strings.bytes());
     writer.add(SectionKind::Cases, cases);
 

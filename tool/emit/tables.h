@@ -2,6 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "gltf/scene_list.h"
 
 #include <interop/scene.h>
 #include <span>
@@ -22,7 +23,7 @@ MaterialTables makeMaterialTables(const Scene& scene);
 Status checkScene(const Scene& scene);
 
 // The file's bytes.
-Bytes makeTables(const Scene& scene, std::span<const PrimitiveInputs> primitives, const Plan& plan,
-                 std::span<const CompiledModule> modules, const CompileSettings& settings);
+Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
+                 const CompileSettings& settings);
 
 }  // namespace glint

@@ -185,6 +185,11 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
     return plan;
 }
 
+std::size_t caseCount(const Plan& plan) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(plan.cases, [](const Case& shaderCase) { return !shaderCase.isRetired(); }));
+}
+
 int budgetOf(const PlanOptions& options) {
     const bool needsOne = options.merge == MergePolicy::Auto || options.merge == MergePolicy::Profile;
     return options.maxShaders > 0 ? options.maxShaders : needsOne ? kDefaultMaxCases : 0;
@@ -192,7 +197,7 @@ int budgetOf(const PlanOptions& options) {
 
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options) {
     const int maxShaders = options.maxShaders;
-    if (maxShaders <= 0 || plan.cases.size() <= static_cast<std::size_t>(maxShaders)) {
+    if (maxShaders <= 0 || caseCount(plan) <= static_cast<std::size_t>(maxShaders)) {
         return std::nullopt;
     }
     std::set<FeatureMask> families;
@@ -207,7 +212,7 @@ std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& o
     } else {
         advice = fmt::format("use --merge auto, which keeps to it, or {}", advice);
     }
-    return fmt::format("the plan needs {} cases for {} keys; the limit is {}: {}", plan.cases.size(),
+    return fmt::format("the plan needs {} cases for {} keys; the limit is {}: {}", caseCount(plan),
                        plan.keys.size(), maxShaders, advice);
 }
 

@@ -50,13 +50,18 @@ struct Case {
     std::vector<int> materials;  // ascending
     double share = 0.0;          // of all hits: that of its keys
     CaseReason reason = CaseReason::Own;
+
+    // An ID that is kept for keys which may come back: nothing has it, and it needs no code.
+    bool isRetired() const {
+        return keys.empty();
+    }
 };
 
 // Keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes); the key of a
 // primitive's hits is part of its primary mask, and the same where hits keep all.
 struct Plan {
     std::vector<Key> keys;            // ascending by mask
-    std::vector<Case> cases;          // ascending by their smallest key
+    std::vector<Case> cases;          // by shader ID
     std::vector<int> keyOfPrimitive;  // by primitive
     std::vector<FeatureMask> primaryMaskOfPrimitive;
     std::vector<DroppedFeature> dropped;
@@ -81,6 +86,9 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
 
 // Cases that a plan may have at most; 0: no limit.
 int budgetOf(const PlanOptions& options);
+
+// Cases that are not retired.
+std::size_t caseCount(const Plan& plan);
 
 // What to tell the user when the plan has more cases than options.maxShaders; nothing if it fits.
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options);

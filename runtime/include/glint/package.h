@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,18 @@ namespace glint {
 namespace gpu {
 struct MaterialRecord;
 }
+
+// What a package knows of one of its scenes. Valid as long as the package.
+struct PackageScene {
+    std::string_view name;
+    std::span<const gpu::MaterialRecord> materials;
+    std::span<const package::PrimitiveEntry> primitives;  // sorted by (mesh, primitive)
+    std::span<const package::TextureEntry> textures;
+    std::span<const package::SamplerEntry> samplers;
+
+    // The entry for a primitive of a mesh, or null if the package does not know it.
+    const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
+};
 
 class Package {
 public:
@@ -41,17 +54,15 @@ public:
 
     std::span<const package::CaseEntry> cases() const;
     std::span<const package::ModuleEntry> modules() const;
-    std::span<const package::PrimitiveEntry> primitives() const;
-    std::span<const package::TextureEntry> textures() const;
-    std::span<const package::SamplerEntry> samplers() const;
-    std::span<const gpu::MaterialRecord> materials() const;
+    // At least one.
+    std::uint32_t sceneCount() const;
+    // `index` < sceneCount(), in the order in which they were given to the compiler.
+    PackageScene scene(std::uint32_t index) const;
+    std::optional<std::uint32_t> findScene(std::string_view name) const;
 
     std::string_view string(package::StringRef ref) const;
     // SPIR-V words of a module. Empty if the package lacks it.
     std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;
-    // The entry for a primitive of a mesh, or null if the package does not know it.
-    const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
-
     struct State;  // for the runtime's own sources
 
 private:

@@ -12,7 +12,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -77,12 +77,13 @@ struct PackageHeader {
 
 enum class SectionKind : std::uint32_t {
     Modules = 1,     // ModuleEntry
-    Materials = 2,   // glint::gpu::MaterialRecord
-    Primitives = 3,  // PrimitiveEntry
-    Textures = 4,    // TextureEntry: the bindless images that MaterialRecord refers to
-    Samplers = 5,    // SamplerEntry
+    Materials = 2,   // glint::gpu::MaterialRecord, scene by scene
+    Primitives = 3,  // PrimitiveEntry, scene by scene
+    Textures = 4,    // TextureEntry: the bindless images that MaterialRecord refers to, scene by scene
+    Samplers = 5,    // SamplerEntry, scene by scene
     Strings = 6,     // bytes, UTF-8
     Cases = 7,       // CaseEntry
+    Scenes = 8,      // SceneEntry
 };
 
 struct PackageSection {
@@ -136,15 +137,31 @@ struct ModuleEntry {
     std::uint64_t hash;  // XXH3, 64 bits
 };
 
+// A shader ID. One that a lock file keeps and no material has is retired: it has no keys, no primitives and
+// no modules.
 struct CaseEntry {
     std::uint64_t always;
     std::uint64_t sometimes;
     StringRef name;
-    std::uint32_t keyCount;
+    std::uint32_t keyCount;  // 0: retired
     std::uint32_t pad;
 };
 
-// One primitive of one mesh; sorted by (mesh, primitive).
+// One of the scenes that share the package's cases. Ranges of the sections that go scene by scene; they
+// follow each other without gaps. Indices in its elements count from the scene's own first element.
+struct SceneEntry {
+    StringRef name;  // unique in the package: the file's, without folder and extension
+    std::uint32_t firstMaterial;
+    std::uint32_t materialCount;
+    std::uint32_t firstPrimitive;
+    std::uint32_t primitiveCount;
+    std::uint32_t firstTexture;
+    std::uint32_t textureCount;
+    std::uint32_t firstSampler;
+    std::uint32_t samplerCount;
+};
+
+// One primitive of one mesh; sorted by (mesh, primitive) in each scene.
 struct PrimitiveEntry {
     std::uint32_t mesh;
     std::uint32_t primitive;
@@ -175,6 +192,7 @@ static_assert(sizeof(PackageHeader) == 64);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);
+static_assert(sizeof(SceneEntry) == 40);
 static_assert(sizeof(PrimitiveEntry) == 32);
 static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);

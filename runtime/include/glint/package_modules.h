@@ -4,6 +4,7 @@
 
 #include <glint/package_format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ struct PackageShape {
     ShadowPlacement shadows = ShadowPlacement::Inline;
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
+    std::vector<std::uint32_t> retired{};  // shader IDs below caseCount that have no modules, ascending
 };
 
 // One module of a package; fields as in ModuleEntry.
@@ -193,6 +195,9 @@ inline std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
                                         : 1U;
         const std::vector<std::uint32_t> tracers = moduleTracers(info, shape);
         for (std::uint32_t index = 0; index < count; ++index) {
+            if (info.repeated == Repeated::ByCase && std::ranges::binary_search(shape.retired, index)) {
+                continue;
+            }
             for (const std::uint32_t tracer : tracers) {
                 keys.push_back({info.role, index, tracer});
             }

@@ -59,6 +59,7 @@ struct SceneView {
     std::span<const InstanceView> instances;
     std::span<const ImageView> images;  // by the package's TextureEntry::image
     std::span<const LightView> lights;
+    std::uint32_t packageScene = 0;  // which of the package's scenes it is
 };
 
 // Where a frame is seen from, in world space, right-handed.

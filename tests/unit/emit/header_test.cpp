@@ -16,13 +16,13 @@ using namespace glint::testing;
 // What a consumer would write; the static_asserts of the header are part of the test.
 constexpr const char* kConsumer = R"(
 namespace tables = glint::scene_sample_scene;
-static_assert(tables::kMaterialCount == 4);
+static_assert(tables::kSceneCount == 1 && tables::kScenes[0].materialCount == 4);
 static_assert(tables::kBucketCount == 1 + tables::kShaderCount);
 static_assert(tables::kShaderCount == 4);
 static_assert(static_cast<unsigned>(tables::ShaderId::kUnlit_BaseTex_Uv0) < tables::kShaderCount);
 static_assert((tables::kShaderFeatures[static_cast<unsigned>(tables::ShaderId::kUnlit_BaseTex_Uv0)].always &
                tables::kFeatureUnlit) != 0);
-static_assert(tables::kMaterialNames[1][8] == '\n' && tables::kMaterialNames[1][9] == '"');
+static_assert(tables::kMaterialNames0[1][8] == '\n' && tables::kMaterialNames0[1][9] == '"');
 static_assert(sizeof(glint::gpu::HitRecord) == 32);
 int main() { return 0; }
 )";

@@ -143,7 +143,7 @@ TEST(Manifest, DescribesThePackage) {
     EXPECT_EQ(manifest["version"], package::kVersion);
     EXPECT_EQ(manifest["merge"], "none");
     EXPECT_EQ(manifest["strategies"], (nlohmann::json{"uber", "visibility"}));
-    EXPECT_EQ(manifest["sources"][1]["file"], "data/sample.bin");
+    EXPECT_EQ(manifest["scenes"][0]["sources"][1]["file"], "data/sample.bin");
     EXPECT_EQ(manifest["counts"]["cases"], 4);
     EXPECT_TRUE(manifest["counts"]["keysPossible"].is_number_integer());
     EXPECT_EQ(manifest["counts"]["uniqueSpirv"], package.uniqueSpirv);
@@ -180,7 +180,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     EXPECT_EQ(usual["settings"]["hitLobes"].size(), featureNames(kLobeMask).size());
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");
-    EXPECT_TRUE(usual["variant"].is_null());
+    EXPECT_TRUE(usual["scenes"][0]["variant"].is_null());
 
     Scene scene = makeSampleScene();
     scene.variant = "Night";
@@ -194,7 +194,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
     EXPECT_EQ(other["settings"]["energyCompensation"], false);
     EXPECT_EQ(other["settings"]["textureLod"], "mip0");
-    EXPECT_EQ(other["variant"], "Night");
+    EXPECT_EQ(other["scenes"][0]["variant"], "Night");
     const auto& dropped = other["dropped"];
     EXPECT_TRUE(std::any_of(dropped.begin(), dropped.end(),
                             [](const auto& drop) { return drop["feature"] == "sheen"; }));

@@ -12,7 +12,8 @@ namespace {
 using namespace glint::testing;
 
 std::string sceneSource(const Plan& plan, const CompileSettings& settings) {
-    const Result<SourceSet> sources = makeSourceSet(makeSampleScene(), plan, settings);
+    const Scene scene = makeSampleScene();
+    const Result<SourceSet> sources = makeSourceSet(SceneList({&scene, 1}), plan, settings);
     return sources ? std::string(sources->find("generated/scene.glsl").value_or("")) : std::string();
 }
 

@@ -254,15 +254,45 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
     }
 }
 
+// Cases are shared, tables are a scene's own: its materials and textures count from 0.
+TEST(Tables, GoSceneByScene) {
+    std::vector<Scene> scenes{makeSampleScene(), makeSampleScene()};
+    scenes[1].materials[0].clearcoat.factor = 1.0F;
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = MergePolicy::None;
+    const Result<CompiledPackage> compiled = compilePackage(scenes, settings);
+    ASSERT_TRUE(compiled) << toString(compiled.error());
+    const TableReader reader(findFile(*compiled, package::kTablesFile)->bytes);
+    const auto entries = reader.read<package::SceneEntry>(SectionKind::Scenes);
+    ASSERT_EQ(entries.size(), 2U);
+    EXPECT_EQ(entries[1].firstMaterial, 4U);
+    EXPECT_EQ(entries[1].materialCount, 4U);
+    EXPECT_EQ(entries[1].firstPrimitive, 4U);
+    const auto primitives = reader.read<package::PrimitiveEntry>(SectionKind::Primitives);
+    const auto materials = reader.read<gpu::MaterialRecord>(SectionKind::Materials);
+    ASSERT_EQ(primitives.size(), 8U);
+    ASSERT_EQ(materials.size(), 8U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(primitives[4 + i].materialIndex, i);
+        EXPECT_EQ(primitives[4 + i].shaderId == primitives[i].shaderId, i != 0);
+        for (std::size_t slot = 0; slot < std::size(materials[i].textures); ++slot) {
+            EXPECT_EQ(materials[4 + i].textures[slot].textureIndex, materials[i].textures[slot].textureIndex);
+        }
+    }
+    const std::size_t keysOfOne = compileSample(settings).plan.keys.size();
+    EXPECT_EQ(compiled->plan.keys.size(), keysOfOne + 1);
+}
+
 // Hits may keep fewer lobes; the mask on the device is that of primary surfaces.
 TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     Scene scene = makeSampleScene();
     scene.materials[0].clearcoat.factor = 1.0F;
     CompileSettings settings;
     settings.plan.keys.keptLobes = 0;
-    const std::vector<PrimitiveInputs> inputs = planningInputs(scene);
-    const Plan plan = makePlan(scene.materials, inputs, settings.plan);
-    const Bytes bytes = makeTables(scene, inputs, plan, {}, settings);
+    const SceneList scenes({&scene, 1});
+    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    const Bytes bytes = makeTables(scenes, plan, {}, settings);
     const auto primitives = TableReader(bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
     ASSERT_EQ(primitives.size(), 4U);
     EXPECT_EQ(primitives[0].featureLobes, bit(Feature::Clearcoat));

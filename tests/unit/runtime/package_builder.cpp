@@ -47,7 +47,7 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     spec.interopHash = interopHash();
     spec.caseCount = 1;
     for (const package::ModuleKey& key :
-         package::requiredModules({spec.strategies, spec.tracers, {}, false, 1})) {
+         package::requiredModules({spec.strategies, spec.tracers, {}, false, 1, {}})) {
         const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
         spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
     }
@@ -96,6 +96,26 @@ package::StringRef addString(std::vector<char>& strings, const std::string& text
     return ref;
 }
 
+std::vector<package::SceneEntry> makeScenes(const PackageSpec& spec, std::vector<char>& strings) {
+    const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+    std::vector<SceneSpec> scenes = spec.scenes;
+    if (scenes.empty()) {
+        scenes = {{"scene", count(spec.materials), count(spec.primitives), count(spec.textures),
+                   count(spec.samplers)}};
+    }
+    std::vector<package::SceneEntry> entries;
+    SceneSpec end;
+    for (const SceneSpec& scene : scenes) {
+        entries.push_back({addString(strings, scene.name), end.materials, scene.materials, end.primitives,
+                           scene.primitives, end.textures, scene.textures, end.samplers, scene.samplers});
+        end.materials += scene.materials;
+        end.primitives += scene.primitives;
+        end.textures += scene.textures;
+        end.samplers += scene.samplers;
+    }
+    return entries;
+}
+
 }  // namespace
 
 package::PrimitiveEntry makePrimitive(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t flags) {
@@ -132,10 +152,12 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     }
     std::vector<package::CaseEntry> cases;
     for (const CaseSpec& entry : spec.cases) {
-        cases.push_back({entry.always, entry.sometimes, addString(strings, entry.name), 1, 0});
+        cases.push_back({entry.always, entry.sometimes, addString(strings, entry.name), entry.keyCount, 0});
     }
+    const std::vector<package::SceneEntry> scenes = makeScenes(spec, strings);
     Writer writer;
     writer.add(package::SectionKind::Modules, modules);
+    writer.add(package::SectionKind::Scenes, scenes);
     writer.add(package::SectionKind::Materials, spec.materials);
     writer.add(package::SectionKind::Primitives, spec.primitives);
     writer.add(package::SectionKind::Textures, spec.textures);

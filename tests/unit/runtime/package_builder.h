@@ -23,6 +23,16 @@ struct CaseSpec {
     std::uint64_t always = 0;
     std::uint64_t sometimes = 0;
     std::string name;
+    std::uint32_t keyCount = 1;  // 0: retired
+};
+
+// How many elements of the other lists are its.
+struct SceneSpec {
+    std::string name;
+    std::uint32_t materials = 0;
+    std::uint32_t primitives = 0;
+    std::uint32_t textures = 0;
+    std::uint32_t samplers = 0;
 };
 
 // Every member may be broken on purpose; serialize() writes what it finds.
@@ -39,6 +49,7 @@ struct PackageSpec {
     std::vector<package::TextureEntry> textures;
     std::vector<package::SamplerEntry> samplers;
     std::vector<CaseSpec> cases;
+    std::vector<SceneSpec> scenes;  // empty: one, named "scene", that has all elements
 };
 
 // One case, one material, primitive 0 of mesh 0, both strategies; every module is the same SPIR-V header.

@@ -73,15 +73,76 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_EQ(package.caseCount(), 2U);
     EXPECT_EQ(package.bucketCount(), 3U);
     EXPECT_EQ(package.string(package.cases()[1].name), "Textured");
-    EXPECT_EQ(package.materials()[0].textures[0].textureIndex, 1U);
+    ASSERT_EQ(package.sceneCount(), 1U);
+    const PackageScene scene = package.scene(0);
+    EXPECT_EQ(scene.materials[0].textures[0].textureIndex, 1U);
     EXPECT_EQ(package.spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).size(), 5U);
     EXPECT_EQ(package.spirv({ModuleRole::ShadeCase, 0, package::kTracerRayQuery}).data(),
               package.spirv({ModuleRole::ShadeCase, 1, package::kTracerRayQuery}).data());
     EXPECT_TRUE(package.spirv({ModuleRole::ShadeCase, 2, package::kTracerRayQuery}).empty());
-    ASSERT_NE(package.findPrimitive(2, 1), nullptr);
-    EXPECT_EQ(package.findPrimitive(2, 1)->shaderId, 1U);
-    EXPECT_EQ(package.findPrimitive(2, 0), nullptr);
-    EXPECT_EQ(package.findPrimitive(3, 0), nullptr);
+    ASSERT_NE(scene.findPrimitive(2, 1), nullptr);
+    EXPECT_EQ(scene.findPrimitive(2, 1)->shaderId, 1U);
+    EXPECT_EQ(scene.findPrimitive(2, 0), nullptr);
+    EXPECT_EQ(scene.findPrimitive(3, 0), nullptr);
+}
+
+// Scenes share the cases; their primitives count materials from their own first.
+TEST_F(PackageTest, ScenesHaveTheirOwnTables) {
+    PackageSpec spec = test::makeSpec();
+    spec.materials.resize(3);
+    spec.materials[1].roughnessFactor = 0.25F;
+    spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(0, 0), test::makePrimitive(0, 1)};
+    spec.primitives[2].materialIndex = 1;
+    spec.scenes = {{"one", 1, 1, 0, 0}, {"two", 2, 2, 0, 0}};
+    write(spec);
+    const Result<Package> package = Package::load(folder_.path());
+    ASSERT_TRUE(package) << toString(package.error());
+    ASSERT_EQ(package->sceneCount(), 2U);
+    EXPECT_EQ(package->scene(0).name, "one");
+    EXPECT_EQ(package->scene(0).findPrimitive(0, 1), nullptr);
+    ASSERT_EQ(package->findScene("two"), 1U);
+    EXPECT_FALSE(package->findScene("three"));
+    const PackageScene two = package->scene(1);
+    ASSERT_EQ(two.materials.size(), 2U);
+    EXPECT_EQ(two.materials[0].roughnessFactor, 0.25F);
+    ASSERT_NE(two.findPrimitive(0, 1), nullptr);
+    EXPECT_EQ(two.findPrimitive(0, 1)->materialIndex, 1U);
+}
+
+TEST_F(PackageTest, RefusesScenesThatDoNotDivideTheTables) {
+    const auto refused = [&](const std::vector<test::SceneSpec>& scenes) {
+        PackageSpec spec = test::makeSpec();
+        spec.materials.resize(2);
+        spec.scenes = scenes;
+        write(spec);
+        const Result<Package> package = Package::load(folder_.path());
+        return package ? std::string() : package.error().id;
+    };
+    EXPECT_EQ(refused({{"one", 1, 1, 0, 0}, {"two", 1, 0, 0, 0}}), "");
+    EXPECT_EQ(refused({{"one", 1, 1, 0, 0}}), "package-altered");                       // one is left over
+    EXPECT_EQ(refused({{"one", 1, 1, 0, 0}, {"two", 2, 0, 0, 0}}), "package-altered");  // too many
+    EXPECT_EQ(refused({{"one", 1, 1, 0, 0}, {"one", 1, 0, 0, 0}}), "package-altered");  // one name
+    EXPECT_EQ(refused({{"one", 0, 1, 0, 0}, {"two", 2, 0, 0, 0}}), "package-altered");  // material of another
+    EXPECT_EQ(refused({{"one", 2, 1, 0, 0}, {"two", 0xFFFFFFFF, 0, 0, 0}, {"three", 1, 0, 0, 0}}),
+              "package-altered");
+}
+
+// A shader ID that a lock file keeps for keys that are gone.
+TEST_F(PackageTest, RetiredCasesNeedNoModules) {
+    PackageSpec spec = test::makeSpec();
+    spec.caseCount = 2;
+    spec.cases.push_back({0, 0, "Retired", 0});
+    write(spec);
+    const Result<Package> package = Package::load(folder_.path());
+    ASSERT_TRUE(package) << toString(package.error());
+    EXPECT_EQ(package->bucketCount(), 3U);
+    EXPECT_EQ(package->shape().retired, std::vector<std::uint32_t>{1});
+
+    spec.primitives[0].shaderId = 1;
+    write(spec);
+    const Result<Package> used = Package::load(folder_.path());
+    ASSERT_FALSE(used);
+    EXPECT_EQ(used.error().id, "package-altered");
 }
 
 // The checks without the files: the ID of the error, or "".
