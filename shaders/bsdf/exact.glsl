@@ -54,8 +54,8 @@ vec2 exactSquare(vec2 x) {
 }
 
 // Squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law; negative beyond the
-// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest: so much
-// that the squared cosine of the near side comes with its error.
+// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest: so
+// much that the squared cosine of the near side comes with its error.
 float refractedCosine2(vec2 cosine2, float eta) {
     vec2 eta2 = exactSquare(vec2(eta, 0.0));
     vec2 sum = exactSum(cosine2.x, eta2.x);

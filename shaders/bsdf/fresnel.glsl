@@ -10,7 +10,7 @@ float luminance(vec3 color) {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// Reflectance at normal incidence of a dielectric in air: KHR_materials_ior. 0 stands for an infinite index and gives 1.
+// Reflectance at normal incidence of a dielectric in air: KHR_materials_ior. 0 stands for an infinite index: 1.
 float dielectricF0(float ior) {
     float r = (ior - 1.0) / (ior + 1.0);
     return r * r;
@@ -35,8 +35,8 @@ vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
-// The same at an interface of relative index eta = n_t / n_i, by the squared cosine and its error. Where light leaves the
-// denser side Schlick's cosine is that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and
+// The same at an interface of relative index eta = n_t / n_i, by the squared cosine and its error. Where light leaves
+// the denser side Schlick's cosine is that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and
 // beyond the critical angle all of it is reflected, whatever f90.
 vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
@@ -46,8 +46,8 @@ vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
     return refracted2 > 0.0 ? fresnelSchlick(f0, f90, sqrt(refracted2)) : vec3(1.0);
 }
 
-// What a surface lets through of the channel that it reflects most: 1 - largest(fresnelSchlick()), with its digits where
-// little passes. f90 is at least f0.
+// What a surface lets through of the channel that it reflects most: 1 - largest(fresnelSchlick()), with its digits
+// where little passes. f90 is at least f0.
 float schlickPassed(vec3 f0, float f90, float cosine) {
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
 }

@@ -16,8 +16,8 @@ float ggxProjection(vec3 v, vec2 alpha) {
     return sqrt(dot(stretched, stretched));
 }
 
-// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; glTF 2.0, appendix B.3.3. Cosines count without
-// sign, so that it serves transmission too. With alpha > 0 the sum is 0 only if both are.
+// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; glTF 2.0, appendix B.3.3. Cosines count
+// without sign, so that it serves transmission too. With alpha > 0 the sum is 0 only if both are.
 float ggxVisibility(vec3 l, vec3 v, vec2 alpha) {
     return 0.5 / (abs(l.z) * ggxProjection(v, alpha) + abs(v.z) * ggxProjection(l, alpha));
 }
@@ -36,7 +36,7 @@ vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {
     return normalize(vec3(alpha.x * h.x, alpha.y * h.y, h.z));
 }
 
-// Density of sampleVisibleNormal(), G₁(v) D(h) (v·h) / (n·v), with G₁ / (n·v) in one piece that is finite at grazing.
+// Density of sampleVisibleNormal(), G₁(v) D(h) (v·h) / (n·v), with G₁ / (n·v) in one piece, finite at grazing.
 float visibleNormalPdf(vec3 v, vec3 h, vec2 alpha) {
     return 2.0 * ggxDistribution(h, alpha) * max(accurateDot(v, h), 0.0) / (v.z + ggxProjection(v, alpha));
 }

@@ -55,8 +55,8 @@ LobeChances lobeChances(Bsdf b, Features features) {
                        : LobeChances(0.0, 1.0, 0.0, 0.0);
 }
 
-// Chances that a facet reflects (x) and that it lets through (y), by the squared cosine under which it is seen, with the
-// error of the square.
+// Chances that a facet reflects (x) and that it lets through (y), by the squared cosine under which it is seen, with
+// the error of the square.
 vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return vec2(1.0, 0.0);
@@ -69,7 +69,7 @@ vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
 }
 
-// The squared cosine that decides between reflection and passage: of the facet, `facet2`, unless light goes straight on.
+// The squared cosine that decides between reflection and passage: of the facet, `facet2`, unless light passes straight.
 vec2 decidingCosine2(Bsdf b, Features features, vec2 facet2, float eta) {
     return passesStraight(features, eta) ? exactSquare(vec2(b.view.z, 0.0)) : facet2;
 }

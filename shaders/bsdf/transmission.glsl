@@ -26,13 +26,13 @@ struct RefractingFacet {
     vec3 h;         // unit
     float cosineV;  // v·h
     float cosineL;  // -l·h
-    float spread;   // eta² / (v·h + eta l·h)², which turns densities of facets into densities of directions by |l·h|
+    float spread;   // eta² / (v·h + eta l·h)²: turns densities of facets into densities of directions by |l·h|
 };
 
 // False where no facet does.
 bool refractionHalfVector(vec3 v, vec3 l, float eta, out RefractingFacet facet) {
-    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface, and its products with v
-    // and l where the facet is seen from the side.
+    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface, and its products
+    // with v and l where the facet is seen from the side.
     vec2 x = exactAddProduct(v.x, eta, l.x);
     vec2 y = exactAddProduct(v.y, eta, l.y);
     vec2 z = exactAddProduct(v.z, eta, l.z);

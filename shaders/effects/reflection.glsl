@@ -7,7 +7,7 @@
 #include "hit/surface.glsl"
 
 // How much of a surface's reflection its ray brings; the sky stands in for the rest. Falls to 0 over the last fifth
-// below the roughness limit, so that no edge shows where a texture crosses it; at the limit a ray is still worth sending.
+// below the roughness limit, so that no edge shows where a texture crosses it; at the limit a ray is worth sending.
 float tracedShare(float roughness) {
     float limit = GLINT_FRAME.maxReflectionRoughness;
     if (roughness > limit) {

@@ -1,5 +1,5 @@
-// A ray as a line of pixels. Over the screen 1/w and distance/w are linear, w being the fourth coordinate of clip space:
-// McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (JCGT 2014). Orthographic views have w = 1.
+// A ray as a line of pixels. Over the screen 1/w and distance/w are linear, w being the fourth coordinate of clip
+// space: McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (JCGT 2014). Orthographic views have w = 1.
 
 struct ScreenRay {
     vec2 begin;  // pixels
@@ -29,6 +29,7 @@ ScreenRay screenRay(vec4 origin, vec4 direction, vec2 size, float far) {
     distance = leavesAt(origin.w - origin.y, direction.w - direction.y, distance);
     distance = leavesAt(origin.w + origin.y, direction.w + direction.y, distance);
     vec4 end = origin + distance * direction;
+    end.w = max(end.w, end.z);  // the near plane bounds it: from far away the sum may cancel to less
     return ScreenRay(pixelOf(origin, size), pixelOf(end, size), 1.0 / origin.w, 1.0 / end.w, distance / end.w);
 }
 

@@ -52,8 +52,8 @@ bool isHidden(ScreenPoint point, ivec2 place) {
     return dot(point.position - surface.xyz, normalOf(surface)) <= 0.0;
 }
 
-// Whether no surface of the pixels around hides the point, either: then what is as large as a pixel is not between it and
-// its neighbours on the line, even where a silhouette passes between their centres.
+// Whether no surface of the pixels around hides the point, either: then what is as large as a pixel is not between it
+// and its neighbours on the line, even where a silhouette passes between their centres.
 bool isClear(ScreenPoint point) {
     bool clear = true;
     for (int i = 0; clear && i < 9; ++i) {
@@ -65,9 +65,9 @@ bool isClear(ScreenPoint point) {
 }
 
 // Halves the part of the line from `free`, where nothing hides the ray, to `hidden` until it is below 1/64 pixel, as
-// depths may change much within one, and takes the surface there for a hit if the ray is at most its thickness behind it,
-// was in front of its plane a pixel earlier, so that it meets the side that the camera sees, and if it is not the one
-// that the ray leaves. `pixel`: share of the line.
+// depths may change much within one, and takes the surface there for a hit if the ray is at most its thickness behind
+// it, was in front of its plane a pixel earlier, so that it meets the side that the camera sees, and if it is not the
+// one that the ray leaves. `pixel`: share of the line.
 ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, float hidden, float pixel) {
     while (hidden - free > 0.015625 * pixel) {
         float middle = 0.5 * (free + hidden);
@@ -87,9 +87,9 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
     return ScreenMarch(thick && crossed && point.place != insideImage(ray.begin), point.place, 0.0);
 }
 
-// Ends at the first surface that hides the ray, whether that is a hit or not: behind it anything may be. Where the steps
-// look at every pixel of the line the distance is that of the last point but one that is clear, a pixel from whatever
-// the line may meet next; otherwise 0.
+// Ends at the first surface that hides the ray, whether that is a hit or not: behind it anything may be. Where the
+// steps look at every pixel of the line the distance is that of the last point but one that is clear, a pixel from
+// whatever the line may meet next; otherwise 0.
 ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     ScreenRay ray = screenRay(toClip(vec4(origin, 1.0)), toClip(vec4(direction, 0.0)),
                               vec2(GLINT_FRAME.width, GLINT_FRAME.height), kFarDistance);

@@ -8,8 +8,8 @@
 // Equirectangular; a level holds the means over the lobes of one roughness.
 layout(set = kSetFrame, binding = kBindingEnvironment) uniform sampler2D environmentMap;
 
-// v is the polar angle from +Y, u the azimuth from +X towards +Z, the middle of the map at +X. Both by atan, which keeps
-// its digits at the poles.
+// v is the polar angle from +Y, u the azimuth from +X towards +Z, the middle of the map at +X. Both by atan, which
+// keeps its digits at the poles.
 vec2 environmentCoordinates(vec3 direction) {
     // At a pole any azimuth will do, and atan(0, 0) is undefined.
     float across = length(direction.xz);
@@ -27,7 +27,7 @@ vec3 skyRadiance(vec3 direction) {
     return skyAround(direction, 0.0);
 }
 
-// Irradiance over π by nine spherical harmonics; a small bright sun makes them negative where there is hardly any light.
+// Irradiance over π by nine spherical harmonics; a small bright sun makes them negative where there is hardly light.
 vec3 skyIrradianceOverPi(vec3 n) {
     vec3 sum = GLINT_FRAME.skyHarmonics[0] + GLINT_FRAME.skyHarmonics[1] * n.x + GLINT_FRAME.skyHarmonics[2] * n.y +
                GLINT_FRAME.skyHarmonics[3] * n.z + GLINT_FRAME.skyHarmonics[4] * (3.0 * n.y * n.y - 1.0) +

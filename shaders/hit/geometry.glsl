@@ -24,8 +24,8 @@ vec3 octahedralDecode(vec2 e) {
     return normalize(vec3(e.x + (e.x >= 0.0 ? -t : t), e.y + (e.y >= 0.0 ? -t : t), z));
 }
 
-// What decides where a ray starts and where it goes is `precise`: each shader rounds it in the same way, or a shadow ray at
-// the edge of something would depend on the strategy that shades it.
+// What decides where a ray starts and where it goes is `precise`: each shader rounds it in the same way, or a shadow
+// ray at the edge of something would depend on the strategy that shades it.
 
 // A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms) or is no number.
 // Scaled first, so that no square leaves the range of floats: good for lengths from 1e-37 to 1e37.

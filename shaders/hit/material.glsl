@@ -66,7 +66,7 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
     bsdf.f90 = mix(f90, 1.0, base.metallic);
 }
 
-// KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, of which the surface reflects no more than there is.
+// KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, of which surfaces reflect no more than there is.
 void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
     base.metallic = 0.0;

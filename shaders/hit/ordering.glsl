@@ -3,8 +3,8 @@
 // needs to know each hit's number in its bucket, GLINT_HITS_NUMBERED.
 //
 // Threads beyond the list take part, with kNoBucket: no thread may have returned before. Subgroups may have 1 to 128
-// threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch that
-// divides one. Only basic, ballot and arithmetic operations: not every device shuffles.
+// threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
+// that divides one. Only basic, ballot and arithmetic operations: not every device shuffles.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require

@@ -1,6 +1,6 @@
 // A low-discrepancy sequence for each pixel: Sobol' points under Owen's scrambling, by hashes (Burley, "Practical
-// Hash-based Owen Scrambling", JCGT 2020). Any power of two of successive samples is stratified, and pixels and pairs of
-// dimensions are independent of each other.
+// Hash-based Owen Scrambling", JCGT 2020). Any power of two of successive samples is stratified, and pixels and pairs
+// of dimensions are independent of each other.
 #include "hit/random.glsl"
 
 // Permutes each bit by those below it: Laine and Karras (2011), with the constants of Vegdahl (2021).

@@ -9,7 +9,7 @@ struct ShadowRay {
     vec3 light;      // what it brings if nothing is in its way
 };
 
-// The light that is certain now; deferred, the rest comes by the pass over the list. One ray a pixel: the list has room.
+// The light that is certain now; deferred, the rest comes by a pass over the list. One ray a pixel: the list has room.
 vec3 lightOrDefer(uint pixel, ShadowRay shadow) {
 #if GLINT_SHADOWS_DEFERRED
     uint slot = atomicAdd(GLINT_FRAME.counters.data[kCounterShadowRays], 1u);

@@ -144,7 +144,7 @@ struct FrameConstants {
     vec3 skyZenith;    // radiance, cd/m² in the units of the lights
     vec3 skyHorizon;
     vec3 skyGround;
-    vec3 skyHarmonics[9];  // environment map: irradiance over π, factors of 1, x, y, z, 3y² - 1, xy, yz, xz, x² - z²
+    vec3 skyHarmonics[9];  // environment: irradiance over π, factors of 1, x, y, z, 3y² - 1, xy, yz, xz, x² - z²
     float environmentLevels;  // mip levels of the environment map: roughness 0 to 1
     float environmentTurn;    // added to its u: a rotation over 2π
     float environmentScale;   // radiance of a texel's 1
@@ -189,9 +189,11 @@ GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 // Descriptor set 1: the images of a frame, all storage images.
 GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);          // rg32ui: geometry, primitive; also a colour attachment
-GLINT_CONSTANT(kBindingRadiance, 1u);         // rgba32f: light that leaves the primary surface, reflection apart; distance along the camera's axis, 0: none
+GLINT_CONSTANT(kBindingRadiance, 1u);         // rgba32f: light that leaves the primary surface, reflection apart;
+                                              // distance along the camera's axis, 0: none
 GLINT_CONSTANT(kBindingReflectionRay, 2u);    // rgba32f: direction of the reflection ray, kRay* as bits
-GLINT_CONSTANT(kBindingPosition, 3u);         // rgba32f: ray origin off the surface; geometric normal, octahedral, bits 2x16snorm
+GLINT_CONSTANT(kBindingPosition, 3u);         // rgba32f: ray origin off the surface; geometric normal,
+                                              // octahedral, bits 2x16snorm
 GLINT_CONSTANT(kBindingReflectance, 4u);      // rgba32f: weight of the traced reflection
 GLINT_CONSTANT(kBindingReflection, 5u);       // rgba32f: radiance that the ray brings; kPath* as a float
 GLINT_CONSTANT(kBindingAccumulated, 6u);      // rgba32f: mean over samples so far, linear

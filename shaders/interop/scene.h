@@ -64,7 +64,8 @@ struct GeometryRecord {
 // One instance of a mesh. Matrices are three rows of four (positions) or three (normals).
 struct InstanceRecord {
     vec4 objectToWorld[3];
-    vec3 normalToWorld[3];  // cofactors of the linear part times a scale, of its determinant's sign: finite where singular
+    vec3 normalToWorld[3];  // cofactors of the linear part times a scale, of its determinant's sign:
+                            // finite where singular
     uint flags;             // kInstance*
 };
 

@@ -1,6 +1,5 @@
 // From counted hits to a package: render --profile, then --merge profile.
-#include "cli/command.h"
-#include "cli/tiny_scene.h"
+#include "cli/render_command.h"
 
 #include <string>
 #include <vector>
@@ -8,19 +7,7 @@
 namespace glint::testing {
 namespace {
 
-class RenderProfile : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    Outcome render(const std::string& image, const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{"render", scene_, "-o", image, "--size", "64x36"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
-    }
-    std::string scene_;
-};
+class RenderProfile : public RenderCommand {};
 
 TEST_F(RenderProfile, CountsTheHitsOfEveryKeyOverAllSamples) {
     const Outcome one = render("one.exr", {"--profile", "one.json", "--json"});

@@ -1,5 +1,4 @@
-#include "cli/command.h"
-#include "cli/tiny_scene.h"
+#include "cli/render_command.h"
 
 #include <fstream>
 #include <string>
@@ -7,21 +6,6 @@
 
 namespace glint::testing {
 namespace {
-
-class RenderCommand : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    // A small picture of the scene, with more options.
-    Outcome render(const std::string& image, const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{"render", scene_, "-o", image, "--size", "64x36"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
-    }
-    std::string scene_;
-};
 
 TEST_F(RenderCommand, CompileInspectRenderCompare) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);

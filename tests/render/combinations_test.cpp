@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,7 @@ struct Room {
     const char* name;
     Scene (*make)();
     AlphaPolicy alpha;
+    package::ShadowPlacement profileShadows;
 };
 
 // What a renderer chooses, for one strategy and tracer.
@@ -40,6 +44,29 @@ std::vector<Way> waysOf(std::uint32_t tracers) {
     return ways;
 }
 
+// A profile under which keys are hot, never hit and cold by turns; the last one it does not know.
+std::map<FeatureMask, std::uint64_t> makeUpHits(const std::vector<Key>& keys) {
+    constexpr std::uint64_t kHits[] = {1000, 0, 1};
+    std::map<FeatureMask, std::uint64_t> hits;
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+        hits[keys[i].mask] = kHits[i % 3];
+    }
+    return hits;
+}
+
+// The profile was heeded: hot keys are apart, and of the others some share.
+void expectMergedByHits(const Plan& plan) {
+    bool isHot = false;
+    bool shares = false;
+    for (const Case& it : plan.cases) {
+        isHot = isHot || it.reason == CaseReason::Hot;
+        shares = shares || it.keys.size() > 1;
+        EXPECT_TRUE(it.reason != CaseReason::Hot || it.keys.size() == 1) << it.name;
+    }
+    EXPECT_TRUE(isHot);
+    EXPECT_TRUE(shares);
+}
+
 class Combinations : public ::testing::TestWithParam<Room> {
 protected:
     RenderSetup setup(const Scene& scene) {
@@ -55,6 +82,7 @@ protected:
     void sweep(const Scene& scene, const CompileSettings& settings) {
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
+        plan_ = loaded.compiled().plan;
         for (const Way& way : waysOf(settings.tracers)) {
             RenderSetup frame = setup(scene);
             frame.frame.binning = static_cast<Binning>(turn_ % 3);
@@ -85,6 +113,8 @@ protected:
         }
     }
 
+    Plan plan_;  // of the last package
+
 private:
     LinearImage reference_;
     std::string first_;
@@ -93,19 +123,26 @@ private:
 
 TEST_P(Combinations, GiveOneImage) {
     const Scene scene = GetParam().make();
+    CompileSettings settings;
+    settings.strategies = package::kAllStrategies;
+    settings.tracers = package::kAllTracers;
+    settings.plan.keys.alpha = GetParam().alpha;
     for (const MergePolicy merge :
          {MergePolicy::All, MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
         for (const auto shadows : {package::ShadowPlacement::Inline, package::ShadowPlacement::Deferred}) {
-            CompileSettings settings;
-            settings.strategies = package::kAllStrategies;
-            settings.tracers = package::kAllTracers;
             settings.shadows = shadows;
             settings.plan.merge = merge;
             settings.plan.maxShaders = merge == MergePolicy::Auto ? 3 : 0;
-            settings.plan.keys.alpha = GetParam().alpha;
             sweep(scene, settings);
         }
     }
+    // One placement of shadows a room, so that each meets the policy.
+    settings.shadows = GetParam().profileShadows;
+    settings.plan.merge = MergePolicy::Profile;
+    settings.plan.maxShaders = 4;
+    settings.plan.hits = makeUpHits(plan_.keys);
+    sweep(scene, settings);
+    expectMergedByHits(plan_);
 }
 
 // Half the memory costs what its barycentrics and cone widths lose, and nothing else.
@@ -135,8 +172,10 @@ TEST_P(Combinations, PackedHitsAreClose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Combinations,
-                         ::testing::Values(Room{"Materials", roomOfMaterials, AlphaPolicy::Opaque},
-                                           Room{"Fence", roomWithFence, AlphaPolicy::Tested}),
+                         ::testing::Values(Room{"Materials", roomOfMaterials, AlphaPolicy::Opaque,
+                                                package::ShadowPlacement::Inline},
+                                           Room{"Fence", roomWithFence, AlphaPolicy::Tested,
+                                                package::ShadowPlacement::Deferred}),
                          [](const auto& room) { return std::string(room.param.name); });
 
 }  // namespace

@@ -67,6 +67,12 @@ RenderSetup hallSetup(const Scene& scene) {
     return setup;
 }
 
+// Before the camera, across its view.
+void addMirror(Scene& scene) {
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+}
+
 bool deviceHas(Tracer tracer) {
     return (sharedContext().handles().tracers & tracer) != 0;
 }
@@ -104,32 +110,31 @@ void expectAllWaysAgree(const Scene& scene, const CompileSettings& settings, con
     }
 }
 
-TEST(RayPipelines, EveryStrategyAndTracerGivesTheSamePicture) {
+FrameCounters expectAllWaysAgreeInHall(const CompileSettings& settings) {
     const Scene scene = hallScene();
     FrameCounters counters;
-    expectAllWaysAgree(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::None), hallSetup(scene),
-                       counters);
+    expectAllWaysAgree(scene, settings, hallSetup(scene), counters);
     EXPECT_GT(counters.rays, 900U);
+    return counters;
+}
+
+TEST(RayPipelines, EveryStrategyAndTracerGivesTheSamePicture) {
+    const FrameCounters counters =
+        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Inline, MergePolicy::None));
     EXPECT_EQ(counters.shadowRays, 0U);
 }
 
 TEST(RayPipelines, DeferredShadowsAndSharedCasesToo) {
-    const Scene scene = hallScene();
-    FrameCounters counters;
-    expectAllWaysAgree(scene, settingsFor(ShadowPlacement::Deferred, MergePolicy::All), hallSetup(scene),
-                       counters);
-    EXPECT_GT(counters.rays, 900U);
+    const FrameCounters counters =
+        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Deferred, MergePolicy::All));
     EXPECT_GT(counters.shadowRays, 100U);
 }
 
 TEST(RayPipelines, PackedHitsToo) {
-    const Scene scene = hallScene();
     CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::Family);
     settings.hitRecord = package::HitRecordFormat::Packed;
     settings.strategies = package::kOrderedStrategies;
-    FrameCounters counters;
-    expectAllWaysAgree(scene, settings, hallSetup(scene), counters);
-    EXPECT_GT(counters.rays, 900U);
+    expectAllWaysAgreeInHall(settings);
 }
 
 // No surface, so that lists have no elements; then one whose rays all leave.
@@ -140,8 +145,7 @@ TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
     FrameCounters counters;
     expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
     EXPECT_EQ(counters.rays, 0U);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
-                                               {0, 2, 0})));
+    addMirror(scene);
     expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
     EXPECT_EQ(counters.rays, 32U * 32U);
     EXPECT_EQ(counters.shadowRays, 0U);
@@ -166,8 +170,7 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
 TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     Scene scene = emptyScene();
     addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
-                                               {0, 2, 0})));
+    addMirror(scene);
     const int red = addMaterial(scene, unlitMaterial(kRed));
     addInstance(scene, addMesh(scene, makeQuad(red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
     const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::None));

@@ -14,194 +14,168 @@ constexpr std::uint32_t kOpString = 7;
 constexpr std::uint32_t kOpLine = 8;
 constexpr std::uint32_t kOpRayQueryInitialize = 4473;
 
+// What lint finds in a main() of these statements.
+Rules rulesOf(const std::string& statements) {
+    return rules(compileQuery("void main() {" + statements + "}"));
+}
+
 TEST(LintQueries, TheFastShapeIsClean) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kFast);
-            rayQueryProceedEXT(q);
-            if (HIT(q) != 0u) { data.t = DISTANCE(q); }
-        })")),
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kFast);
+        rayQueryProceedEXT(q);
+        if (HIT(q) != 0u) { data.t = DISTANCE(q); })"),
               Rules{});
 }
 
 TEST(LintQueries, ConditionAroundBothIsClean) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            if (data.b == 4u) { return; }
-            for (uint i = 0u; i < data.a; ++i) {
-                if (data.b == i) {
-                    rayQueryEXT q;
-                    START(q, kAny);
-                    rayQueryProceedEXT(q);
-                    data.b = HIT(q);
-                }
-            }
-        })")),
-              Rules{});
-}
-
-TEST(LintQueries, TwoProceedsAreAnError) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            rayQueryProceedEXT(q);
-            rayQueryProceedEXT(q);
-            data.b = HIT(q);
-        })")),
-              Rules{"error query-proceeds"});
-}
-
-TEST(LintQueries, AProceedAfterEachInitializeIsClean) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            rayQueryProceedEXT(q);
-            data.b = HIT(q);
-            START(q, kFast);
-            rayQueryProceedEXT(q);
-            data.t = DISTANCE(q);
-        })")),
-              Rules{});
-}
-
-TEST(LintQueries, ConditionalProceedIsAnError) {
-    const Rules expected{"error query-proceed-conditional"};
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            if (data.a == 3u) { rayQueryProceedEXT(q); }
-            data.b = HIT(q);
-        })")),
-              expected);
-    // A loop that may run no round.
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            for (uint i = 0u; i < data.a; ++i) { rayQueryProceedEXT(q); }
-            data.b = HIT(q);
-        })")),
-              expected);
-    // A return between the two.
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            if (data.a == 3u) { return; }
-            rayQueryProceedEXT(q);
-            data.b = HIT(q);
-        })")),
-              expected);
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            switch (data.a) {
-                case 1u: data.t = 1.0; break;
-                case 7u: rayQueryProceedEXT(q); break;
-                default: break;
-            }
-            data.b = HIT(q);
-        })")),
-              expected);
-}
-
-TEST(LintQueries, LoopOverCandidatesIsAWarning) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, gl_RayFlagsSkipAABBEXT);
-            while (rayQueryProceedEXT(q)) {
-                if (rayQueryGetIntersectionTEXT(q, false) > 1.0) { rayQueryConfirmIntersectionEXT(q); }
-            }
-            data.t = DISTANCE(q);
-        })")),
-              Rules{"warning query-proceed-loop"});
-}
-
-TEST(LintQueries, MissingProceedIsAWarning) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q;
-            START(q, kAny);
-            data.b = HIT(q);
-        })")),
-              Rules{"warning query-proceed-missing"});
-}
-
-TEST(LintQueries, TwoLiveObjectsAreAnError) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT p;
-            rayQueryEXT q;
-            START(p, kFast);
-            rayQueryProceedEXT(p);
-            START(q, kFast);
-            rayQueryProceedEXT(q);
-            data.t = DISTANCE(p) + DISTANCE(q);
-        })")),
-              Rules{"error query-live-objects"});
-    // The first is read after a loop that uses the second.
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT p;
-            START(p, kFast);
-            rayQueryProceedEXT(p);
-            for (uint i = 0u; i < data.a; ++i) {
+    EXPECT_EQ(rulesOf(R"(
+        if (data.b == 4u) { return; }
+        for (uint i = 0u; i < data.a; ++i) {
+            if (data.b == i) {
                 rayQueryEXT q;
                 START(q, kAny);
                 rayQueryProceedEXT(q);
                 data.b = HIT(q);
             }
-            data.t = DISTANCE(p);
-        })")),
+        })"),
+              Rules{});
+}
+
+TEST(LintQueries, TwoProceedsAreAnError) {
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        rayQueryProceedEXT(q);
+        rayQueryProceedEXT(q);
+        data.b = HIT(q);)"),
+              Rules{"error query-proceeds"});
+}
+
+TEST(LintQueries, AProceedAfterEachInitializeIsClean) {
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        rayQueryProceedEXT(q);
+        data.b = HIT(q);
+        START(q, kFast);
+        rayQueryProceedEXT(q);
+        data.t = DISTANCE(q);)"),
+              Rules{});
+}
+
+TEST(LintQueries, ConditionalProceedIsAnError) {
+    const Rules expected{"error query-proceed-conditional"};
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        if (data.a == 3u) { rayQueryProceedEXT(q); }
+        data.b = HIT(q);)"),
+              expected);
+    // A loop that may run no round.
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        for (uint i = 0u; i < data.a; ++i) { rayQueryProceedEXT(q); }
+        data.b = HIT(q);)"),
+              expected);
+    // A return between the two.
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        if (data.a == 3u) { return; }
+        rayQueryProceedEXT(q);
+        data.b = HIT(q);)"),
+              expected);
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        switch (data.a) {
+            case 1u: data.t = 1.0; break;
+            case 7u: rayQueryProceedEXT(q); break;
+            default: break;
+        }
+        data.b = HIT(q);)"),
+              expected);
+}
+
+TEST(LintQueries, LoopOverCandidatesIsAWarning) {
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, gl_RayFlagsSkipAABBEXT);
+        while (rayQueryProceedEXT(q)) {
+            if (rayQueryGetIntersectionTEXT(q, false) > 1.0) { rayQueryConfirmIntersectionEXT(q); }
+        }
+        data.t = DISTANCE(q);)"),
+              Rules{"warning query-proceed-loop"});
+}
+
+TEST(LintQueries, MissingProceedIsAWarning) {
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q;
+        START(q, kAny);
+        data.b = HIT(q);)"),
+              Rules{"warning query-proceed-missing"});
+}
+
+TEST(LintQueries, TwoLiveObjectsAreAnError) {
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT p;
+        rayQueryEXT q;
+        START(p, kFast);
+        rayQueryProceedEXT(p);
+        START(q, kFast);
+        rayQueryProceedEXT(q);
+        data.t = DISTANCE(p) + DISTANCE(q);)"),
+              Rules{"error query-live-objects"});
+    // The first is read after a loop that uses the second.
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT p;
+        START(p, kFast);
+        rayQueryProceedEXT(p);
+        for (uint i = 0u; i < data.a; ++i) {
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+        }
+        data.t = DISTANCE(p);)"),
               Rules{"error query-live-objects"});
 }
 
 TEST(LintQueries, OneAfterTheOtherIsClean) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            for (uint i = 0u; i < data.a; ++i) {
-                rayQueryEXT p;
-                START(p, kFast);
-                rayQueryProceedEXT(p);
-                float t = DISTANCE(p);
-                rayQueryEXT q;
-                START(q, kAny);
-                rayQueryProceedEXT(q);
-                data.t = HIT(q) == 0u ? t : 0.0;
-            }
-        })")),
+    EXPECT_EQ(rulesOf(R"(
+        for (uint i = 0u; i < data.a; ++i) {
+            rayQueryEXT p;
+            START(p, kFast);
+            rayQueryProceedEXT(p);
+            float t = DISTANCE(p);
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            data.t = HIT(q) == 0u ? t : 0.0;
+        })"),
               Rules{});
 }
 
 TEST(LintQueries, AnArrayChosenAtRunTimeIsAllLive) {
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q[2];
-            START(q[data.a], kAny);
-            rayQueryProceedEXT(q[data.a]);
-            data.b = HIT(q[data.a]);
-        })")),
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q[2];
+        START(q[data.a], kAny);
+        rayQueryProceedEXT(q[data.a]);
+        data.b = HIT(q[data.a]);)"),
               Rules{"error query-live-objects"});
-    EXPECT_EQ(rules(compileQuery(R"(
-        void main() {
-            rayQueryEXT q[2];
-            START(q[1], kAny);
-            rayQueryProceedEXT(q[1]);
-            data.b = HIT(q[1]);
-        })")),
+    EXPECT_EQ(rulesOf(R"(
+        rayQueryEXT q[2];
+        START(q[1], kAny);
+        rayQueryProceedEXT(q[1]);
+        data.b = HIT(q[1]);)"),
               Rules{});
 }
 
 TEST(LintQueries, FlagsMustBeConstantOpaqueAndWithoutAabbs) {
     const auto withFlags = [](const std::string& flags, const std::string& read) {
-        return rules(compileQuery("void main() { rayQueryEXT q; START(q, " + flags +
-                                  "); rayQueryProceedEXT(q); " + read + " }"));
+        return rulesOf("rayQueryEXT q; START(q, " + flags + "); rayQueryProceedEXT(q); " + read);
     };
     const std::string readsHit = "data.t = DISTANCE(q);";
     const std::string readsType = "data.b = HIT(q);";
