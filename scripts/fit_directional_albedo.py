@@ -113,15 +113,23 @@ LOSS_Q = [(0, 3), (0, 4), (0, 5), (0, 6), (1, 2), (1, 3), (2, 1), (2, 2), (2, 4)
 SHIFT_N = [(0, 3), (0, 3.5), (1, 2.5), (1, 3), (3, 2)]
 SHIFT_Q = [(0, 2), (0, 2.5), (0, 3.5), (1, 1), (1, 1.5), (2, 0), (2, 0.5)]
 SHEEN_N = [(0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1)]
-SHEEN_Q = [(0, 2), (0, 3), (1, 1), (1, 2), (2, 0), (2, 2)]
+SHEEN_Q = [(0, 2), (0, 3), (0.5, 1), (1, 1), (1, 2), (2, 0), (2, 2)]
+# Of 1 / (cos (1 + Λ)); j are of (1 - alpha)²
+MASKING_N = [(0, 0), (0, 1), (0, 2), (0.5, 0), (0.5, 1), (0.5, 2), (1, 0), (1, 2), (1.5, 0), (2, 1), (3, 0), (3, 1)]
+MASKING_Q = [(1, 0), (0, 0), (0, 1), (0, 2), (0.5, 0), (0.5, 1), (0.5, 2), (1, 1), (1, 2), (1.5, 0), (2, 1), (3, 1)]
+MASKING_Q += [(3, 2)]
+MASKING_CANCEL = 3  # sum of the terms' magnitudes over their sum: the rounding errors that 1 - E shows
 SHEEN_FALL = 0.2  # of the factor exp2(-fall cos² / alpha)
 MEAN_LOSS_N = [(i, j) for i in (0, 1) for j in (2, 3, 4, 5)]
 MEAN_BIAS_N = [(0, j) for j in (0, 1, 2)]
 POLYNOMIAL = [(0, 0)]
 
 
-def fit(name, x, y, numerator, denominator, low, high, factor=1.0):
-    """Constants of N and Q with low <= factor N / Q <= high, Q > 0 everywhere: linear programs on growing subsets."""
+def fit(name, x, y, numerator, denominator, low, high, factor=1.0, cancel=None):
+    """Constants of N and Q with low <= factor N / Q <= high, Q > 0 everywhere: linear programs on growing subsets.
+
+    With cancel, the magnitudes of the terms of either sum add up to at most that many times the sum.
+    """
     terms = [np.stack([x**i * y**j for i, j in side], 1) for side in (numerator, denominator)]
     size = terms[1].max(1, keepdims=True)
     n, q = terms[0] / size * np.reshape(factor * np.ones(len(x)), (-1, 1)), terms[1] / size
@@ -130,12 +138,22 @@ def fit(name, x, y, numerator, denominator, low, high, factor=1.0):
         a, b = n[rows], q[rows]
         matrix = np.block([[a, -high[rows, None] * b], [-a, low[rows, None] * b], [0 * a, -b]])
         limits = np.concatenate([np.zeros(2 * len(rows)), -np.ones(len(rows))])
-        result = linprog(np.zeros(matrix.shape[1]), A_ub=matrix, b_ub=limits, bounds=(None, None), method="highs")
+        bounds, cost = (None, None), np.zeros(matrix.shape[1])
+        if cancel:
+            # Each constant is the difference of two that are not negative.
+            sums = np.block([[a, 0 * b], [0 * a, b]])
+            matrix = np.block([[matrix, -matrix], [(1 - cancel) * sums, (1 + cancel) * sums]])
+            limits = np.concatenate([limits, np.zeros(len(sums))])
+            bounds, cost = (0, None), np.ones(matrix.shape[1])
+        result = linprog(cost, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs")
         if result.status != 0:
             sys.exit(f"{name}: no such fit: {result.message}")
-        constants = result.x / result.x[len(numerator)]
+        solution = result.x
+        if cancel:
+            solution = solution[: len(solution) // 2] - solution[len(solution) // 2 :]
+        constants = solution / solution[len(numerator)]
         value = (n @ constants[: len(numerator)]) / (q @ constants[len(numerator) :])
-        broken = np.flatnonzero((value < low - 1e-5) | (value > high + 1e-5) | (q @ result.x[len(numerator) :] <= 0))
+        broken = np.flatnonzero((value < low - 1e-5) | (value > high + 1e-5) | (q @ solution[len(numerator) :] <= 0))
         if not len(broken):
             break
         rows = np.union1d(rows, broken[:: 1 + len(broken) // 500])
@@ -192,19 +210,35 @@ def fit_means(loss, shift):
     return mean_loss, mean_bias
 
 
-def fitted_sheen(constants, mu, alpha):
-    x = mu.dtype.type
-    bell = np.exp2(x(-SHEEN_FALL) * mu * mu / alpha)
-    smith = sheen_lambda(mu, alpha).astype(mu.dtype)
-    return np.maximum(bell * rational(constants, SHEEN_N, SHEEN_Q, mu, np.sqrt(alpha)), 0) / (mu * (1 + smith))
+def fitted_masking(masking, mu, alpha):
+    t = (1 - alpha) * (1 - alpha)
+    return rational(masking, MASKING_N, MASKING_Q, mu, t)
+
+
+def fitted_sheen(masking, constants, mu, alpha):
+    bell = np.exp2(mu.dtype.type(-SHEEN_FALL) * mu * mu / alpha)
+    lit = rational(constants, SHEEN_N, SHEEN_Q, mu, np.sqrt(alpha))
+    return np.maximum(bell * lit, 0) * fitted_masking(masking, mu, alpha)
 
 
 def fit_sheen():
+    """(constants of the masking, of the rest). Λ itself is the exponential of a number up to 17, and has as many times
+    the rounding errors; the masking is within 0.4% near grazing, and the rest is fitted to what that leaves."""
+    cosines = np.unique(np.concatenate([np.geomspace(1e-7, 1, 70), np.linspace(0.01, 1, 30)]))
+    alphas = np.unique(np.concatenate([np.geomspace(MIN_SHEEN_ALPHA, 1, 16), np.linspace(0.05, 1, 12)]))
+    alpha, mu, truth = grid(lambda c, a: 1 / (c * (1 + sheen_lambda(c, a)))[None], alphas, cosines)
+    error = 4e-3 * (1 + np.clip((mu - 0.01) / 0.05, 0, 9)) * truth
+    t = (1 - alpha) ** 2
+    masking = fit(
+        "sheen masking", mu, t, MASKING_N, MASKING_Q, truth - error, truth + error, cancel=MASKING_CANCEL
+    )
+
     cosines = np.concatenate([np.geomspace(1e-7, 1e-3, 40)[:-1], cosine_nodes(1e-3, 150)])
     alpha, mu, truth = grid(sheen, np.geomspace(MIN_SHEEN_ALPHA, 1, 90), cosines)
-    factor = np.exp2(-SHEEN_FALL * mu * mu / alpha) / (mu * (1 + sheen_lambda(mu, alpha)))
+    factor = np.exp2(-SHEEN_FALL * mu * mu / alpha) * fitted_masking(masking, mu, alpha)
     high = truth + 9.6e-3 * np.maximum(1, truth)
-    return fit("sheen", mu, np.sqrt(alpha), SHEEN_N, SHEEN_Q, np.maximum(truth - 1e-4, 0), high, factor)
+    low = np.maximum(truth - 1e-4, 0)
+    return masking, fit("sheen", mu, np.sqrt(alpha), SHEEN_N, SHEEN_Q, low, high, factor)
 
 
 # ---- Checks, in single precision
@@ -246,15 +280,19 @@ def check_ggx(loss, shift, mean_loss, mean_bias):
     return broken
 
 
-def check_sheen(constants):
+def check_sheen(masking, constants):
     cosines = np.concatenate([np.geomspace(1e-7, 1e-3, 60)[:-1], cosine_nodes(1e-3, 420)])
     alpha, mu, truth = grid(sheen, np.geomspace(MIN_SHEEN_ALPHA, 1, 401), cosines)
-    fitted = fitted_sheen(constants, *single(mu, alpha))
+    fitted = fitted_sheen(masking, constants, *single(mu, alpha))
+    rounding = fitted - fitted_sheen(masking, constants, *(v.astype(float) for v in single(mu, alpha)))
     usual = mu >= 1e-4  # the lobe's own Λ is too small nearer to grazing
     sane = alpha[usual & (truth > 1)].max()
     print(f"sheen from cosine 1e-4: at most {truth[usual].max():.4f}; at most 1 above alpha {sane:.4f}")
     print(f"sheen above alpha {sane:.4f}: above 1 up to cosine {mu[(alpha > sane) & (truth > 1)].max():.1e}")
-    return [check("sheen, over max(1, truth)", (fitted - truth) / np.maximum(1, truth), -UNDER, SHEEN_OVER)]
+    return [
+        check("sheen, over max(1, truth)", (fitted - truth) / np.maximum(1, truth), -UNDER, SHEEN_OVER),
+        check("sheen, single precision's error", rounding / np.maximum(1, truth), -9e-7, 9e-7),
+    ]
 
 
 def main():
@@ -263,8 +301,8 @@ def main():
     broken = [check("quadrature at alpha 1", ggx(mu, 1.0)[0] - (1 - mu * np.log1p(1 / mu)), -5e-5, 5e-5)]
     loss, shift = fit_ggx()
     mean_loss, mean_bias = fit_means(loss, shift)
-    constants = fit_sheen()
-    broken += check_ggx(loss, shift, mean_loss, mean_bias) + check_sheen(constants)
+    masking, constants = fit_sheen()
+    broken += check_ggx(loss, shift, mean_loss, mean_bias) + check_sheen(masking, constants)
     sys.exit(any(broken))
 
 

@@ -9,6 +9,8 @@ namespace glint::numerics {
 // domains_geometry.cpp
 void fillDirection(InputSource& in);
 void fillTransform(InputSource& in);
+void fillBinnedDirection(InputSource& in);
+void fillScreenRay(InputSource& in);
 void fillCounters(InputSource& in);
 void fillSumOfProduct(InputSource& in);
 void fillProducts(InputSource& in);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace glint::numerics {
 namespace {
@@ -39,6 +40,83 @@ void fillTransform(InputSource& in) {
     for (int k = 0; k < 15; ++k) {
         in.put(in.coordinate());
     }
+}
+
+// A sort of bins and a direction: any, on an edge of the octahedral map's cells, seams included, or with a
+// component of 0.
+void fillBinnedDirection(InputSource& in) {
+    in.put(in.pick({0.0, 1.0, 2.0}));
+    const double kind = in.uniform();
+    if (kind < 0.4) {
+        in.put(in.direction());
+        return;
+    }
+    if (kind < 0.5) {
+        const double turn = in.uniform(0.0, 2.0 * std::numbers::pi);
+        const double c = std::cos(turn);
+        const double s = std::sin(turn);
+        const double flat = in.pick({0.0, -0.0, 1e-40, -1e-40});
+        const double axis = in.pick({0.0, 1.0, 2.0});
+        in.put(axis == 0.0 ? Vector{flat, c, s} : axis == 1.0 ? Vector{c, flat, s} : Vector{c, s, flat});
+        return;
+    }
+    const double off = in.chance(0.1) ? 0.0 : in.pick({-1.0, 1.0}) * in.logUniform(1e-9, 1e-2);
+    const double edge = 0.25 * std::floor(in.uniform(-4.0, 5.0));
+    double x = std::clamp(edge + off, -1.0, 1.0);
+    double y = in.chance(0.1) ? 0.25 * std::floor(in.uniform(-4.0, 5.0)) : in.uniform(-1.0, 1.0);
+    if (in.chance(0.5)) {
+        std::swap(x, y);
+    }
+    const double z = 1.0 - std::abs(x) - std::abs(y);
+    const double fold = std::max(-z, 0.0);
+    x -= std::copysign(fold, x);
+    y -= std::copysign(fold, y);
+    const double length = std::hypot(x, y, z);
+    in.put({x / length, y / length, z / length});
+}
+
+// A ray from a point in view, in clip space of a perspective or orthographic camera, and a share of its line.
+// Up to 1e9 times as far away as the near plane: from there w cancels to nothing where the ray comes back to it.
+void fillScreenRay(InputSource& in) {
+    const double nearest = in.logUniform(1e-3, 1.0);
+    const bool orthographic = in.chance(0.2);
+    const double farthest = nearest * in.logUniform(10.0, 1e9);
+    const bool infinite = !orthographic && in.chance(0.5);
+    const double along = in.chance(0.1) ? nearest : nearest * in.logUniform(1.0, farthest / nearest);
+    // Depth is reversed, and linear in the distance along the view: 1 at the near plane and 0 at the far one,
+    // times w.
+    const double range = farthest - nearest;
+    const double slope = infinite ? 0.0 : (orthographic ? -1.0 : -nearest) / range;
+    const double constant = infinite ? nearest : (orthographic ? farthest : nearest * farthest) / range;
+    const double w = orthographic ? 1.0 : along;
+    const auto place = [&] {
+        // At the border of the image, and off it by a rounding, too.
+        return w * (in.chance(0.1) ? in.pick({0.0, 1.0, -1.0, 1.0 + 0x1p-23}) : in.uniform(-1.0, 1.0));
+    };
+    const double x = place();
+    const double y = place();
+    for (const double coordinate : {x, y, constant + slope * along, w}) {
+        in.put(coordinate);
+    }
+
+    const double focal = in.logUniform(0.1, 10.0);
+    const double aspect = in.logUniform(0.3, 3.0);
+    Vector view = in.direction();
+    if (in.chance(0.2)) {
+        // Through the eye: a point of the screen.
+        const double sign = in.pick({-1.0, 1.0});
+        view = orthographic ? Vector{0.0, 0.0, sign}
+                            : Vector{sign * x / focal, sign * y / (focal * aspect), sign * w};
+        const double length = std::hypot(view.x, view.y, view.z);
+        view = {view.x / length, view.y / length, view.z / length};
+    }
+    for (const double coordinate :
+         {view.x * focal, view.y * focal * aspect, slope * view.z, orthographic ? 0.0 : view.z}) {
+        in.put(coordinate);
+    }
+    in.put(std::floor(in.logUniform(1.0, 16384.0)));
+    in.put(std::floor(in.logUniform(1.0, 16384.0)));
+    in.put(in.sample());
 }
 
 void fillCounters(InputSource& in) {

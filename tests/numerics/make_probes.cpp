@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -28,6 +29,19 @@ constexpr std::string_view kRoot = R"(#version 460
 #include "numerics/probes.glsl"
 #include "numerics/textbook.glsl"
 )";
+
+// Of a header that needs device addresses, what needs none: its constants.
+std::string constantsOf(std::string_view header) {
+    std::string text = "#include \"interop/types.h\"\nGLINT_INTEROP_BEGIN\n";
+    while (!header.empty()) {
+        const std::size_t end = std::min(header.find('\n'), header.size() - 1) + 1;
+        if (header.starts_with("GLINT_CONSTANT(")) {
+            text += header.substr(0, end);
+        }
+        header.remove_prefix(end);
+    }
+    return text + "GLINT_INTEROP_END\n";
+}
 
 // Found files stay in memory: flatten() keeps views of them.
 class Sources {
@@ -49,7 +63,9 @@ public:
             }
             glint::Result<glint::Bytes> bytes = glint::readFile(folder / name);
             if (bytes) {
-                return texts_.emplace(name, std::string(bytes->begin(), bytes->end())).first->second;
+                const std::string text(bytes->begin(), bytes->end());
+                return texts_.emplace(name, name == "interop/frame.h" ? constantsOf(text) : text)
+                    .first->second;
             }
         }
         return std::nullopt;

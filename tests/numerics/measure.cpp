@@ -54,6 +54,9 @@ bool compare(const Probe& probe, const Real* values, const double* truth, const 
     if (probe.decides()) {
         const int decision = probe.allOutputs() - 1;
         if (static_cast<double>(values[decision]) != truth[decision]) {
+            if (probe.givesEdge) {
+                statistics.add(truth[0], decision, inputs, probe.inputs);
+            }
             return false;
         }
     }

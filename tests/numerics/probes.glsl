@@ -2,6 +2,7 @@
 // Written once; the device runs it as GLSL, the host as C++ in single and in double precision.
 #include "hit/geometry.glsl"
 #include "hit/accumulate.glsl"
+#include "hit/direction_bin.glsl"
 #include "hit/lod.glsl"
 #include "hit/punctual.glsl"
 #include "hit/random.glsl"
@@ -17,6 +18,7 @@
 #include "bsdf/clearcoat.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
+#include "effects/screen_ray.glsl"
 
 #define VEC2(k) vec2(i[k], i[(k) + 1])
 #define VEC3(k) vec3(i[k], i[(k) + 1], i[(k) + 2])
@@ -80,6 +82,28 @@ PROBE(PlaneError) {
     cofactors[1] = VEC3(30);
     cofactors[2] = VEC3(33);
     o[0] = planeError(VEC3(0), TrianglePoint(VEC3(3), VEC3(6), VEC3(9), VEC3(12)), rows, cofactors);
+}
+
+// hit/direction_bin.glsl
+
+// How far the nearest edge of the direction's bin is, in components of the direction or in cells of the map.
+float binEdge(vec3 v, uint binning) {
+    if (binning == kBinningNone) {
+        return 1.0;
+    }
+    if (binning == kBinningSign) {
+        return min(min(abs(v.x), abs(v.y)), abs(v.z));
+    }
+    vec2 cell = octahedralEncode(v) * 4.0 + 4.0;
+    vec2 edge = abs(cell - clamp(round(cell), vec2(1.0), vec2(7.0)));
+    // The lower hemisphere is cut along the planes x = 0 and y = 0, which meet the border of the map.
+    float seam = v.z < 0.0 ? 4.0 * min(abs(v.x), abs(v.y)) / (abs(v.x) + abs(v.y) + abs(v.z)) : 1.0;
+    return min(min(edge.x, edge.y), seam);
+}
+
+PROBE(DirectionBin) {
+    o[0] = binEdge(VEC3(1), uint(i[0]));
+    o[1] = float(directionBin(VEC3(1), uint(i[0])));
 }
 
 // hit/lod.glsl
@@ -395,4 +419,30 @@ PROBE(SampleBsdf) {
     float weight = s.weight.x + s.weight.y + s.weight.z;
     // A weight that is no normal number has few digits.
     o[0] = s.pdf > 0.0 && weight > 1e-30 ? (f.x + f.y + f.z) / s.pdf / weight : 1.0;
+}
+
+// effects/screen_ray.glsl
+
+#define GIVEN_RAY(ray)                                                      \
+    ScreenRay ray = screenRay(VEC4(0), VEC4(4), VEC2(8), kFarDistance);     \
+    float reach = ray.distanceOverEnd / ray.inverseEnd
+
+// A pixel of the line, in widths and heights of the image. The scale is what the sums that make the line's end amount
+// to over its w: where a ray from afar ends at the near plane, they cancel.
+PROBE(ScreenPixel) {
+    GIVEN_RAY(ray);
+    vec2 pixel = screenPixel(ray, i[10]) / VEC2(8);
+    o[0] = pixel.x;
+    o[1] = pixel.y;
+    vec4 terms = abs(VEC4(0)) + reach * abs(VEC4(4));
+    o[2] = 1.0 + i[10] * max(max(terms.x, terms.y), terms.w) * ray.inverseEnd;
+}
+
+// How far along the ray that pixel is. The scale is the distance itself, times what w at the line's end magnifies.
+PROBE(ScreenDistance) {
+    GIVEN_RAY(ray);
+    o[0] = screenDistance(ray, i[10]);
+    float terms = i[3] + reach * abs(i[7]);
+    float end = 1.0 / ray.inverseEnd;
+    o[1] = o[0] * (1.0 + (1.0 - i[10]) * terms / mix(end, i[3], i[10]));
 }

@@ -33,6 +33,9 @@ struct Probe {
     // Last, the probe gives a number that says which way it decided. Where single and double precision decide
     // otherwise, near the edge, outputs are not compared; at most this share of the inputs may do so.
     double undecidedShare = -1.0;
+    // Output 0 is how far away the nearest edge is at which the decision changes: deciding otherwise is an
+    // error of as much.
+    bool givesEdge = false;
     // The probe in textbook.glsl of the formula that the function stands in for, of the same inputs; may be
     // empty.
     std::string_view textbook = {};
