@@ -1,5 +1,5 @@
 # glint_embed(TARGET OUTPUT file.cpp ROOTS dir… PATTERNS glob…): compiles text files into TARGET, found at run time by
-# their path below a root through glint::embeddedFiles() (tool/emit/embedded.h). Changed, added and removed files
+# their path below a root through glint::builtinFiles() (tool/emit/builtin.h). Changed, added and removed files
 # rebuild it.
 #
 # The same file is the generator: cmake -DOUTPUT=… -DLIST=… -P GlintEmbed.cmake, where each line of LIST is "name|path".
@@ -7,8 +7,8 @@
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS "${LIST}" entries ENCODING UTF-8)
   set(code "// Made by cmake/GlintEmbed.cmake from the shaders and templates. Do not edit.\n")
-  string(APPEND code "#include \"emit/embedded.h\"\n\nnamespace glint {\n\n")
-  string(APPEND code "std::span<const EmbeddedFile> embeddedFiles() {\n    static constexpr EmbeddedFile kFiles[] = {\n")
+  string(APPEND code "#include \"emit/builtin.h\"\n\nnamespace glint {\n\n")
+  string(APPEND code "std::span<const BuiltinFile> builtinFiles() {\n    static constexpr BuiltinFile kFiles[] = {\n")
   foreach(entry IN LISTS entries)
     string(REGEX MATCH "^([^|]+)\\|(.+)$" matched "${entry}")
     set(name "${CMAKE_MATCH_1}")

@@ -1,4 +1,5 @@
-# Install, and export as the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler and Glint::glint.
+# Install, and export as the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler, Glint::glint and
+# glint_add_materials().
 include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_runtime)
@@ -13,7 +14,7 @@ install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
   # What compile.h includes, and no more: the rest is the compiler's own business.
-  foreach(header base/files.h emit/compile.h gltf/import.h gltf/scene.h plan/cost.h plan/features.h plan/material.h plan/merge.h
+  foreach(header base/files.h emit/compile.h gltf/import.h gltf/scene.h plan/cost.h plan/features.h plan/lock_ids.h plan/material.h plan/merge.h
                  plan/plan.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
@@ -26,4 +27,5 @@ configure_package_config_file(cmake/GlintConfig.cmake.in "${CMAKE_CURRENT_BINARY
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/GlintConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/GlintConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/GlintConfigVersion.cmake"
+              cmake/GlintMaterials.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)

@@ -10,6 +10,14 @@ if(GLINT_SANITIZE)
                                                 -fno-omit-frame-pointer)
   target_link_options(glint_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(GLINT_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "GLINT_FUZZ needs Clang: cmake --preset fuzz")
+  endif()
+  # Coverage counters in everything that targets run; the targets themselves bring libFuzzer.
+  target_compile_options(glint_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(glint_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # glint_configure(TARGET): the project's warnings and sanitizers, for its own sources only.
 function(glint_configure target)

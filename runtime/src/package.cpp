@@ -17,21 +17,29 @@ constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
 }  // namespace
 
 Result<Package> Package::load(const std::filesystem::path& folder) {
-    const std::filesystem::path tablesPath = folder / package::kTablesFile;
-    Result<std::vector<std::uint8_t>> bytes = readPackageFile(tablesPath, "package-missing", kMaxTablesBytes);
+    return loadFrom(FolderFiles(folder));
+}
+
+Result<Package> Package::load(std::span<const package::EmbeddedFile> files) {
+    return loadFrom(MemoryFiles(files));
+}
+
+Result<Package> Package::loadFrom(const PackageFiles& files) {
+    Result<std::vector<std::uint8_t>> bytes =
+        files.read(package::kTablesFile, "package-missing", kMaxTablesBytes);
     if (!bytes) {
         return bytes.error();
     }
     auto state = std::make_unique<State>();
     state->tables = std::move(*bytes);
-    const std::string where = tablesPath.string();
+    const std::string where = files.where(package::kTablesFile);
     if (Status status = readTables(*state, where); !status) {
         return status.error();
     }
     if (Status status = checkTables(*state, where); !status) {
         return status.error();
     }
-    if (Status status = readModules(*state, folder); !status) {
+    if (Status status = readModules(*state, files); !status) {
         return status.error();
     }
     return Package(std::move(state));

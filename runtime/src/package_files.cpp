@@ -38,22 +38,12 @@ bool resolvesInside(const std::filesystem::path& folder, const std::filesystem::
     return std::ranges::mismatch(root, target).in1 == root.end();
 }
 
-Result<std::vector<std::uint32_t>> readModule(const std::filesystem::path& folder, const std::string& name,
+Result<std::vector<std::uint32_t>> readModule(const PackageFiles& files, const std::string& name,
                                               const package::ModuleEntry& entry) {
-    const std::filesystem::path path = folder / name;
-    const std::string where = path.string();
-    if (!staysInside(name) || name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) {
-        return makeError("package-file-name", (folder / package::kTablesFile).string(),
-                         "the module file name \"" + name + "\" does not stay in the package's folder",
-                         kRecompile);
-    }
-    Result<std::vector<std::uint8_t>> bytes = readPackageFile(path, "package-module-missing", entry.bytes);
+    const std::string where = files.where(name);
+    Result<std::vector<std::uint8_t>> bytes = files.read(name, "package-module-missing", entry.bytes);
     if (!bytes) {
         return bytes.error();
-    }
-    if (!resolvesInside(folder, path)) {
-        return makeError("package-file-name", where, "the module is a link that leaves the package's folder",
-                         kRecompile);
     }
     if (bytes->size() != entry.bytes) {
         return makeError("package-module-altered", where,
@@ -76,10 +66,9 @@ Result<std::vector<std::uint32_t>> readModule(const std::filesystem::path& folde
     return words;
 }
 
-}  // namespace
-
-Result<std::vector<std::uint8_t>> readPackageFile(const std::filesystem::path& path, const char* missingId,
-                                                  std::uint64_t maxBytes) {
+// One byte more than allowed tells the caller that the file is longer, without reading all of it.
+Result<std::vector<std::uint8_t>> readWhole(const std::filesystem::path& path, const char* missingId,
+                                            std::uint64_t maxBytes) {
     const std::string where = path.string();
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
@@ -91,7 +80,6 @@ Result<std::vector<std::uint8_t>> readPackageFile(const std::filesystem::path& p
     if (error || !stream) {
         return makeError("package-read", where, "the file cannot be opened", "check its permissions");
     }
-    // One byte more than allowed tells the caller that the file is longer, without reading all of it.
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::min(size, maxBytes + 1)));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
@@ -100,14 +88,61 @@ Result<std::vector<std::uint8_t>> readPackageFile(const std::filesystem::path& p
     return bytes;
 }
 
-Status readModules(Package::State& state, const std::filesystem::path& folder) {
+}  // namespace
+
+FolderFiles::FolderFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+std::string FolderFiles::where(const std::string& name) const {
+    return (folder_ / name).string();
+}
+
+Result<std::vector<std::uint8_t>> FolderFiles::read(const std::string& name, const char* missingId,
+                                                    std::uint64_t maxBytes) const {
+    if (!staysInside(name) || name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) {
+        return makeError("package-file-name", where(package::kTablesFile),
+                         "the module file name \"" + name + "\" does not stay in the package's folder",
+                         kRecompile);
+    }
+    Result<std::vector<std::uint8_t>> bytes = readWhole(folder_ / name, missingId, maxBytes);
+    if (bytes && !resolvesInside(folder_, folder_ / name)) {
+        return makeError("package-file-name", where(name),
+                         "the file is a link that leaves the package's folder", kRecompile);
+    }
+    return bytes;
+}
+
+// Of two files of one name the first counts.
+MemoryFiles::MemoryFiles(std::span<const package::EmbeddedFile> files) {
+    for (const package::EmbeddedFile& file : files) {
+        files_.emplace(file.name, file.bytes);
+    }
+}
+
+std::string MemoryFiles::where(const std::string& name) const {
+    return "embedded " + name;
+}
+
+Result<std::vector<std::uint8_t>> MemoryFiles::read(const std::string& name, const char* missingId,
+                                                    std::uint64_t maxBytes) const {
+    const auto file = files_.find(name);
+    if (file == files_.end()) {
+        return makeError(missingId, where(name), "there is no such file in memory",
+                         "pass all files that `glint compile --embed` made");
+    }
+    const std::span<const std::uint8_t> bytes = file->second;
+    const auto kept =
+        bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), maxBytes + 1)));
+    return std::vector<std::uint8_t>(kept.begin(), kept.end());
+}
+
+Status readModules(Package::State& state, const PackageFiles& files) {
     for (const package::ModuleEntry& entry : state.modules) {
         const std::string name(state.strings.data() + entry.file.offset, entry.file.length);
         // Entries that share a file agree on its size and hash: checkTables() has seen to it.
         if (state.spirv.contains(name)) {
             continue;
         }
-        Result<std::vector<std::uint32_t>> words = readModule(folder, name, entry);
+        Result<std::vector<std::uint32_t>> words = readModule(files, name, entry);
         if (!words) {
             return words.error();
         }

@@ -43,12 +43,48 @@ Status readTables(Package::State& state, const std::string& where);
 // Every index, reference and promise of the tables. Error "package-altered", with what is wrong.
 Status checkTables(const Package::State& state, const std::string& where);
 
-// Reads the modules that the tables name into state.spirv.
-// Errors: "package-module-missing", "package-module-altered", "package-file-name".
-Status readModules(Package::State& state, const std::filesystem::path& folder);
+// Where the files of a package come from.
+class PackageFiles {
+public:
+    PackageFiles() = default;
+    PackageFiles(const PackageFiles&) = delete;
+    PackageFiles& operator=(const PackageFiles&) = delete;
+    virtual ~PackageFiles() = default;
 
-// A whole file. Errors: `missingId` where there is no such file, "package-read".
-Result<std::vector<std::uint8_t>> readPackageFile(const std::filesystem::path& path, const char* missingId,
-                                                  std::uint64_t maxBytes);
+    // What messages call a file.
+    virtual std::string where(const std::string& name) const = 0;
+    // A whole file, or its first maxBytes + 1 bytes if it is longer. Errors: `missingId` where there is no
+    // such file, "package-read", "package-file-name".
+    virtual Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
+                                                   std::uint64_t maxBytes) const = 0;
+};
+
+// Files below a folder: no name and no link leads out of it.
+class FolderFiles final : public PackageFiles {
+public:
+    explicit FolderFiles(std::filesystem::path folder);
+    std::string where(const std::string& name) const override;
+    Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
+                                           std::uint64_t maxBytes) const override;
+
+private:
+    std::filesystem::path folder_;
+};
+
+// Files in memory, which must outlive it.
+class MemoryFiles final : public PackageFiles {
+public:
+    explicit MemoryFiles(std::span<const package::EmbeddedFile> files);
+    std::string where(const std::string& name) const override;
+    Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
+                                           std::uint64_t maxBytes) const override;
+
+private:
+    std::map<std::string_view, std::span<const std::uint8_t>> files_;
+};
+
+// Reads the modules that the tables name into state.spirv.
+// Errors: "package-module-missing", "package-module-altered", and those of PackageFiles::read().
+Status readModules(Package::State& state, const PackageFiles& files);
 
 }  // namespace glint

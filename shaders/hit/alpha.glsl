@@ -5,7 +5,7 @@
 // Whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. Reads mip 0: traversal knows no
 // footprint. What the module has of its cases says nothing here: a ray of any case meets masks of all.
 bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
-    Features features = GLINT_HIT_FEATURES(geometry);
+    Features features = Features(0u, GLINT_ALPHA_ALWAYS, 0u, GLINT_ALPHA_SOMETIMES, 0u, geometry.featureInputs);
     MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
     uvec3 corner = uvec3(geometry.indices.data[3u * primitive], geometry.indices.data[3u * primitive + 1u],
                          geometry.indices.data[3u * primitive + 2u]);

@@ -54,10 +54,13 @@ TEST_F(CompileCommand, JsonHasWhatIsPromised) {
     EXPECT_GT(json.at("packageBytes").get<int>(), json.at("spirvBytes").get<int>());
     EXPECT_GE(json.at("milliseconds").get<double>(), 0.0);
     EXPECT_EQ(json.at("output"), "package");
-    EXPECT_TRUE(json.at("warnings").empty());
+    EXPECT_TRUE(json.at("diagnostics").empty());
     for (const nlohmann::json& shader : json.at("shaders")) {
         EXPECT_TRUE(shader.at("name").is_string());
-        EXPECT_GT(shader.at("spirv").at("bytes").get<int>(), 0);
+        ASSERT_FALSE(shader.at("stages").empty());
+        for (const nlohmann::json& stage : shader.at("stages")) {
+            EXPECT_GT(stage.at("bytes").get<int>(), 0);
+        }
     }
     const std::vector<std::string> files = filesBelow(path("package"));
     for (const char* name : {"glint_tables.h", "manifest.json", "tables.bin"}) {
@@ -101,13 +104,14 @@ TEST_F(CompileCommand, WerrorRefusesBeforeAnythingIsWritten) {
     writeTinyScene(path(""), {.unknownExtension = true});
     const Outcome refused = run({"compile", scene(), "-o", "package", "--werror"});
     EXPECT_EQ(refused.exit, 1);
-    EXPECT_NE(refused.err.find("warning: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("error: the extension EXT_not_known_to_anyone"), std::string::npos)
+        << refused.err;
     EXPECT_NE(refused.err.find("[werror]"), std::string::npos) << refused.err;
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 
     const Outcome accepted = run({"compile", scene(), "--dry-run", "--json"});
     EXPECT_EQ(accepted.exit, 0);
-    EXPECT_EQ(accepted.json().at("warnings").size(), 1U);
+    EXPECT_EQ(accepted.json().at("diagnostics").size(), 1U);
     EXPECT_NE(accepted.err.find("EXT_not_known_to_anyone"), std::string::npos) << accepted.err;
 }
 

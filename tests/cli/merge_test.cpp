@@ -66,7 +66,7 @@ TEST_F(Merge, ProfileTellsHotFromNeverHit) {
     EXPECT_EQ(outcome.json().at("shaders")[0].at("reason"), "never-hit");
     EXPECT_EQ(outcome.json().at("shaders")[1].at("reason"), "hot");
     EXPECT_EQ(outcome.json().at("shaders")[1].at("share"), 1.0);
-    EXPECT_TRUE(outcome.json().at("warnings").empty());
+    EXPECT_TRUE(outcome.json().at("diagnostics").empty());
     const Outcome explained = run({"explain", scene_, "--merge", "profile:hits.json", "--material", "Wall"});
     ASSERT_EQ(explained.exit, 0) << explained.err;
     EXPECT_NE(explained.out.find("never-hit: no hit of the profile has its key"), std::string::npos)
@@ -86,7 +86,7 @@ TEST_F(Merge, ProfilesOfOtherKeysAreWarnedOf) {
     EXPECT_NE(outcome.err.find("note: counts 1 keys that the scene does not have: Varnish"),
               std::string::npos)
         << outcome.err;
-    EXPECT_EQ(outcome.json().at("warnings").size(), 1U);
+    EXPECT_EQ(outcome.json().at("diagnostics").size(), 2U);
     EXPECT_EQ(planWith(profile, {"--werror"}).exit, 1);
 }
 

@@ -41,7 +41,7 @@ TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
     const Outcome compiled =
         run({"compile", scene_, "-o", "package", "--merge", "profile", "--profile", "hits.json", "--json"});
     ASSERT_EQ(compiled.exit, 0) << compiled.err;
-    EXPECT_TRUE(compiled.json().at("warnings").empty()) << compiled.err;
+    EXPECT_TRUE(compiled.json().at("diagnostics").empty()) << compiled.err;
     const nlohmann::json wall = compiled.json().at("shaders")[0];
     EXPECT_EQ(wall.at("always"), nlohmann::json({"unlit"}));
     EXPECT_EQ(wall.at("reason"), "hot");

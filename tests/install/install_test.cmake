@@ -1,20 +1,35 @@
-set(prefix "${WORK}/prefix")
-set(build "${WORK}/consumer-build")
-file(REMOVE_RECURSE "${prefix}" "${build}")
+# Installs into an empty prefix, and builds programs against what was installed.
+# -DGLINT_BUILD=… -DWORK=… -DCONSUMER=… -DSCENES=… -DGENERATOR=… [-DFLAGS=…] [-DLAUNCHER=…]
+cmake_minimum_required(VERSION 3.25)
+include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGV " " command)
-    message(FATAL_ERROR "${command}\n${output}")
-  endif()
-endfunction()
+set(prefix "${WORK}/prefix")
+set(build "${WORK}/build")
+file(REMOVE_RECURSE "${WORK}")
+file(COPY "${SCENES}/" DESTINATION "${WORK}/scenes")
+file(COPY_FILE "${WORK}/scenes/cubes.gltf" "${WORK}/scenes/copy.gltf")
 
 run(${CMAKE_COMMAND} --install "${GLINT_BUILD}" --prefix "${prefix}")
-run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" -DCMAKE_PREFIX_PATH=${prefix}
-    "-DCMAKE_CXX_FLAGS=${FLAGS}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
+run("${prefix}/bin/glint" --version)
+run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" "-DSCENES=${WORK}/scenes")
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
-run("${build}/uses_tables")
-run("${prefix}/bin/glint" --version)
+run("${build}/tables/uses_tables")
+
+# The first build made the lock; the second has no reason to run for it.
+if(NOT EXISTS "${build}/cubes.lock")
+  message(FATAL_ERROR "there is no lock")
+endif()
+run(${CMAKE_COMMAND} --build "${build}")
+if(output MATCHES "Compiling the materials")
+  message(FATAL_ERROR "the second build compiles materials\n${output}")
+endif()
+
+# A lock that is gone or changed is an input that changed.
+file(REMOVE "${build}/cubes.lock")
+run(${CMAKE_COMMAND} --build "${build}")
+if(NOT EXISTS "${build}/cubes.lock" OR output MATCHES "materials of both")
+  message(FATAL_ERROR "the lock was not made again, or more than its package\n${output}")
+endif()

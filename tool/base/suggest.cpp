@@ -51,4 +51,19 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
     return found.empty() ? std::string() : "; did you mean " + found + "?";
 }
 
+std::string enumeration(std::span<const std::string> candidates) {
+    constexpr std::size_t kShown = 8;
+    std::string text;
+    std::size_t count = 0;
+    for (const std::string& candidate : candidates) {
+        if (!candidate.empty() && ++count <= kShown) {
+            text += (count > 1 ? ", " : "") + candidate;
+        }
+    }
+    if (count == 0) {
+        return {};
+    }
+    return " (it has " + text + (count > kShown ? " and " + std::to_string(count - kShown) + " more)" : ")");
+}
+
 }  // namespace glint

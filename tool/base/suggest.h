@@ -18,4 +18,8 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 // "; did you mean X?", or nothing.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
+// The first few candidates, " (it has a, b, c and 4 more)"; nothing where there is none. Empty names are left
+// out.
+std::string enumeration(std::span<const std::string> candidates);
+
 }  // namespace glint

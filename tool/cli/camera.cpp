@@ -163,13 +163,14 @@ std::optional<std::size_t> findCamera(const Scene& scene, const std::string& wan
 }
 
 Diagnostic unknownCamera(const Scene& scene, const std::string& wanted) {
-    std::vector<std::string> names{"auto"};
-    for (const Camera& camera : scene.cameras) {
-        names.push_back(camera.name);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        names.push_back(cameraName(scene, i));
     }
-    const std::string count = std::to_string(scene.cameras.size());
+    const std::string known = names.empty() ? " (it has none)" : enumeration(names);
+    names.emplace_back("auto");
     return makeError("camera-unknown", scene.path,
-                     "has no camera \"" + wanted + "\" (it has " + count + ")" + suggestion(wanted, names),
+                     "has no camera \"" + wanted + "\"" + known + suggestion(wanted, names),
                      "use --camera auto, a name, or a number from 0");
 }
 

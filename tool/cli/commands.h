@@ -10,8 +10,11 @@ namespace glint {
 void addCompile(CLI::App& app, Action& chosen);
 void addExplain(CLI::App& app, Action& chosen);
 void addInspect(CLI::App& app, Action& chosen);
+void addDiff(CLI::App& app, Action& chosen);
 void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
+// After all others and their options, of which it makes the script.
+void addCompletion(CLI::App& app, Action& chosen);
 
 }  // namespace glint

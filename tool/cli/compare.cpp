@@ -21,7 +21,6 @@ struct CompareArguments {
     std::string image;
     std::string reference;
     std::string diff;
-    bool json = false;
     std::optional<double> maxError;
 };
 
@@ -109,7 +108,11 @@ int compare(const Console& console, const CompareArguments& arguments) {
             return fail(console, written.error());
         }
     }
-    console.print(arguments.json ? glint::toText(toJson(*difference, *image)) : toText(*difference, *image));
+    if (console.isJson()) {
+        console.result(toJson(*difference, *image));
+    } else {
+        console.print(toText(*difference, *image));
+    }
     const std::optional<Diagnostic> verdict = judge(arguments, *difference);
     return verdict ? fail(console, *verdict) : kExitDone;
 }
@@ -129,7 +132,6 @@ void addCompare(CLI::App& app, Action& chosen) {
     CLI::Option& limit = addReal(command, "--max-error", *maxError, 0.0, 1e30,
                                  "exit 1 if any |A - B| / max(1, |B|) is above X (0 to 1e30),\n"
                                  "or any pixel is NaN or infinite (default: no limit)");
-    addFlag(command, "--json", arguments->json, "print as JSON");
     command.callback([arguments, maxError, &limit, &chosen] {
         if (limit.count() > 0) {
             arguments->maxError = *maxError;

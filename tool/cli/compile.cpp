@@ -3,19 +3,25 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/compile_cache.h"
+#include "cli/compile_summary.h"
+#include "cli/depfile.h"
 #include "cli/held_signals.h"
+#include "cli/lock_option.h"
+#include "cli/module_report.h"
 #include "cli/plan_choice.h"
 #include "cli/read_scenes.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "cli/tracing_options.h"
+#include "emit/embed_source.h"
 #include "emit/json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,16 +35,19 @@ using Clock = std::chrono::steady_clock;
 struct CompileArguments {
     std::vector<std::string> scenes;
     std::string output;
+    std::string embed;  // a C++ source; empty: none
     TracingArguments tracing;
     std::string variant;
     PlanArguments plan;
+    LockArguments lock;
     AccuracyArguments accuracy;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
+    CacheArguments cache;
+    DepfileArguments depfile;
+    std::string options;  // all that are given, see describeOptions()
     bool environmentMap = false;
     bool debugInfo = false;
-    bool warningsAsErrors = false;
-    bool json = false;
     bool dryRun = false;
 };
 
@@ -46,10 +55,8 @@ struct CompileArguments {
 struct Outcome {
     const CompileArguments& arguments;
     const SceneList& scenes;
-    std::span<const Diagnostic> warnings;
     const Plan& plan;
     const CompiledPackage* package = nullptr;
-    double milliseconds = 0.0;
 
     std::uint64_t packageBytes() const {
         std::uint64_t bytes = 0;
@@ -76,44 +83,21 @@ CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) 
     return settings;
 }
 
-// The shading module of each case, if the package has them one by one.
-std::map<int, const CompiledModule*> caseModules(const CompiledPackage* package) {
-    std::map<int, const CompiledModule*> modules;
-    if (package != nullptr) {
-        for (const CompiledModule& module : package->modules) {
-            if (module.key.role == package::ModuleRole::ShadeCase) {
-                modules[static_cast<int>(module.key.index)] = &module;
-            }
-        }
-    }
-    return modules;
-}
-
 Json shadersToJson(const Outcome& outcome) {
-    const std::map<int, const CompiledModule*> modules = caseModules(outcome.package);
     Json list = Json::array();
     for (const Case& shader : outcome.plan.cases) {
         if (shader.isRetired()) {
             continue;
         }
-        Json entry{{"id", shader.shaderId},
-                   {"name", shader.name},
-                   {"always", featuresToJson(shader.always)},
-                   {"sometimes", featuresToJson(shader.sometimes)},
-                   {"keys", shader.keys.size()},
-                   {"share", shareToJson(shader.share)},
-                   {"reason", toString(shader.reason)},
-                   {"materials", materialsToJson(outcome.scenes, shader.materials)}};
-        const auto found = modules.find(shader.shaderId);
-        if (found != modules.end()) {
-            const CompiledModule& module = *found->second;
-            entry["spirv"] = Json{{"file", module.file},
-                                  {"bytes", module.statistics.bytes},
-                                  {"instructions", module.statistics.instructions},
-                                  {"textureFetches", module.statistics.textureFetches},
-                                  {"rayQueries", module.statistics.rayQueries}};
-        }
-        list.push_back(std::move(entry));
+        list.push_back(Json{{"id", shader.shaderId},
+                            {"name", shader.name},
+                            {"always", featuresToJson(shader.always)},
+                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"keys", shader.keys.size()},
+                            {"share", shareToJson(shader.share)},
+                            {"reason", toString(shader.reason)},
+                            {"materials", materialsToJson(outcome.scenes, shader.materials)},
+                            {"stages", stagesToJson(outcome.package, shader.shaderId)}});
     }
     return list;
 }
@@ -130,15 +114,23 @@ Json toJson(const Outcome& outcome) {
               {"uniqueSpirv", orNull([&] { return package->uniqueSpirv; })}}},
             {"spirvBytes", orNull([&] { return package->spirvBytes; })},
             {"packageBytes", orNull([&] { return outcome.packageBytes(); })},
-            {"milliseconds", outcome.milliseconds},
+            {"milliseconds", nullptr},
+            {"modules", nullptr},
+            {"upToDate", nullptr},
             {"variant", textOrNull(outcome.scenes.variant())},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
-            {"warnings", glint::toJson(outcome.warnings)},
-            {"output", orNull([&] { return outcome.arguments.output; })}};
+            {"output", orNull([&] { return textOrNull(outcome.arguments.output); })},
+            {"embedded", orNull([&] { return textOrNull(outcome.arguments.embed); })}};
 }
 
-std::string toText(const Outcome& outcome) {
+// The package's folder and the source, those that are written.
+std::string outputsOf(const CompileArguments& arguments) {
+    const bool both = !arguments.output.empty() && !arguments.embed.empty();
+    return arguments.output + (both ? ", " : "") + arguments.embed;
+}
+
+std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
     const Plan& plan = outcome.plan;
     std::vector<std::vector<std::string>> rows{
         {"materials", fmt::format("{}", outcome.scenes.materials().size())},
@@ -150,15 +142,18 @@ std::string toText(const Outcome& outcome) {
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
         rows.push_back({"package bytes", formatBytes(outcome.packageBytes())});
     }
-    rows.push_back({"time", fmt::format("{:.0f} ms", outcome.milliseconds)});
     const bool written = outcome.package != nullptr;
-    rows.push_back({"output", written ? outcome.arguments.output : "none (dry run)"});
-    return formatFields(rows) + droppedText(plan);
+    rows.push_back({"output", written ? outputsOf(outcome.arguments) : "none (dry run)"});
+    return rows;
 }
 
-void tell(const Console& console, Outcome outcome, Clock::time_point start) {
-    outcome.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    console.print(outcome.arguments.json ? glint::toText(toJson(outcome)) : toText(outcome));
+CompileSummary summaryOf(const Outcome& outcome) {
+    const int modules = outcome.package == nullptr ? 0 : static_cast<int>(outcome.package->modules.size());
+    return {toJson(outcome), fieldsOf(outcome), droppedText(outcome.plan), modules};
+}
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 int fail(const Console& console, const Diagnostic& error) {
@@ -170,18 +165,78 @@ int planOnly(const Console& console, Outcome outcome, const PlanOptions& options
     if (const std::optional<std::string> excess = describeExcess(outcome.plan, options)) {
         return fail(console, makeError("max-shaders", outcome.scenes.path(), *excess));
     }
-    tell(console, outcome, start);
+    tell(console, summaryOf(outcome), std::nullopt, false, millisecondsSince(start));
     return kExitDone;
 }
 
 // An interruption waits, so that it leaves no staging folder behind.
-Status writeWhole(const CompiledPackage& package, const std::string& folder) {
+Status writeOutputs(const SceneList& scenes, const CompiledPackage& package,
+                    const CompileArguments& arguments) {
     const HeldSignals held;
-    return writePackage(package, folder);
+    Status written = arguments.output.empty() ? okStatus() : writePackage(package, arguments.output);
+    if (written && !arguments.embed.empty()) {
+        written = writeEmbeddedSource(scenes, package, arguments.embed);
+    }
+    return written;
+}
+
+// What a run that did the same said, if there is nothing to do.
+std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
+                                 CompileCache& cache, Clock::time_point start) {
+    const std::optional<ActionRecord> earlier = cache.findUpToDate();
+    const std::optional<CompileSummary> summary = earlier ? unpackSummary(earlier->summary) : std::nullopt;
+    if (!summary) {
+        return std::nullopt;
+    }
+    console.report(earlier->diagnostics);
+    if (console.refused()) {
+        return kExitFailed;
+    }
+    if (Status listed = writeDepfile(arguments.depfile, pathsOf(earlier->inputs)); !listed) {
+        return fail(console, listed.error());
+    }
+    tell(console, *summary, ModuleCounts{0, summary->modules}, true, millisecondsSince(start));
+    return kExitDone;
+}
+
+// What is read besides scenes.
+std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& file : {arguments.plan.profile, arguments.lock.file}) {
+        if (!file.empty()) {
+            files.emplace_back(file);
+        }
+    }
+    return files;
+}
+
+// The files that a run has written.
+bool addOutputs(const CompiledPackage& package, const CompileArguments& arguments, ActionRecord& run) {
+    if (!arguments.output.empty()) {
+        run.outputs = filesOf(package, arguments.output);
+    }
+    if (arguments.embed.empty()) {
+        return true;
+    }
+    const std::filesystem::path embedded[] = {arguments.embed, embeddedHeader(arguments.embed)};
+    return addFiles(run.outputs, embedded);
 }
 
 int compile(const Console& console, const CompileArguments& arguments) {
     const Clock::time_point start = Clock::now();
+    CompileCache cache(arguments.cache, arguments.options);
+    const std::optional<int> done =
+        arguments.dryRun ? std::nullopt : repeatEarlier(console, arguments, cache, start);
+    if (done) {
+        return *done;
+    }
+    ActionRecord run;
+    const std::vector<std::filesystem::path> further = furtherInputs(arguments);
+    const bool known = addFiles(run.inputs, further);
+    const auto report = [&](const std::vector<Diagnostic>& diagnostics) {
+        run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
+        console.report(diagnostics);
+    };
     console.progress("reading " + join(arguments.scenes));
     ImportOptions import;
     import.variant = arguments.variant;
@@ -194,29 +249,57 @@ int compile(const Console& console, const CompileArguments& arguments) {
     if (!plan) {
         return fail(console, plan.error());
     }
-    std::vector<Diagnostic> warnings = warningsOf(*scenes);
-    warnings.insert(warnings.end(), plan->warnings.begin(), plan->warnings.end());
-    console.report(warnings);
-    console.report(plan->notes);
-    if (arguments.warningsAsErrors && !warnings.empty()) {
-        return fail(console, makeError("werror", list.path(), "has warnings, and --werror makes them errors",
-                                       "mend them, or leave out --werror"));
+    report(warningsOf(*scenes));
+    report(plan->warnings);
+    report(plan->notes);
+    const Result<LockChoice> lock = applyLock(arguments.lock, list, plan->options);
+    if (!lock) {
+        return fail(console, lock.error());
+    }
+    report(lock->warnings);
+    report(lock->notes);
+    if (console.refused()) {
+        return kExitFailed;
     }
     if (arguments.dryRun) {
         const Plan made = makePlan(list.materials(), list.primitives(), plan->options);
-        return planOnly(console, Outcome{arguments, list, warnings, made}, plan->options, start);
+        return planOnly(console, Outcome{arguments, list, made}, plan->options, start);
+    }
+    // The files of scenes come first, each as it was when it was read.
+    const std::vector<FileState> sceneFiles = filesOf(*scenes);
+    run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
+    std::vector<std::string> dependencies = pathsOf(sceneFiles);
+    for (const std::filesystem::path& file : further) {
+        dependencies.push_back(file.string());
+    }
+    if (const Result<std::string> listed = makeDepfile(arguments.depfile.targets, dependencies);
+        !arguments.depfile.file.empty() && !listed) {
+        return fail(console, listed.error());
     }
     console.progress("compiling " + join(arguments.scenes));
     const Result<CompiledPackage> package =
-        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)));
+        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)), cache.modules());
     if (!package) {
         return fail(console, package.error());
     }
-    console.progress("writing " + arguments.output);
-    if (Status written = writeWhole(*package, arguments.output); !written) {
+    console.progress("writing " + outputsOf(arguments));
+    if (Status written = writeOutputs(list, *package, arguments); !written) {
         return fail(console, written.error());
     }
-    tell(console, Outcome{arguments, list, warnings, package->plan, &*package}, start);
+    if (Status kept = writeLock(arguments.lock, *lock); !kept) {
+        return fail(console, kept.error());
+    }
+    if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
+        return fail(console, listed.error());
+    }
+    CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});
+    // A run that changes its own input may find other things to say next time.
+    if (known && !lock->text && addOutputs(*package, arguments, run)) {
+        run.summary = pack(summary);
+        cache.keep(run);
+    }
+    cache.close(console);
+    tell(console, std::move(summary), countModules(*package), false, millisecondsSince(start));
     return kExitDone;
 }
 
@@ -224,6 +307,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addTracingLists(command, arguments.tracing);
     addPlanOptions(command, arguments.plan);
     addProfileInput(command, arguments.plan);
+    addLockOptions(command, arguments.lock);
     addAccuracyOptions(command, arguments.accuracy);
     addFlag(command, "--environment-map", arguments.environmentMap,
             "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
@@ -234,8 +318,13 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
 
 void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the package; one that is there is replaced\n(required without --dry-run)")
+            "folder of the package; one that is there is replaced\n(required without --embed or --dry-run)")
         .group("Output");
+    addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
+                   "the package as a C++ source, with a header beside it, for\n"
+                   "programs that ship no files; -o may then be left out")
+        .group("Output")
+        ->type_name("FILE.cpp");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
                "what else the package holds, separated by commas:\n"
                "glsl: the shaders' sources; header: C++ tables")
@@ -243,6 +332,8 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile and write nothing").group("Output");
     addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one a core")
         .group("Output");
+    addCacheOptions(command, arguments.cache);
+    addDepfileOptions(command, arguments.depfile);
 }
 
 }  // namespace
@@ -257,15 +348,18 @@ void addCompile(CLI::App& app, Action& chosen) {
     addVariant(command, arguments->variant);
     addOutputOptions(command, *arguments);
     addShaderOptions(command, *arguments);
-    addFlag(command, "--werror", arguments->warningsAsErrors,
-            "fail on any warning, before anything is written")
-        .group("Report");
-    addFlag(command, "--json", arguments->json, "print the summary as JSON").group("Report");
-    command.callback([arguments, &chosen] {
-        if (arguments->output.empty() && !arguments->dryRun) {
-            throw CLI::RequiredError("-o DIR (or --dry-run)");
+    command.callback([arguments, &command, &chosen] {
+        if (arguments->output.empty() && arguments->embed.empty() && !arguments->dryRun) {
+            throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
         }
         settleProfile(arguments->plan);
+        if (arguments->depfile.targets.empty()) {
+            arguments->depfile.targets = {
+                arguments->output.empty()
+                    ? arguments->embed
+                    : (std::filesystem::path(arguments->output) / package::kManifestFile).string()};
+        }
+        arguments->options = describeOptions(command);
         chosen = [arguments](const Console& console) { return compile(console, *arguments); };
     });
 }

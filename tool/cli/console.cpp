@@ -1,13 +1,21 @@
 #include "cli/console.h"
 
+#include "cli/report.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace glint {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr const char* kClearLine = "\r\x1b[K";
 constexpr const char* kReset = "\x1b[0m";
@@ -28,30 +36,82 @@ const char* colorOf(Severity severity) {
     return "\x1b[1;36m";
 }
 
+bool wantsColor(ColorChoice choice, bool terminal) {
+    const char* noColor = std::getenv("NO_COLOR");
+    const bool automatic = terminal && (noColor == nullptr || *noColor == '\0');
+    return choice == ColorChoice::Always || (choice == ColorChoice::Auto && automatic);
+}
+
+std::string colored(const Diagnostic& diagnostic) {
+    std::string text = toString(diagnostic);
+    // The severity stands right after the place, up to the first colon.
+    const std::size_t begin = diagnostic.where.empty() ? 0 : diagnostic.where.size() + 2;
+    const std::size_t end = text.find(':', begin);
+    text.insert(end, kReset);
+    text.insert(begin, colorOf(diagnostic.severity));
+    return text;
+}
+
 }  // namespace
 
-Console::Console() {
-    const char* noColor = std::getenv("NO_COLOR");
-    terminal_ = isatty(STDERR_FILENO) != 0;
-    color_ = terminal_ && (noColor == nullptr || *noColor == '\0');
+std::optional<Severity> DiagnosticPolicy::judge(Severity severity, std::string_view id) const {
+    if (severity != Severity::Error && dropped.contains(id)) {
+        return std::nullopt;
+    }
+    const bool counts = allErrors || errors.contains(id);
+    return severity == Severity::Warning && counts ? Severity::Error : severity;
+}
+
+struct Console::State {
+    ConsoleOptions options;
+    Clock::time_point start = Clock::now();
+    bool terminal = false;
+    bool color = false;
+    bool refused = false;
+    std::vector<Diagnostic> reported;
+    std::optional<Json> result;
+};
+
+Console::Console(ConsoleOptions options) : state_(std::make_unique<State>()) {
+    state_->options = std::move(options);
+    state_->terminal = isatty(STDERR_FILENO) != 0;
+    state_->color = wantsColor(state_->options.color, state_->terminal);
+}
+
+Console::~Console() = default;
+
+bool Console::isJson() const {
+    return state_->options.json;
+}
+
+const DiagnosticPolicy& Console::policy() const {
+    return state_->options.policy;
 }
 
 void Console::print(std::string_view text) const {
     progress("");
-    write(stdout, text);
+    if (!state_->options.quiet) {
+        write(stdout, text);
+    }
+}
+
+void Console::result(const Json& object) const {
+    state_->result = object;
 }
 
 void Console::report(const Diagnostic& diagnostic) const {
-    progress("");
-    std::string text = toString(diagnostic);
-    if (color_) {
-        // The severity stands right after the place, up to the first colon.
-        const std::size_t begin = diagnostic.where.empty() ? 0 : diagnostic.where.size() + 2;
-        const std::size_t end = text.find(':', begin);
-        text.insert(end, kReset);
-        text.insert(begin, colorOf(diagnostic.severity));
+    const std::optional<Severity> severity = policy().judge(diagnostic.severity, diagnostic.id);
+    if (!severity) {
+        return;
     }
-    write(stderr, text + "\n");
+    state_->refused = state_->refused || *severity != diagnostic.severity;
+    Diagnostic judged = diagnostic;
+    judged.severity = *severity;
+    if (!state_->options.quiet || judged.severity == Severity::Error) {
+        progress("");
+        write(stderr, (state_->color ? colored(judged) : toString(judged)) + "\n");
+    }
+    state_->reported.push_back(std::move(judged));
 }
 
 void Console::report(std::span<const Diagnostic> diagnostics) const {
@@ -60,16 +120,34 @@ void Console::report(std::span<const Diagnostic> diagnostics) const {
     }
 }
 
+bool Console::refused() const {
+    return state_->refused;
+}
+
 void Console::progress(std::string_view text) const {
-    if (terminal_) {
+    if (state_->options.verbose) {
+        detail(text);
+    } else if (state_->terminal && !state_->options.quiet) {
         write(stderr, kClearLine);
         write(stderr, text);
         std::fflush(stderr);
     }
 }
 
-Status Console::flush() const {
+void Console::detail(std::string_view text) const {
+    if (state_->options.verbose && !text.empty()) {
+        const std::chrono::duration<double> elapsed = Clock::now() - state_->start;
+        write(stderr, fmt::format("{:8.3f} s  {}\n", elapsed.count(), text));
+    }
+}
+
+Status Console::finish() const {
     progress("");
+    if (isJson()) {
+        Json object = state_->result.value_or(Json::object());
+        object["diagnostics"] = toJson(state_->reported);
+        write(stdout, toText(object));
+    }
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         return makeError("output", "stdout", "can't be written", "check the free space and the reader");
     }

@@ -3,28 +3,69 @@
 
 #include <glint/result.h>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace glint {
 
+enum class ColorChoice { Auto, Always, Never };
+
+// What becomes of diagnostics, by id. Errors stay errors whatever it says.
+struct DiagnosticPolicy {
+    std::set<std::string, std::less<>> dropped;  // warnings and notes that are left out
+    std::set<std::string, std::less<>> errors;   // warnings that count as errors
+    bool allErrors = false;                      // all of them do
+
+    // Nothing where it is left out.
+    std::optional<Severity> judge(Severity severity, std::string_view id) const;
+};
+
+struct ConsoleOptions {
+    DiagnosticPolicy policy;
+    bool json = false;     // one object on stdout, at the end
+    bool quiet = false;    // errors only, no text on stdout
+    bool verbose = false;  // what is done, with times
+    ColorChoice color = ColorChoice::Auto;
+};
+
+// Its functions are const as they change nothing that a command decides by.
 class Console {
 public:
-    // Colour and progress only where stderr is a terminal, colour only where NO_COLOR is unset or empty.
-    Console();
+    explicit Console(ConsoleOptions options = {});
+    ~Console();
+    Console(const Console&) = delete;
+    Console& operator=(const Console&) = delete;
 
-    // A result; `text` ends with a line break where one is wanted.
+    bool isJson() const;
+    const DiagnosticPolicy& policy() const;
+
+    // A result as text; it ends with a line break where one is wanted. Silent with --quiet.
     void print(std::string_view text) const;
+    // A result as an object, which finish() writes with the diagnostics.
+    void result(const nlohmann::ordered_json& object) const;
     void report(const Diagnostic& diagnostic) const;
     void report(std::span<const Diagnostic> diagnostics) const;
-    // One line that the next message replaces; silent unless stderr is a terminal. Empty text clears it.
+    // Whether a warning was reported that counts as an error.
+    bool refused() const;
+    // What is being done now: one line that the next message replaces, or with --verbose one that stays.
+    // Silent unless stderr is a terminal, or with --verbose. Empty text clears it.
     void progress(std::string_view text) const;
-    // Writes what is buffered. Error "output" where stdout can't take it, for instance on a full disk.
-    Status flush() const;
+    // What was read, decided or made; only with --verbose.
+    void detail(std::string_view text) const;
+    // Writes the JSON, and what is buffered. Error "output" where stdout can't take it, for instance on a
+    // full disk.
+    Status finish() const;
 
 private:
-    bool terminal_ = false;
-    bool color_ = false;
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace glint

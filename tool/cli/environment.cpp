@@ -11,6 +11,9 @@ namespace glint {
 namespace {
 
 constexpr double kMaxIntensity = 1e9;
+constexpr const char* kMap = "--environment";
+constexpr const char* kRotation = "--environment-rotation";
+constexpr const char* kMapIntensity = "--environment-intensity";
 
 // Warnings of the file, and notes of what becomes of it.
 std::vector<Diagnostic> describe(const std::string& file, const LinearImage& image,
@@ -47,7 +50,7 @@ void EnvironmentArguments::apply(FrameOptions& frame) const {
 void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments) {
     const std::string group = "Environment";
     CLI::Option& file =
-        addText(command, "--environment", arguments.file, "FILE",
+        addText(command, kMap, arguments.file, "FILE",
                 "light the scene by this equirectangular map, .hdr or\n.exr, instead of a gradient");
     file.check(CLI::Validator(
                    [](const std::string& text) {
@@ -56,14 +59,21 @@ void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments) {
                    },
                    ""))
         ->group(group);
-    addReal(command, "--environment-rotation", arguments.rotation, -360.0, 360.0,
-            "degrees about +Y, counter-clockwise as seen from above\n(-360 to 360, default: 0)")
-        .needs(&file)
-        ->group(group);
-    addReal(command, "--environment-intensity", arguments.intensity, 0.0, kMaxIntensity,
-            "times the map's radiance (0 to 1e9, default: 1)")
-        .needs(&file)
-        ->group(group);
+    addReal(command, kRotation, arguments.rotation, -360.0, 360.0,
+            "degrees about +Y, counter-clockwise as seen from above\n(-360 to 360, default: 0; needs "
+            "--environment)")
+        .group(group);
+    addReal(command, kMapIntensity, arguments.intensity, 0.0, kMaxIntensity,
+            "times the map's radiance (0 to 1e9, default: 1; needs\n--environment)")
+        .group(group);
+}
+
+void checkEnvironmentOptions(const CLI::App& command) {
+    for (const char* option : {kRotation, kMapIntensity}) {
+        if (command.count(option) > 0 && command.count(kMap) == 0) {
+            throw CLI::ValidationError(option, "needs --environment, the map that it is about");
+        }
+    }
 }
 
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,

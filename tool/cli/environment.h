@@ -19,6 +19,8 @@ struct EnvironmentArguments {
     void apply(FrameOptions& frame) const;
 };
 void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments);
+// Throws a CLI::ParseError where an option of the map is given without one.
+void checkEnvironmentOptions(const CLI::App& command);
 
 // Reads a .hdr or .exr file and makes the map; appends warnings and notes. Errors of readRadiance() and
 // Environment::create(), with the file as their place.

@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/lock_option.h"
 #include "cli/plan_choice.h"
 #include "cli/report.h"
 #include "cli/table.h"
@@ -26,7 +27,7 @@ struct ExplainArguments {
     std::string material;
     std::string variant;
     PlanArguments plan;
-    bool json = false;
+    LockArguments lock;
 };
 
 // The scene, and what planning makes of it.
@@ -201,7 +202,7 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
     if (chosen.empty() && !wanted.empty()) {
         return makeError(
             "material-unknown", scenes.path(),
-            fmt::format("has no material \"{}\" (it has {}){}", wanted, count, suggestion(wanted, names)),
+            fmt::format("has no material \"{}\"{}{}", wanted, enumeration(names), suggestion(wanted, names)),
             "use a name, or a number from 0");
     }
     return chosen;
@@ -229,24 +230,31 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     }
     console.report(choice->warnings);
     console.report(choice->notes);
+    const Result<LockChoice> lock = applyLock(arguments.lock, scenes, choice->options);
+    if (!lock) {
+        console.report(lock.error());
+        return kExitFailed;
+    }
+    console.report(lock->warnings);
+    console.report(lock->notes);
     Planned planned{scenes, std::move(choice->options), {}};
     planned.plan = makePlan(scenes.materials(), scenes.primitives(), planned.options);
     if (const std::optional<std::string> excess = describeExcess(planned.plan, planned.options)) {
         console.report(makeWarning("max-shaders", scene->path, *excess));
     }
 
-    if (arguments.json) {
+    if (console.isJson()) {
         Json list = Json::array();
         for (const int material : *materials) {
             list.push_back(toJson(planned, material));
         }
-        console.print(glint::toText(Json{{"scene", arguments.scene},
-                                         {"merge", arguments.plan.merge},
-                                         {"alpha", arguments.plan.alpha},
-                                         {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
-                                         {"variant", textOrNull(scene->variant)},
-                                         {"variants", scene->variants},
-                                         {"materials", list}}));
+        console.result(Json{{"scene", arguments.scene},
+                            {"merge", arguments.plan.merge},
+                            {"alpha", arguments.plan.alpha},
+                            {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
+                            {"variant", textOrNull(scene->variant)},
+                            {"variants", scene->variants},
+                            {"materials", list}});
         return kExitDone;
     }
     console.print(variantsText(*scene));
@@ -272,7 +280,7 @@ void addExplain(CLI::App& app, Action& chosen) {
     addVariant(command, arguments->variant);
     addPlanOptions(command, arguments->plan);
     addProfileInput(command, arguments->plan);
-    addFlag(command, "--json", arguments->json, "print as JSON").group("Report");
+    addLockInput(command, arguments->lock);
     command.callback([arguments, &chosen] {
         settleProfile(arguments->plan);
         chosen = [arguments](const Console& console) { return explain(console, *arguments); };

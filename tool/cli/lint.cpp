@@ -12,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace glint {
 
@@ -32,8 +33,6 @@ struct LintArguments {
     Budget rayQueries;
     std::string malioc;
     std::string core;
-    bool werror = false;
-    bool json = false;
 };
 
 Result<SpirvLint> lintFile(const std::filesystem::path& path) {
@@ -121,10 +120,13 @@ std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules) {
              "merge cases (--merge family or all), or use ray queries"}};
 }
 
-void promoteWarnings(std::vector<LintFinding>& findings) {
-    for (LintFinding& finding : findings) {
-        finding.severity = finding.severity == Severity::Warning ? Severity::Error : finding.severity;
-    }
+// Leaves out what -W drops, and makes errors of what it and --werror say.
+void judge(const DiagnosticPolicy& policy, std::vector<LintFinding>& findings) {
+    std::erase_if(findings, [&](LintFinding& finding) {
+        const std::optional<Severity> severity = policy.judge(finding.severity, finding.rule);
+        finding.severity = severity.value_or(finding.severity);
+        return !severity;
+    });
 }
 
 void reportFindings(const Console& console, const std::vector<LintFinding>& findings,
@@ -166,18 +168,18 @@ int lint(const Console& console, const LintArguments& arguments) {
         }
     }
     for (LintedModule& module : report.modules) {
-        if (arguments.werror) {
-            promoteWarnings(module.findings);
-        }
+        judge(console.policy(), module.findings);
         reportFindings(console, module.findings, module.file.path.string());
     }
     for (LintedFolder& folder : report.folders) {
-        if (arguments.werror) {
-            promoteWarnings(folder.findings);
-        }
+        judge(console.policy(), folder.findings);
         reportFindings(console, folder.findings, folder.path);
     }
-    console.print(arguments.json ? glint::toText(toJson(report)) : toText(report));
+    if (console.isJson()) {
+        console.result(toJson(report));
+    } else {
+        console.print(toText(report));
+    }
     return report.count(Severity::Error) > 0 ? kExitFailed : kExitDone;
 }
 
@@ -210,8 +212,6 @@ void addLint(CLI::App& app, Action& chosen) {
             "it)");
     addText(command, "--core", arguments->core, "NAME",
             "the GPU that malioc compiles for (default: malioc's)");
-    addFlag(command, "--werror", arguments->werror, "count warnings as errors");
-    addFlag(command, "--json", arguments->json, "print as JSON");
     command.callback([arguments, &chosen] {
         chosen = [arguments](const Console& console) { return lint(console, *arguments); };
     });

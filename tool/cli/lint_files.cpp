@@ -1,6 +1,7 @@
 #include "cli/lint_files.h"
 
 #include "base/files.h"
+#include "base/json_depth.h"
 
 #include <glint/package_format.h>
 
@@ -74,7 +75,9 @@ Result<std::vector<LintFile>> filesOfPackage(const fs::path& folder) {
     if (!bytes) {
         return bytes.error();
     }
-    const auto json = nlohmann::ordered_json::parse(bytes->begin(), bytes->end(), nullptr, false);
+    const auto json = nestsTooDeep(*bytes)
+                          ? nlohmann::ordered_json()
+                          : nlohmann::ordered_json::parse(bytes->begin(), bytes->end(), nullptr, false);
     if (!json.is_object()) {
         return makeError("manifest-format", path.string(), "is no manifest that can be read",
                          "compile the package again");

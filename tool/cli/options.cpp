@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace glint {
 
@@ -31,7 +32,13 @@ std::string quoted(const std::string& text) {
     return "\"" + text + "\"";
 }
 
+// The name of a check that checks nothing: its description holds the choices, for choicesOf().
+constexpr const char* kChoices = "choices";
+
 CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& choices) {
+    CLI::Validator known([](const std::string&) { return std::string(); },
+                         fmt::format("{}", fmt::join(choices, " ")), kChoices);
+    option->check(known.active(false));
     return check(option, [choices](const std::string& text) {
         if (std::find(choices.begin(), choices.end(), text) != choices.end()) {
             return std::string();
@@ -123,8 +130,9 @@ CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& 
 
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
                        const std::vector<std::string>& choices, const std::string& help) {
-    CLI::Option* option = command.add_option(flags, value, fmt::format("{} (default: {})", help, value))
-                              ->type_name(fmt::format("{}", fmt::join(choices, "|")));
+    CLI::Option* option =
+        command.add_option(flags, value, value.empty() ? help : fmt::format("{} (default: {})", help, value))
+            ->type_name(fmt::format("{}", fmt::join(choices, "|")));
     return checkChoice(option, choices);
 }
 
@@ -136,6 +144,21 @@ CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector
             ->delimiter(',')
             ->allow_extra_args(false);
     return checkChoice(option, choices);
+}
+
+std::vector<std::string> choicesOf(CLI::Option& option) {
+    std::vector<std::string> choices;
+    try {
+        const CLI::Validator& known = *option.get_validator(kChoices);
+        // Inactive, it keeps out of the help, and describes itself as nothing.
+        std::istringstream words(known.active(true).get_description());
+        for (std::string word; words >> word;) {
+            choices.push_back(word);
+        }
+    } catch (const CLI::OptionNotFound&) {
+        // CLI11 has no other way to ask.
+    }
+    return choices;
 }
 
 CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_t& value, std::int64_t min,
@@ -216,9 +239,8 @@ PlanOptions PlanArguments::options() const {
 std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments) {
     CLI::Option& merge = addMerge(command, arguments.merge);
     CLI::Option& limit = addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
-                                    "fail if the scene needs more shaders, but\n"
-                                    "--merge auto and profile make no more;\n"
-                                    "0: no limit, but 32 for those two");
+                                    "most shaders: --merge auto and profile keep to it,\n"
+                                    "others fail above it; 0: no limit, 32 for those two");
     CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"opaque", "tested"},
                                    "alpha masks of hits; opaque: ignored;\ntested: each candidate is tested");
     CLI::Option& lobes = addChoices(command, "--hit-lobes", arguments.hitLobes, hitLobeChoices(),

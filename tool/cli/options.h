@@ -22,12 +22,14 @@ using Action = std::function<int(const Console&)>;
 CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
                      const std::string& example);
 
-// One of `choices`; the text in `value` is the default. A misspelt value suggests the nearest.
+// One of `choices`; the text in `value`, if any, is the default. A misspelt value suggests the nearest.
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
                        const std::vector<std::string>& choices, const std::string& help);
 // Any of `choices`, separated by commas.
 CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                         const std::vector<std::string>& choices, const std::string& help);
+// What addChoice() and addChoices() were given; empty for other options.
+std::vector<std::string> choicesOf(CLI::Option& option);
 // A whole number within [min, max]; `value` is the default.
 CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_t& value, std::int64_t min,
                         std::int64_t max, const std::string& help);

@@ -191,6 +191,10 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
     } catch (const Json::parse_error& error) {
         reader.fail("", fmt::format("is no JSON: byte {} is wrong", error.byte));
         return reader.error();
+    } catch (const Json::exception&) {
+        // Not of the syntax: a number that no double holds.
+        reader.fail("", "holds a number that is too large");
+        return reader.error();
     }
     readFormat(reader, json);
     Profile profile = reader.ok() ? readMembers(reader, json) : Profile{};

@@ -51,8 +51,9 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOption
         if (!package) {
             return package;
         }
-        Status checked = checkPackage(*package, arguments.package, strategyOf(arguments),
-                                      !arguments.environment.file.empty(), scene);
+        const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
+                                   !arguments.environment.file.empty()};
+        Status checked = checkPackage(*package, arguments.package, demand, scene);
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
@@ -97,10 +98,7 @@ RendererOptions rendererOptions(const RenderArguments& arguments, const RenderRe
     options.strategy = strategyOf(arguments);
     options.width = report.width;
     options.height = report.height;
-    const std::string& tracer = arguments.tracing.tracers.front();
-    if (tracer != "auto" && options.strategy != package::kStrategyHitShaders) {
-        options.tracer = tracerNamed(tracer);
-    }
+    options.tracer = tracerOf(arguments);
     options.checkOrder = arguments.validate;
     arguments.frame.apply(options);
     return options;
@@ -121,7 +119,9 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
         return renderer.error();
     }
     report.tracer = std::string(package::nameOf((*renderer)->tracer()));
-    report.ordering = std::string(package::nameOf((*renderer)->ordering()));
+    if ((strategyOf(arguments) & package::kOrderedStrategies) != 0) {
+        report.ordering = std::string(package::nameOf((*renderer)->ordering()));
+    }
     report.pipelineCreationMs = (*renderer)->pipelineCreationMs();
 
     FrameOptions frame;
@@ -246,6 +246,10 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
         return image.error();
     }
     warnOfNonFinite(console, report);
+    if (console.refused()) {
+        return okStatus();
+    }
+    valid = valid ? checkOrder(report) : valid;
     Status done = valid ? writeResults(arguments, *image, report) : valid;
     if (!done || arguments.profileOutput.empty()) {
         return done;
@@ -293,12 +297,22 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.report(plan->warnings);
     console.report(plan->notes);
+    if (console.refused()) {
+        return kExitFailed;
+    }
     status = render(console, arguments, scenes, plan->options, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;
     }
-    console.print(arguments.json ? toText(toJson(report)) : toText(report));
+    if (console.refused()) {
+        return kExitFailed;
+    }
+    if (console.isJson()) {
+        console.result(toJson(report));
+    } else {
+        console.print(toText(report));
+    }
     return kExitDone;
 }
 

@@ -12,7 +12,7 @@ namespace {
 void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
     const std::string group = "Picture";
     addText(command, "--size", arguments.size, "WxH",
-            "pixels, 1 to 16384 each way (default: " + arguments.size + ")")
+            "pixels, 1 to 16384 each way, 67108864 in all\n(default: " + arguments.size + ")")
         .check(CLI::Validator(
             [](const std::string& text) {
                 std::uint32_t width = 0;
@@ -49,7 +49,8 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "part of the GPU's name (default: the first that will do)")
         .group("Device");
     addFlag(command, "--validate", arguments.validate,
-            "run with the Vulkan validation layers, synchronisation\nincluded; any message is an error")
+            "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
+            "checks the order\nof hits")
         .group("Device");
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
@@ -63,13 +64,17 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "--merge profile of compile; needs --merge none (here\n"
             "the default then) and --strategy visibility")
         .group("Report");
-    addFlag(command, "--json", arguments.json, "print times and counters as JSON").group("Report");
 }
 
 }  // namespace
 
 package::Strategy strategyOf(const RenderArguments& arguments) {
     return strategyNamed(arguments.tracing.strategies.front());
+}
+
+std::optional<package::Tracer> tracerOf(const RenderArguments& arguments) {
+    const std::string& name = arguments.tracing.tracers.front();
+    return name == "auto" ? std::nullopt : std::optional(tracerNamed(name));
 }
 
 bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
@@ -106,12 +111,15 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             "and --profile)")
         .group("Shaders");
     addDeviceOptions(command, *arguments);
-    command.callback([arguments, decided, then] {
+    command.callback([arguments, decided, then, &command] {
+        checkEnvironmentOptions(command);
         for (const CLI::Option* option : decided) {
             if (option->count() > 0 && !arguments->package.empty()) {
-                throw CLI::ExcludesError(option->get_name(), "--package");
+                throw CLI::ValidationError(option->get_name(),
+                                           "is decided by --package; leave out one of them");
             }
         }
+        checkTracingChoice(arguments->tracing);
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,
                             arguments->plan);

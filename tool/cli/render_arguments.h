@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace glint {
@@ -35,10 +36,11 @@ struct RenderArguments {
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
-    bool json = false;
 };
 
 package::Strategy strategyOf(const RenderArguments& arguments);
+// Absent: whichever there is.
+std::optional<package::Tracer> tracerOf(const RenderArguments& arguments);
 
 // "960x540"; false unless it is two numbers that checkImageSize() takes.
 bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);

@@ -5,6 +5,10 @@
 #include "gltf/import.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string_view>
+#include <vector>
 
 namespace glint {
 
@@ -14,6 +18,43 @@ Diagnostic mismatch(const std::filesystem::path& folder, const std::string& mess
     return makeError(
         "package-mismatch", folder.string(), message,
         "compile the package again, use the --variant that it was compiled with, or leave out --package");
+}
+
+Status checkStrategy(const Package& package, const std::filesystem::path& folder,
+                     const PackageDemand& demand) {
+    if (package.supports(demand.strategy)) {
+        return okStatus();
+    }
+    const std::vector<std::string> has = strategyNames(package.shape().strategies);
+    const std::string_view wanted = package::nameOf(demand.strategy);
+    return makeError(
+        "package-mismatch", folder.string(), fmt::format("has {}, not {}", fmt::join(has, ", "), wanted),
+        fmt::format("render with --strategy {}, or compile with --strategy {}", has.front(), wanted));
+}
+
+Status checkTracer(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand) {
+    const std::uint32_t compiled = package::tracersOf(demand.strategy, package.shape().tracers);
+    if (!demand.tracer || (compiled & *demand.tracer) != 0) {
+        return okStatus();
+    }
+    const std::vector<std::string> has = tracerNames(compiled);
+    const std::string_view wanted = package::nameOf(*demand.tracer);
+    return makeError(
+        "package-tracer", folder.string(),
+        fmt::format("has {} for {}, not {}", fmt::join(has, ", "), package::nameOf(demand.strategy), wanted),
+        fmt::format("render with --tracer {}, or compile with --tracer {}", has.front(), wanted));
+}
+
+Status checkSky(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand) {
+    const bool map = demand.environmentMap;
+    if (package.environmentMap() == map) {
+        return okStatus();
+    }
+    return makeError("package-mismatch", folder.string(),
+                     map ? "was compiled for a gradient sky, not for an environment map"
+                         : "was compiled for an environment map, and there is none",
+                     map ? "compile it with --environment-map, or leave out --environment"
+                         : "give one by --environment, or compile without --environment-map");
 }
 
 FeatureMask maskOf(const package::PrimitiveEntry& entry) {
@@ -29,17 +70,13 @@ std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene)
     return package.findScene(std::filesystem::path(scene.path).stem().string());
 }
 
-Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
-                    bool environmentMap, const Scene& scene) {
-    if (!package.supports(strategy)) {
-        return mismatch(folder, "was compiled without the strategy that is asked for");
-    }
-    if (package.environmentMap() != environmentMap) {
-        return makeError("package-mismatch", folder.string(),
-                         environmentMap ? "was compiled for a gradient sky, not for an environment map"
-                                        : "was compiled for an environment map, and there is none",
-                         environmentMap ? "compile it with --environment-map, or leave out --environment"
-                                        : "give one by --environment, or compile without --environment-map");
+Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
+                    const Scene& scene) {
+    for (const Status& status : {checkStrategy(package, folder, demand), checkTracer(package, folder, demand),
+                                 checkSky(package, folder, demand)}) {
+        if (!status) {
+            return status;
+        }
     }
     const std::optional<std::uint32_t> index = sceneIn(package, scene);
     if (!index) {

@@ -17,10 +17,18 @@ namespace glint {
 // Which of the package's scenes it is: that of the file's name, or the only one there is.
 std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene);
 
-// Error "package-mismatch" unless `package` was compiled for the strategy, for that kind of sky, and from
-// this scene: the same materials, and for each primitive of it the same material and features.
-Status checkPackage(const Package& package, const std::filesystem::path& folder, package::Strategy strategy,
-                    bool environmentMap, const Scene& scene);
+// What is asked of a package that was compiled before.
+struct PackageDemand {
+    package::Strategy strategy = package::kStrategyVisibility;
+    std::optional<package::Tracer> tracer;  // absent: any
+    bool environmentMap = false;
+};
+
+// Error "package-mismatch" unless `package` was compiled for what is asked, and from this scene: the same
+// materials, and for each primitive of it the same material and features. Error "package-tracer" where it
+// lacks the tracer.
+Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
+                    const Scene& scene);
 
 // Compiles `scene` into a temporary folder, which is gone on return; leaves out what the runtime does not
 // read.

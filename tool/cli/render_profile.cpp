@@ -11,7 +11,8 @@ void settleProfileOutput(const std::string& file, const std::string& package, co
         return;
     }
     if (!package.empty()) {
-        throw CLI::ExcludesError("--profile", "--package");
+        throw CLI::ValidationError("--profile",
+                                   "counts the shaders that --package decides; leave out one of them");
     }
     if (mergeGiven && plan.merge != "none") {
         throw CLI::ValidationError(

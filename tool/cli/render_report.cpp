@@ -39,6 +39,17 @@ void RenderReport::addHits(const FrameCounters& sample) {
     }
 }
 
+Status checkOrder(const RenderReport& report) {
+    const std::uint32_t errors = report.counters.orderErrors;
+    if (errors == 0) {
+        return okStatus();
+    }
+    return makeError(
+        "order-check", report.scene,
+        fmt::format("{} hits were lost, doubled or misplaced when they were ordered by shader", errors),
+        "this is a defect of Glint or of the driver: please report it, and try another --ordering");
+}
+
 Json toJson(const RenderReport& report) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
     const FrameCounters& counters = report.counters;
@@ -52,7 +63,7 @@ Json toJson(const RenderReport& report) {
             {"driver", report.driver},
             {"strategy", report.strategy},
             {"tracer", report.tracer},
-            {"ordering", report.ordering},
+            {"ordering", orNull(report.ordering)},
             {"merge", orNull(report.merge)},
             {"alpha", report.alpha},
             {"width", report.width},

@@ -25,8 +25,8 @@ struct RenderReport {
     std::string driver;
     std::string strategy;
     std::string tracer;
-    std::string ordering;              // of hits, where the strategy orders them
-    std::optional<std::string> merge;  // absent: a package was given
+    std::optional<std::string> ordering;  // of hits, where the strategy orders them
+    std::optional<std::string> merge;     // absent: a package was given
     std::string alpha;
     std::uint32_t width = 0;   // pixels
     std::uint32_t height = 0;  // pixels
@@ -47,6 +47,9 @@ struct RenderReport {
 
     void addHits(const FrameCounters& sample);
 };
+
+// Error "order-check" where hits are lost, doubled or misplaced; counted with RendererOptions::checkOrder.
+Status checkOrder(const RenderReport& report);
 
 Json toJson(const RenderReport& report);
 std::string toText(const RenderReport& report);

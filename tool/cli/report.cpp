@@ -12,11 +12,22 @@ std::string toText(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+// "/materials/3" of "scene.gltf#/materials/3"; empty where the place has no JSON pointer.
+std::string pointerOf(const std::string& where) {
+    const std::size_t begin = where.find("#/");
+    return begin == std::string::npos ? std::string() : where.substr(begin + 1);
+}
+
+}  // namespace
+
 Json toJson(const Diagnostic& diagnostic) {
     static constexpr const char* kNames[] = {"note", "warning", "error"};
     return {{"severity", kNames[static_cast<int>(diagnostic.severity)]},
             {"id", diagnostic.id},
             {"where", diagnostic.where},
+            {"pointer", textOrNull(pointerOf(diagnostic.where))},
             {"message", diagnostic.message},
             {"hint", diagnostic.hint}};
 }

@@ -9,6 +9,7 @@ namespace glint {
 namespace {
 
 constexpr std::int64_t kMaxScreenSteps = 1024;
+constexpr const char* kAllOrList = "all|LIST";
 
 template <typename Values>
 std::vector<std::string> namesOf(const Values& values) {
@@ -48,8 +49,9 @@ std::vector<CLI::Option*> addPlacement(CLI::App& command, TracingArguments& argu
     CLI::Option& shadows = addChoice(command, "--shadows", arguments.shadows, {"inline", "deferred"},
                                      "where shadow rays of hits are traced; inline: by the\n"
                                      "shader that shades the hit; deferred: by a pass of\ntheir own");
-    CLI::Option& record = addChoice(command, "--hit-record", arguments.hitRecord, {"full", "packed"},
-                                    "what is kept of a hit between passes;\nfull: 32 bytes; packed: 16");
+    CLI::Option& record = addChoice(
+        command, "--hit-record", arguments.hitRecord, {"full", "packed"},
+        "what is kept of a hit between passes (visibility,\nsorted-uber); full: 32 bytes; packed: 16");
     shadows.group("Shaders");
     record.group("Shaders");
     return {&shadows, &record};
@@ -96,12 +98,24 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments) {
                "are ordered by shader first, one dispatch a shader;\n"
                "sorted-uber: ordered, and one dispatch; hit-shaders: a\n"
                "ray tracing pipeline")
-        .group("Shaders");
+        .type_name(kAllOrList)
+        ->group("Shaders");
     addChoices(command, "--tracer", arguments.tracers, withAll(namesOf(package::kTracers)),
-               "what traces rays, separated by commas; ray-pipeline:\n"
-               "for devices without ray queries; hit-shaders come\nwith it")
-        .group("Shaders");
+               "what traces rays, separated by commas; ray-pipeline: for\n"
+               "devices without ray queries; hit-shaders always has its\nown")
+        .type_name(kAllOrList)
+        ->group("Shaders");
     addPlacement(command, arguments);
+}
+
+void checkTracingChoice(const TracingArguments& arguments) {
+    const bool pipelineOnly = strategyNamed(arguments.strategies.front()) == package::kStrategyHitShaders;
+    if (pipelineOnly && tracerNamed(arguments.tracers.front()) == package::kTracerRayQuery) {
+        throw CLI::ValidationError(
+            "--tracer",
+            "ray-query can't run --strategy hit-shaders, which is a ray tracing pipeline: "
+            "leave out --tracer, or use --strategy uber");
+    }
 }
 
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments) {
@@ -174,8 +188,9 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
     addChoice(command, "--binning", arguments.binning, {"none", "sign", "octahedral"},
               "sort the rays of a workgroup by direction")
         .group(group);
-    addChoice(command, "--ordering", arguments.ordering, orderingNames(),
-              "how hits are counted and sorted by shader;\nauto: by the number of shaders")
+    addChoice(
+        command, "--ordering", arguments.ordering, orderingNames(),
+        "how visibility and sorted-uber sort hits by shader;\nauto: by the device and the number of shaders")
         .group(group);
 }
 

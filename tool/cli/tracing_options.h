@@ -26,6 +26,9 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments);
 // first.
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
 
+// Throws a CLI::ParseError where the tracer can't run the strategy.
+void checkTracingChoice(const TracingArguments& arguments);
+
 // What a renderer chooses.
 struct FrameArguments {
     std::string ordering = "auto";

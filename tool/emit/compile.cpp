@@ -1,8 +1,10 @@
 #include "emit/compile.h"
 
+#include "emit/context.h"
 #include "emit/header.h"
 #include "emit/manifest.h"
 #include "emit/modules.h"
+#include "emit/readable.h"
 #include "emit/sources.h"
 #include "emit/tables.h"
 #include "gltf/scene_list.h"
@@ -27,7 +29,7 @@ Bytes toBytes(const std::vector<std::uint32_t>& words) {
 }
 
 // The modules' files; modules of equal SPIR-V share one.
-void addModuleFiles(CompiledPackage& package, bool emitGlsl) {
+void addModuleFiles(CompiledPackage& package, const std::string& source, bool emitGlsl) {
     std::set<std::string_view> written;
     for (const CompiledModule& module : package.modules) {
         if (written.insert(module.file).second) {
@@ -36,12 +38,15 @@ void addModuleFiles(CompiledPackage& package, bool emitGlsl) {
             ++package.uniqueSpirv;
         }
         if (emitGlsl) {
-            package.files.push_back({"glsl/" + module.name, toBytes(module.glsl)});
+            const std::string header = fmt::format("// Made by glint {} from {}. Do not edit.\n",
+                                                   toolVersion(), commentText(source));
+            package.files.push_back({"glsl/" + module.name, toBytes(makeReadable(module.glsl, header))});
         }
     }
 }
 
-Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings) {
+Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
+                                ModuleCache* cache) {
     if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
         return makeError("strategy", scenes.path(),
                          fmt::format("{:#x} is no set of strategies", settings.strategies),
@@ -68,14 +73,14 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
         return modules.error();
     }
     Result<std::vector<CompiledModule>> compiled =
-        compileModules(std::move(*modules), settings.jobs, settings.debugInfo);
+        compileModules(std::move(*modules), settings.jobs, settings.debugInfo, cache);
     if (!compiled) {
         return compiled.error();
     }
     package.modules = std::move(*compiled);
 
     // Files; the manifest last, as it lists the others.
-    addModuleFiles(package, settings.emitGlsl);
+    addModuleFiles(package, scenes.fileNames(), settings.emitGlsl);
     package.files.push_back(
         {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
@@ -89,6 +94,14 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});
     std::ranges::sort(package.files, {}, &PackageFile::name);
     return package;
+}
+
+// Hit shaders have a tracer of their own; where nothing else traces, it is the only one.
+CompileSettings withOwnTracers(CompileSettings settings) {
+    if (settings.strategies == package::kStrategyHitShaders) {
+        settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
+    }
+    return settings;
 }
 
 }  // namespace
@@ -117,7 +130,8 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
     return names;
 }
 
-Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings) {
+Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
+                                       ModuleCache* cache) {
     if (scenes.empty()) {
         return makeError("scene-missing", "", "there is no scene to compile", "name at least one");
     }
@@ -128,7 +142,7 @@ Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const Comp
                 return valid.error();
             }
         }
-        return compile(SceneList(scenes), settings);
+        return compile(SceneList(scenes), withOwnTracers(settings), cache);
     } catch (const std::exception& error) {
         return makeError("internal", where, fmt::format("compiling failed: {}", error.what()),
                          "this is a defect of Glint, or memory ran out");

@@ -18,6 +18,8 @@
 
 namespace glint {
 
+class ModuleCache;
+
 // Which level of a texture hits read.
 enum class TextureLod : std::uint8_t {
     Cones,  // by the width of a ray cone
@@ -53,6 +55,7 @@ struct CompiledModule {
     std::string glsl;  // flattened
     SpirvStatistics statistics;
     std::uint64_t hash = 0;
+    bool compiled = true;  // now; else it was cached, or has the text of another module
 };
 
 struct PackageFile {
@@ -70,10 +73,12 @@ struct CompiledPackage {
 
 // `scenes`: at least one; they share the cases, and each has its own tables. Errors: too many cases
 // ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and line (a defect of Glint
-// itself).
-Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings);
-inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings) {
-    return compilePackage(std::span(&scene, 1), settings);
+// itself). Modules that `cache` has are not compiled, others are added to it; null: there is none.
+Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
+                                       ModuleCache* cache = nullptr);
+inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings,
+                                              ModuleCache* cache = nullptr) {
+    return compilePackage(std::span(&scene, 1), settings, cache);
 }
 
 // Replaces the contents of `folder` by the package: files that did not change keep their time stamps, files

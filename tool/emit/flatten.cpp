@@ -1,5 +1,7 @@
 #include "emit/flatten.h"
 
+#include "emit/glsl_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,48 +12,6 @@
 namespace glint {
 
 namespace {
-
-constexpr std::string_view kBlank = " \t\r";
-
-std::string_view trim(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kBlank);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-// "#ifdef X // why" is {"ifdef", "X"}; a line that is no directive has an empty word.
-struct Directive {
-    std::string_view word;
-    std::string_view argument;
-};
-
-Directive parseDirective(std::string_view line) {
-    line = trim(line);
-    if (line.empty() || line.front() != '#') {
-        return {};
-    }
-    line = trim(line.substr(1));
-    const std::size_t end = std::min(line.find_first_of(" \t\"<"), line.size());
-    std::string_view argument = line.substr(end);
-    argument = trim(argument.substr(0, std::min(argument.find("//"), argument.size())));
-    return {line.substr(0, end), argument};
-}
-
-std::vector<std::string_view> splitLines(std::string_view text) {
-    std::vector<std::string_view> lines;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        if (!line.empty() && line.back() == '\r') {
-            line.remove_suffix(1);
-        }
-        lines.push_back(line);
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return lines;
-}
 
 enum class FrameKind {
     Side,   // on __cplusplus: decided here, its directives dropped

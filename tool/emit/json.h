@@ -1,10 +1,13 @@
 // What several files say alike in JSON.
 #pragma once
 
+#include <glint/package_modules.h>
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 namespace glint {
 
@@ -18,6 +21,14 @@ inline nlohmann::ordered_json countToJson(double count) {
 // A share of hits to four decimals, which is more than is known of it.
 inline nlohmann::ordered_json shareToJson(double share) {
     return std::round(share * 1e4) / 1e4;
+}
+
+// Which of a case's modules this is, by what it is for.
+constexpr std::string_view stageName(const package::ModuleKey& key) {
+    if (key.role == package::ModuleRole::HitCase) {
+        return "hit-shaders";
+    }
+    return key.tracer == package::kTracerRayPipeline ? "visibility, ray-pipeline" : "visibility";
 }
 
 }  // namespace glint

@@ -1,5 +1,6 @@
 #include "emit/manifest.h"
 
+#include "base/json_depth.h"
 #include "emit/context.h"
 #include "emit/json.h"
 #include "emit/modules.h"
@@ -118,11 +119,7 @@ Json stages(const CompiledPackage& package, int shaderId) {
     for (const CompiledModule& module : package.modules) {
         const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
         if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
-            const bool hit = module.key.role == package::ModuleRole::HitCase;
-            const bool pipeline = !hit && module.key.tracer == package::kTracerRayPipeline;
-            object[hit        ? "hit-shaders"
-                   : pipeline ? "visibility, ray-pipeline"
-                              : "visibility"] = moduleEntry(module);
+            object[std::string(stageName(module.key))] = moduleEntry(module);
         }
     }
     return object;
@@ -207,7 +204,8 @@ Json files(const CompiledPackage& package) {
 
 // The manifest may come from anywhere: its names must not lead out of the package's folder.
 bool staysInside(const std::filesystem::path& name) {
-    return name.is_relative() && std::ranges::all_of(name, [](const std::filesystem::path& part) {
+    return !name.empty() && name.is_relative() &&
+           std::ranges::all_of(name, [](const std::filesystem::path& part) {
                return !part.empty() && part != "." && part != "..";
            });
 }
@@ -241,6 +239,9 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
 }
 
 std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
+    if (nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
+        return {};
+    }
     const Json manifest = Json::parse(text, nullptr, false);
     if (!manifest.is_object() || manifest.value("format", Json()) != Json(kManifestFormat)) {
         return {};

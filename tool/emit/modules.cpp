@@ -1,6 +1,9 @@
 #include "emit/modules.h"
 
+#include "cache/module_cache.h"
+#include "cache/packing.h"
 #include "emit/context.h"
+#include "emit/prune.h"
 
 #include <fmt/format.h>
 
@@ -158,11 +161,38 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
     if (!flattened) {
         return flattened.error();
     }
-    module.glsl = std::move(*flattened);
+    module.glsl = dropUnused(*flattened);
     return module;
 }
 
-Result<CompiledModule> compileModule(ModuleSource& source, bool debugInfo) {
+// All that decides about the words of a module, apart from the compiler.
+std::string compiledSource(const ModuleSource& source, bool debugInfo) {
+    Packer packer;
+    packer.add(static_cast<std::uint64_t>(source.stage)).add(source.functionsApart.size());
+    for (const std::string& function : source.functionsApart) {
+        packer.add(std::string_view(function));
+    }
+    if (debugInfo) {
+        packer.add(std::string_view(source.name)).add(std::string_view(source.glsl));
+    } else {
+        packer.add(essentialText(source.glsl));
+    }
+    return packer.take();
+}
+
+// Of one text, which several modules may have.
+struct CompiledText {
+    CachedModule module;
+    bool compiled = false;
+};
+
+Result<CompiledText> compileText(const ModuleSource& source, const std::string& key, bool debugInfo,
+                                 ModuleCache* cache) {
+    if (cache != nullptr) {
+        if (std::optional<CachedModule> found = cache->find(key)) {
+            return CompiledText{std::move(*found), false};
+        }
+    }
     Result<std::vector<std::uint32_t>> spirv =
         compileShader({source.name, source.stage, source.glsl, source.functionsApart}, {debugInfo});
     if (!spirv) {
@@ -172,15 +202,24 @@ Result<CompiledModule> compileModule(ModuleSource& source, bool debugInfo) {
     if (!statistics) {
         return statistics.error();
     }
+    CompiledText text{{std::move(*spirv), *statistics}, true};
+    if (cache != nullptr) {
+        cache->put(key, text.module);
+    }
+    return text;
+}
+
+CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool isFirst) {
     CompiledModule module;
     module.key = source.key;
     module.file = spirvFileName(source);
     module.name = std::move(source.name);
     module.glsl = std::move(source.glsl);
-    module.spirv = std::move(*spirv);
-    module.statistics = *statistics;
+    module.spirv = text.module.spirv;
+    module.statistics = text.module.statistics;
     module.hash = hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
                              module.spirv.size() * sizeof(std::uint32_t)});
+    module.compiled = text.compiled && isFirst;
     return module;
 }
 
@@ -276,19 +315,34 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
 }
 
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo) {
-    std::vector<std::optional<Result<CompiledModule>>> results(sources.size());
-    runParallel(sources.size(), jobs, [&](std::size_t i) {
-        results[i] = compileModule(sources[i], debugInfo);
+                                                   bool debugInfo, ModuleCache* cache) {
+    // Each text once, in the order of the modules.
+    std::map<std::string, std::size_t> places;
+    std::vector<std::map<std::string, std::size_t>::const_iterator> textOf;
+    std::vector<std::size_t> firsts;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const auto [place, added] = places.emplace(compiledSource(sources[i], debugInfo), firsts.size());
+        textOf.emplace_back(place);
+        if (added) {
+            firsts.push_back(i);
+        }
+    }
+    std::vector<std::optional<Result<CompiledText>>> results(firsts.size());
+    runParallel(firsts.size(), jobs, [&](std::size_t i) {
+        results[i] = compileText(sources[firsts[i]], textOf[firsts[i]]->first, debugInfo, cache);
         return results[i]->ok();
     });
-    // Modules are handed out in order, so that every one before the first error has a result.
-    std::vector<CompiledModule> modules;
-    for (std::optional<Result<CompiledModule>>& result : results) {
+    // Texts are handed out in order, so that every one before the first error has a result.
+    for (const std::optional<Result<CompiledText>>& result : results) {
         if (!result->ok()) {
             return result->error();
         }
-        modules.push_back(std::move(**result));
+    }
+    std::vector<CompiledModule> modules;
+    modules.reserve(sources.size());
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const std::size_t text = textOf[i]->second;
+        modules.push_back(makeCompiled(sources[i], **results[text], firsts[text] == i));
     }
     shareFiles(modules);
     return modules;

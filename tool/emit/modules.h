@@ -15,7 +15,7 @@ struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
     std::string name;                           // "uber.comp"
-    std::string glsl;                           // flattened
+    std::string glsl;                           // flattened, without what nothing uses
     std::vector<std::string> functionsApart{};  // see ShaderSource
 };
 
@@ -27,10 +27,10 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings);
 
-// Compiles on `jobs` threads (0: one a core). The result, and which error is reported, do not depend on
-// `jobs`: of several, that of the first module. Modules of equal SPIR-V get the same `file`, that of the
-// first.
+// Compiles on `jobs` threads (0: one a core), equal texts once, and nothing that `cache` has (null: there is
+// none). The result, and which error is reported, do not depend on `jobs`: of several, that of the first
+// module. Modules of equal SPIR-V get the same `file`, that of the first.
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo);
+                                                   bool debugInfo, ModuleCache* cache = nullptr);
 
 }  // namespace glint

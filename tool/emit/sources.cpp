@@ -1,7 +1,7 @@
 #include "emit/sources.h"
 
+#include "emit/builtin.h"
 #include "emit/context.h"
-#include "emit/embedded.h"
 
 #include <fmt/format.h>
 
@@ -23,6 +23,11 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
     define("SOMETIMES", sometimes);
 }
 
+// What decides about the alpha of a hit.
+constexpr FeatureMask kAlphaFeatures = bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0) |
+                                       bit(Feature::TexCoord1) | bit(Feature::TextureTransform) |
+                                       bit(Feature::VertexColor);
+
 std::string sceneDefines(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     const bool hasMasked = std::ranges::any_of(
         scenes.materials(), [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
@@ -31,6 +36,11 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
     text += "// The same of hits, which may keep fewer lobes.\n";
     defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
+    // Apart, so that other features of a scene do not change modules that test alpha.
+    text += "// What the alpha test of rays needs of the same.\n";
+    const FeatureMask alpha = settings.plan.keys.alpha == AlphaPolicy::Tested ? kAlphaFeatures : 0;
+    text += fmt::format("#define GLINT_ALPHA_ALWAYS {:#x}u\n", (plan.always & alpha) >> 32U);
+    text += fmt::format("#define GLINT_ALPHA_SOMETIMES {:#x}u\n", (plan.sometimes & alpha) >> 32U);
     text += "// Settings\n";
     text +=
         fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(settings.plan.keys.alpha == AlphaPolicy::Tested));
@@ -48,7 +58,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
 }
 
 std::optional<std::string_view> findEmbedded(std::string_view name) {
-    for (const EmbeddedFile& file : embeddedFiles()) {
+    for (const BuiltinFile& file : builtinFiles()) {
         if (file.name == name) {
             return file.text;
         }
@@ -73,7 +83,7 @@ SourceLookup SourceSet::lookup() const {
 
 Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     SourceSet sources;
-    for (const EmbeddedFile& file : embeddedFiles()) {
+    for (const BuiltinFile& file : builtinFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
     sources.add("generated/features.glsl", featureDefines());
@@ -89,7 +99,7 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
 
 Result<std::string> interopDeclarations() {
     std::string root;
-    for (const EmbeddedFile& file : embeddedFiles()) {
+    for (const BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kInteropFolder)) {
             root += fmt::format("#include \"{}\"\n", file.name);
         }
@@ -99,7 +109,7 @@ Result<std::string> interopDeclarations() {
 
 std::uint64_t interopHash() {
     std::string all;
-    for (const EmbeddedFile& file : embeddedFiles()) {
+    for (const BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kInteropFolder)) {
             all += file.name;
             all += '\n';

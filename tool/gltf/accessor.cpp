@@ -13,9 +13,6 @@ namespace glint::gltf {
 
 namespace {
 
-// An accessor without a buffer view costs its file nothing, so the file's size doesn't bound it.
-constexpr std::size_t kMaxZeroElements = 1ULL << 24;
-
 constexpr const char* kDamaged = "the file is damaged: export it again";
 
 // Elements of a run of bytes.
@@ -90,11 +87,13 @@ std::uint32_t largestUnsigned(int componentType) {
 Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes& elements) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     if (accessor.bufferView < 0 || accessor.bufferView == standInBufferView(document.json())) {
-        if (accessor.count > kMaxZeroElements) {
-            return document.error("accessor-count", pointerOf(index),
-                                  fmt::format("has {} elements but no buffer view; the limit is {}",
-                                              accessor.count, kMaxZeroElements),
-                                  kDamaged);
+        if (!document.chargeZeroElements(accessor.count)) {
+            return document.error(
+                "accessor-count", pointerOf(index),
+                fmt::format(
+                    "with its {} elements that no buffer view holds, the scene passes the limit of {}",
+                    accessor.count, Document::kMaxZeroElements),
+                "store the elements in a buffer");
         }
         elements.assign(accessor.count * elementSize, 0);
         return okStatus();

@@ -1,5 +1,7 @@
 #include "gltf/container.h"
 
+#include "base/json_depth.h"
+
 #include <fmt/format.h>
 
 #include <cstring>
@@ -14,9 +16,6 @@ constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr std::size_t kGlbHeaderSize = 12;
 constexpr std::size_t kChunkHeaderSize = 8;
-
-// Copying and writing JSON recurse; glTF itself needs less than a dozen levels, `extras` seldom more.
-constexpr int kMaxJsonDepth = 128;
 
 constexpr const char* kExportHint = "the file is damaged or incomplete: export or download it again";
 
@@ -97,23 +96,10 @@ Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std:
 }
 
 Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file) {
-    int depth = 0;
-    bool inString = false;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        const char c = static_cast<char>(bytes[i]);
-        if (inString) {
-            i += c == '\\' ? 1 : 0;
-            inString = c != '"';
-            continue;
-        }
-        inString = c == '"';
-        depth += c == '{' || c == '[' ? 1 : 0;
-        depth -= c == '}' || c == ']' ? 1 : 0;
-        if (depth > kMaxJsonDepth) {
-            return makeError("json-depth", file,
-                             fmt::format("its JSON is nested more than {} levels deep", kMaxJsonDepth),
-                             "remove the deeply nested extras");
-        }
+    if (nestsTooDeep(bytes)) {
+        return makeError("json-depth", file,
+                         fmt::format("its JSON is nested more than {} levels deep", kMaxJsonDepth),
+                         "remove the deeply nested extras");
     }
     try {
         Json root = Json::parse(bytes.begin(), bytes.end());

@@ -50,7 +50,13 @@ public:
     // Takes bytes off the budget of unpacked buffer views, ImportOptions::maxFileBytes; false where that is
     // exhausted.
     bool chargeUnpackedBytes(std::uint64_t bytes);
-    // Takes bytes off the budget of decoded images; false where that is exhausted.
+    // Elements of accessors without a buffer view cost the file nothing, so that its size doesn't bound them.
+    // Each time that a primitive reads one counts.
+    static constexpr std::uint64_t kMaxZeroElements = 1ULL << 22;
+    // Takes elements off that budget; false where it is exhausted.
+    bool chargeZeroElements(std::uint64_t count);
+    // Takes bytes off the budget of decoded images, which grows with the files that were read; false where
+    // that is exhausted.
     bool chargeImageBytes(std::uint64_t bytes);
 
     // "scene.gltf#/materials/3"
@@ -91,7 +97,8 @@ private:
     std::vector<Diagnostic> warnings_;
     std::uint64_t verticesLeft_;
     std::uint64_t unpackedBytesLeft_;
-    std::uint64_t imageBytesLeft_;
+    std::uint64_t zeroElementsLeft_ = kMaxZeroElements;
+    std::uint64_t imageBytes_ = 0;
 };
 
 }  // namespace glint::gltf

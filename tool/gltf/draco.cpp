@@ -20,7 +20,7 @@ constexpr const char* kExport = "export the scene again, or without Draco compre
 
 // Regular connectivity with values that are predicted without a residue comes near a hundredth of a bit a
 // face; nothing sensible comes near this.
-constexpr std::uint64_t kMaxFacesPerByte = 1ULL << 14;
+constexpr std::uint64_t kMaxFacesPerByte = 1ULL << 11;
 
 struct Claim {
     std::uint64_t faces = 0;

@@ -49,10 +49,7 @@ std::vector<Group> makeGroups(std::vector<Cluster> start, std::span<const Weight
     groups.reserve(start.size());
     for (Cluster& cluster : start) {
         Group group;
-        group.set = toSet(keys[static_cast<std::size_t>(cluster.keys.front())]);
-        for (std::size_t i = 1; i < cluster.keys.size(); ++i) {
-            group.set = unionOf(group.set, toSet(keys[static_cast<std::size_t>(cluster.keys[i])]));
-        }
+        group.set = toSet(cluster.keys, keys);
         group.cost = mergingCost(group.set);
         group.cluster = std::move(cluster);
         groups.push_back(std::move(group));
@@ -106,6 +103,68 @@ void mergeWithPartner(std::vector<Group>& groups, std::size_t index) {
     }
 }
 
+// A move has to spare more than sums of doubles are off, or keys could go to and fro.
+constexpr double kLeastSaving = 1e-9;
+
+// Of all clusters, without partners: those that lose their last key are not alive.
+struct Movable {
+    Cluster cluster;
+    KeySet set;
+    double cost = 0.0;  // with kCaseCost; 0 for none
+
+    void update(std::span<const WeightedKey> keys) {
+        const bool isEmpty = cluster.keys.empty();
+        set = isEmpty ? KeySet{} : toSet(cluster.keys, keys);
+        cost = isEmpty ? 0.0 : mergingCost(set) + kCaseCost;
+    }
+};
+
+// The index of the cluster to which moving `key` costs least, if that is less than `saving`; kNone if none.
+std::size_t betterPlace(const std::vector<Movable>& places, std::size_t from, const KeySet& key,
+                        double saving, bool mayOpen) {
+    std::size_t best = kNone;
+    double least = saving - kLeastSaving;
+    bool opened = false;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const bool isEmpty = places[i].cluster.keys.empty();
+        if (i == from || (isEmpty && (!mayOpen || opened))) {
+            continue;
+        }
+        opened = opened || isEmpty;
+        const double increase =
+            isEmpty ? kCaseCost : mergingCost(places[i].set, key) + kCaseCost - places[i].cost;
+        if (increase < least) {
+            best = i;
+            least = increase;
+        }
+    }
+    return best;
+}
+
+// Whether `key` moved.
+bool moveKey(std::vector<Movable>& places, std::vector<std::size_t>& placeOf, int key,
+             std::span<const WeightedKey> keys, int maxClusters) {
+    const std::size_t from = placeOf[static_cast<std::size_t>(key)];
+    Movable rest;
+    rest.cluster = places[from].cluster;
+    std::erase(rest.cluster.keys, key);
+    rest.update(keys);
+    const auto alive =
+        std::ranges::count_if(places, [](const Movable& place) { return !place.cluster.keys.empty(); });
+    const bool mayOpen = !rest.cluster.keys.empty() && alive < maxClusters;
+    const std::size_t to = betterPlace(places, from, toSet(keys[static_cast<std::size_t>(key)]),
+                                       places[from].cost - rest.cost, mayOpen);
+    if (to == kNone) {
+        return false;
+    }
+    places[from] = std::move(rest);
+    std::vector<int>& list = places[to].cluster.keys;
+    list.insert(std::ranges::upper_bound(list, key), key);
+    places[to].update(keys);
+    placeOf[static_cast<std::size_t>(key)] = to;
+    return true;
+}
+
 }  // namespace
 
 std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const WeightedKey> keys,
@@ -128,6 +187,48 @@ std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const Wei
         }
     }
     return clusters;
+}
+
+std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const WeightedKey> keys,
+                              int maxClusters) {
+    std::vector<Movable> places(clusters.size() + 1);  // one to open
+    std::vector<std::size_t> placeOf(keys.size(), kNone);
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+        for (const int key : clusters[i].keys) {
+            placeOf[static_cast<std::size_t>(key)] = i;
+        }
+        places[i].cluster = std::move(clusters[i]);
+        places[i].update(keys);
+    }
+    bool moved = true;
+    for (int round = 0; moved && round < kMaxRounds; ++round) {
+        moved = false;
+        for (std::size_t key = 0; key < keys.size(); ++key) {
+            if (placeOf[key] != kNone && moveKey(places, placeOf, static_cast<int>(key), keys, maxClusters)) {
+                moved = true;
+                // There is always one to open.
+                if (std::ranges::none_of(places, [](const Movable& m) { return m.cluster.keys.empty(); })) {
+                    places.emplace_back();
+                }
+            }
+        }
+    }
+    std::vector<Cluster> result;
+    for (Movable& place : places) {
+        if (!place.cluster.keys.empty()) {
+            result.push_back(std::move(place.cluster));
+        }
+    }
+    std::ranges::sort(result, {}, [](const Cluster& cluster) { return cluster.keys.front(); });
+    return result;
+}
+
+double totalCost(std::span<const Cluster> clusters, std::span<const WeightedKey> keys) {
+    double cost = 0.0;
+    for (const Cluster& cluster : clusters) {
+        cost += mergingCost(toSet(cluster.keys, keys)) + kCaseCost;
+    }
+    return cost;
 }
 
 }  // namespace glint

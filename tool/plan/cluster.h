@@ -1,4 +1,4 @@
-// Agglomerative clustering of keys by the cost model.
+// Clustering of keys by the cost model: agglomeration, then moves of single keys.
 #pragma once
 
 #include "plan/cost.h"
@@ -20,5 +20,15 @@ struct Cluster {
 // ascending order of their smallest keys. maxClusters >= 1.
 std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const WeightedKey> keys,
                                  int maxClusters);
+
+// Moves single keys to other clusters or to clusters of their own, in the order of the keys, as long as that
+// lowers the cost of all, within `maxClusters`; kMaxRounds times at most. O(n * clusters) a round. Returns
+// clusters as agglomerate() does.
+inline constexpr int kMaxRounds = 8;
+std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const WeightedKey> keys,
+                              int maxClusters);
+
+// What a plan costs: the surplus of its cases, and kCaseCost for each.
+double totalCost(std::span<const Cluster> clusters, std::span<const WeightedKey> keys);
 
 }  // namespace glint

@@ -3,35 +3,30 @@
 // Unit: SPIR-V instructions that an average hit runs in vain. A hit runs the code of its own features in any
 // clustering, so only the surplus counts. A case whose hits have the share w of all hits costs
 //
-//     w * sum over its "sometimes" features f of ( branch(f) + instructions(f) * (q(f) - p(f)) )  + kCaseCost
+//     w * sum over its "sometimes" features f of ( branch(f) + code(f) * (q(f) - p(f)) )  + kCaseCost
 //
-//   p(f)             share of the case's hits that have f
-//   q(f)             chance that some lane of a subgroup has f, 1 - (1 - p)^kSubgroupSize, if neighbours are
-//                    independent: the others wait for that lane. Neighbours are often alike, so this is an
-//                    upper bound.
-//   instructions(f)  FeatureInfo::instructions: a shader with f less one without, from `glint compile --merge
-//                    none --strategy visibility --json` over a scene with one material for each feature
-//                    (base colour texture, UV set 0, normals, and the feature; 924 instructions without it)
-//   branch(f)        what a case grows by beyond its features' own code when f becomes a branch, which all of
-//                    its hits pay in tests, selects and registers: kInputBranch, kLobeBranch
+//   p(f)       share of the case's hits that have f
+//   q(f)       chance that some lane of a subgroup has f, 1 - (1 - p)^kSubgroupSize, if neighbours are
+//              independent: the others wait for that lane. Neighbours are often alike, so this is an upper
+//              bound.
+//   code(f)    instructions(f) + kFetchCost * fetches(f): what a shader grows by with f
+//   branch(f)  what a case grows by beyond its features' own code when f becomes a branch, which all of its
+//              hits pay in tests, selects and registers: kInputBranch, kLobeBranch
 //
-// Lit shading is such a feature too, which unlit keys lack.
+// Lit shading is such a feature too, which unlit keys lack. Instructions, fetches and branches are measured:
+// cost_constants.h. What stands here is chosen.
 #pragma once
 
 #include "plan/features.h"
 
 #include <array>
+#include <span>
 
 namespace glint {
 
-// Of the gallery, `--merge family` has one case of 13 input branches with 1581 instructions where its
-// features add up to 1284: 23 a branch; `--merge all` one of 41 branches with 7737 where they add up to 4560,
-// which leaves some 200 for each of the 13 lobes. Rounded, as another scene gives other numbers.
-inline constexpr double kInputBranch = 20.0;
-inline constexpr double kLobeBranch = 200.0;
-
-// A material of base colour texture and normals has 924 instructions lit and 233 unlit.
-inline constexpr double kLitInstructions = 690.0;
+// Instructions that a texture fetch weighs besides its own, which make its coordinates and level. A choice:
+// it hides behind other work or waits for memory, by device and scene.
+inline constexpr double kFetchCost = 20.0;
 
 // Lanes of a subgroup on most GPUs (8 on lavapipe, 64 on some).
 inline constexpr int kSubgroupSize = 32;
@@ -56,11 +51,25 @@ struct KeySet {
 };
 
 KeySet toSet(const WeightedKey& key);
+// Of the keys with these indices, at least one.
+KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys);
 KeySet unionOf(const KeySet& a, const KeySet& b);
 
 // The surplus of a case of these keys, without kCaseCost. Never negative; 0 for one key.
 double mergingCost(const KeySet& keys);
 // The surplus of a case of the keys of both.
 double mergingCost(const KeySet& a, const KeySet& b);
+
+// The surplus that one feature of `keys` brings, of which some keys have it and some don't.
+double branchCost(const KeySet& keys, Feature feature);
+
+// What the shader of a case is expected to hold; compiling it gives the truth.
+struct CodeEstimate {
+    double instructions = 0.0;
+    double fetches = 0.0;
+    int inputBranches = 0;
+    int lobeBranches = 0;
+};
+CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes);
 
 }  // namespace glint

@@ -15,7 +15,8 @@ namespace glint {
 // A set of features. Low 32 bits: lobes; high 32 bits: inputs.
 using FeatureMask = std::uint64_t;
 
-// Bit numbers. To add a feature: add it here and a row to the table in features.cpp; nothing else changes.
+// Bit numbers. To add a feature: add it here and a row to the table in features.cpp; nothing else changes,
+// but scripts/fit_merge_model.py measures what it costs.
 //
 //   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
 //   bits 32..63  inputs: what the surface's parameters are read from
@@ -94,8 +95,6 @@ struct FeatureInfo {
     std::string_view macro;      // in GLSL: "GLINT_BASE_COLOR_TEXTURE"
     std::string_view gltf;       // where it stands in glTF
     std::string_view neutral;    // when it is there and changes nothing
-    // How many SPIR-V instructions a shader has more for it: the cost model's measure (plan/cost.h).
-    int instructions;
     // The rule. `soFar` holds the features of earlier rows that are present.
     Presence (*rule)(const Material&, const PrimitiveInputs&, const KeyOptions&, FeatureMask soFar);
 };

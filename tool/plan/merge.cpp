@@ -3,6 +3,7 @@
 #include "plan/cluster.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <map>
 #include <numeric>
@@ -65,10 +66,9 @@ std::vector<int> takeRest(Keys keys, std::vector<int>& order) {
     return rest;
 }
 
-std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
-    std::vector<int> order = byShare(keys);
+// One cluster a key, but one for all of the rest.
+std::vector<Cluster> startApart(Keys keys, std::vector<int> order) {
     std::vector<int> rest = takeRest(keys, order);
-    const int rare = rest.size() > 1 ? rest.front() : -1;
     std::vector<Cluster> start;
     start.reserve(order.size() + 1);
     for (const int key : order) {
@@ -77,12 +77,36 @@ std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
     if (!rest.empty()) {
         start.push_back({std::move(rest)});
     }
+    return start;
+}
+
+// Greedy merging from keys of their own and from families, and what the other policies do where the budget
+// allows it: the cheapest of them, so that no other policy is better. Of equal ones the first.
+std::vector<Cluster> cheapestClusters(Keys keys, int maxCases) {
+    const std::vector<int> order = byShare(keys);
+    std::vector<std::vector<Cluster>> candidates;
+    for (std::vector<Cluster>& start : std::array{startApart(keys, order), groupBy(keys, order, kLobeMask)}) {
+        candidates.push_back(moveKeys(agglomerate(std::move(start), keys, maxCases), keys, maxCases));
+    }
+    if (keys.size() <= static_cast<std::size_t>(maxCases)) {
+        candidates.push_back(groupBy(keys, order, ~FeatureMask{0}));
+    }
+    candidates.push_back(groupBy(keys, order, 0));
+    const auto cost = [&](const std::vector<Cluster>& clusters) { return totalCost(clusters, keys); };
+    return std::move(*std::ranges::min_element(candidates, {}, cost));
+}
+
+std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
     std::vector<CaseKeys> cases;
-    for (Cluster& cluster : agglomerate(std::move(start), keys, maxCases)) {
-        const bool hasRest = std::ranges::binary_search(cluster.keys, rare);
-        cases.push_back({std::move(cluster.keys), cluster.forced ? CaseReason::Budget
-                                                  : hasRest      ? CaseReason::Rest
-                                                                 : CaseReason::Cost});
+    for (Cluster& cluster : cheapestClusters(keys, maxCases)) {
+        const auto isRare = [&](int key) { return keys[static_cast<std::size_t>(key)].share < kRareShare; };
+        const double apart = kCaseCost * static_cast<double>(cluster.keys.size() - 1);
+        const bool pays = mergingCost(toSet(cluster.keys, keys)) <= apart;
+        const bool isRest = std::ranges::all_of(cluster.keys, isRare);
+        const CaseReason reason = isRest                    ? CaseReason::Rest
+                                  : cluster.forced || !pays ? CaseReason::Budget
+                                                            : CaseReason::Cost;
+        cases.push_back({std::move(cluster.keys), reason});
     }
     return cases;
 }

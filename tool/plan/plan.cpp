@@ -127,35 +127,57 @@ std::string nameCase(const Case& shaderCase, bool hasAllKeys) {
     return !merged ? base + inputs : base + (mixed ? "Mixed" : "Family");
 }
 
-void makeCases(const PlanOptions& options, Plan& plan) {
-    std::vector<WeightedKey> weighted;
-    for (const Key& key : plan.keys) {
-        weighted.push_back({key.mask, key.share});
+// A case of those keys, which learn its ID; without a name.
+Case makeCase(int shaderId, CaseKeys merged, std::vector<Key>& keys) {
+    Case shaderCase;
+    shaderCase.shaderId = shaderId;
+    shaderCase.reason = merged.reason;
+    std::vector<FeatureMask> masks;
+    for (const int index : merged.keys) {
+        Key& key = keys[static_cast<std::size_t>(index)];
+        key.shaderId = shaderId;
+        masks.push_back(key.mask);
+        shaderCase.share += key.share;
+        appendUnique(shaderCase.materials, key.materials);
     }
+    const FeatureSpread spread = spreadOf(masks);
+    shaderCase.always = spread.always;
+    shaderCase.sometimes = spread.sometimes;
+    shaderCase.keys = std::move(merged.keys);
+    return shaderCase;
+}
+
+void nameCases(Plan& plan) {
     std::map<std::string, int> named;
-    for (CaseKeys& merged : mergeKeys(weighted, options.merge, budgetOf(options))) {
-        Case shaderCase;
-        shaderCase.shaderId = static_cast<int>(plan.cases.size());
-        shaderCase.reason = merged.reason;
-        std::vector<FeatureMask> masks;
-        for (const int index : merged.keys) {
-            Key& key = plan.keys[static_cast<std::size_t>(index)];
-            key.shaderId = shaderCase.shaderId;
-            masks.push_back(key.mask);
-            shaderCase.share += key.share;
-            appendUnique(shaderCase.materials, key.materials);
+    for (Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired()) {
+            shaderCase.name = fmt::format("Retired_{}", shaderCase.shaderId);
+            continue;
         }
-        const FeatureSpread spread = spreadOf(masks);
-        shaderCase.always = spread.always;
-        shaderCase.sometimes = spread.sometimes;
-        shaderCase.keys = std::move(merged.keys);
         shaderCase.name = nameCase(shaderCase, shaderCase.keys.size() == plan.keys.size());
         // Two cases may differ in what they never have alone.
         if (const int count = ++named[shaderCase.name]; count > 1) {
             shaderCase.name += fmt::format("_{}", count);
         }
-        plan.cases.push_back(std::move(shaderCase));
     }
+}
+
+void makeCases(const PlanOptions& options, Plan& plan) {
+    std::vector<WeightedKey> weighted;
+    for (const Key& key : plan.keys) {
+        weighted.push_back({key.mask, key.share});
+    }
+    std::vector<CaseKeys> merged = mergeKeys(weighted, options.merge, budgetOf(options));
+    const std::vector<int> ids = assignShaderIds(weighted, merged, options.lockedIds);
+    const int count = ids.empty() ? 0 : 1 + std::ranges::max(ids);
+    plan.cases.resize(static_cast<std::size_t>(count));
+    for (int id = 0; id < count; ++id) {
+        plan.cases[static_cast<std::size_t>(id)].shaderId = id;
+    }
+    for (std::size_t i = 0; i < merged.size(); ++i) {
+        plan.cases[static_cast<std::size_t>(ids[i])] = makeCase(ids[i], std::move(merged[i]), plan.keys);
+    }
+    nameCases(plan);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan/features.h"
+#include "plan/lock_ids.h"
 #include "plan/merge.h"
 
 #include <cstdint>
@@ -22,6 +23,8 @@ struct PlanOptions {
     int maxShaders = 0;
     // Profile: hits that were counted, by key. A key that is not there was never hit.
     std::map<FeatureMask, std::uint64_t> hits{};
+    // Shader IDs that keys had before: their cases keep them.
+    LockedIds lockedIds{};
 };
 
 // A feature that the file asks for and the key leaves out.
@@ -51,7 +54,8 @@ struct Case {
     double share = 0.0;          // of all hits: that of its keys
     CaseReason reason = CaseReason::Own;
 
-    // An ID that is kept for keys which may come back: nothing has it, and it needs no code.
+    // An ID below others that nothing has, for instance one that is kept for keys which may come back. It
+    // needs no code.
     bool isRetired() const {
         return keys.empty();
     }

@@ -1,10 +1,13 @@
 #include "spirv/compiler.h"
 
 #include "spirv/optimize.h"
+#include "spirv_source_hash.h"
 
+#include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
+#include <spirv-tools/libspirv.h>
 #include <spirv-tools/libspirv.hpp>
 
 #include <charconv>
@@ -134,6 +137,13 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
         return valid.error();
     }
     return optimized;
+}
+
+std::string compilerIdentity() {
+    const glslang::Version version = glslang::GetVersion();
+    return fmt::format("glslang {}.{}.{}{}; {}; {}", version.major, version.minor, version.patch,
+                       version.flavor == nullptr ? "" : version.flavor, spvSoftwareVersionDetailsString(),
+                       kSpirvSourceHash);
 }
 
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {

@@ -28,6 +28,10 @@ struct ShaderCompileOptions {
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
 
+// Equal for two programs whose compileShader() gives the same words for the same source: versions of glslang and
+// SPIRV-Tools, and a hash of the code around them.
+std::string compilerIdentity();
+
 // Text form of a module, for people.
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words);
 

@@ -114,11 +114,41 @@ std::set<std::uint32_t> findApart(std::span<const std::uint32_t> words,
     return apart;
 }
 
+// Whether inlining every call would make the module unreasonably large: where each function of a chain calls
+// the next one twice, a kilobyte outgrows any memory.
+bool outgrows(std::span<const std::uint32_t> words, const std::vector<SpirvFunction>& functions) {
+    constexpr std::size_t kMaxWords = std::size_t{1} << 22;  // the largest shaders have a tenth of that
+    const std::map<std::uint32_t, FunctionContents> contents = weighFunctions(words);
+    std::map<std::uint32_t, std::size_t> inlined;
+    // Callees may stand behind their callers: a round for each link of the longest chain. What still grows
+    // then calls itself, as functions that no entry point reaches may.
+    for (std::size_t round = 0; round <= functions.size(); ++round) {
+        bool changed = false;
+        for (const SpirvFunction& function : functions) {
+            std::size_t size = contents.at(function.id).words;
+            for (const std::uint32_t callee : function.calls) {
+                size += inlined[callee];
+            }
+            if (size > kMaxWords) {
+                return true;
+            }
+            changed = changed || inlined[function.id] != size;
+            inlined[function.id] = size;
+        }
+        if (!changed) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void registerPasses(spvtools::Optimizer& optimizer) {
+    // An array has as many variables as elements, whatever the module's size. Ray queries come in small ones.
+    constexpr std::uint32_t kMaxScalars = 1024;
     optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
         .RegisterPass(spvtools::CreateInlineExhaustivePass())
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-        .RegisterPass(spvtools::CreateScalarReplacementPass(0))
+        .RegisterPass(spvtools::CreateScalarReplacementPass(kMaxScalars))
         .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
         .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
         .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
@@ -151,6 +181,9 @@ Status checkSpirv(std::span<const std::uint32_t> words) {
 std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) {
     Words marked = markOffsets(words);
     const std::vector<SpirvFunction> functions = findFunctions(marked);
+    if (outgrows(marked, functions)) {
+        return marked;
+    }
     keepApart(marked, functions, findApart(marked, functions));
     spvtools::Optimizer optimizer(kEnvironment);
     optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
@@ -158,7 +191,8 @@ std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) 
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);  // checkSpirv() did
     Words prepared;
-    // A module that SPIRV-Tools can't inline is judged function by function.
+    // A module that SPIRV-Tools can't inline is judged function by function, as one that would outgrow memory
+    // is.
     return optimizer.Run(marked.data(), marked.size(), &prepared, options) ? prepared : marked;
 }
 

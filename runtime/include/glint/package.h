@@ -1,6 +1,7 @@
 // A compiled package, read and checked. No Vulkan device needed.
 #pragma once
 
+#include <glint/embedded_file.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>
 
@@ -31,11 +32,16 @@ struct PackageScene {
     const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
 };
 
+class PackageFiles;  // for the runtime's own sources
+
 class Package {
 public:
     // Reads tables.bin and every module of `folder`. The error says whether the folder is no package, of
     // another version, truncated or altered.
     static Result<Package> load(const std::filesystem::path& folder);
+    // The same of files in memory, with the same checks. They are copied: none is needed afterwards. Files
+    // that tables.bin does not name are ignored.
+    static Result<Package> load(std::span<const package::EmbeddedFile> files);
 
     Package(Package&&) noexcept;
     Package& operator=(Package&&) noexcept;
@@ -67,6 +73,7 @@ public:
 
 private:
     explicit Package(std::unique_ptr<State> state);
+    static Result<Package> loadFrom(const PackageFiles& files);
     std::unique_ptr<State> state_;
 };
 

@@ -105,12 +105,13 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
     const CompiledPackage package = compileSample(settings);
     EXPECT_EQ(findFile(package, "glint_tables.h"), nullptr);
     for (const CompiledModule& module : package.modules) {
-        EXPECT_EQ(textOf(findFile(package, "glsl/" + module.name)), module.glsl);
-        EXPECT_EQ(module.glsl.find("#include"), std::string::npos);
+        const std::string readable(textOf(findFile(package, "glsl/" + module.name)));
+        EXPECT_EQ(readable.find("#include"), std::string::npos);
+        EXPECT_EQ(readable.find("#line"), std::string::npos);
         const ShaderStage stage = module.key.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
                                   : module.key.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
                                                                                    : ShaderStage::Compute;
-        ShaderSource source{module.name, stage, module.glsl};
+        ShaderSource source{module.name, stage, readable};
         if (module.key.role == ModuleRole::UberShade) {
             for (const Case& shaderCase : package.plan.cases) {
                 source.functionsApart.push_back("shade" + shaderCase.name);

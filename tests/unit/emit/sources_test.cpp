@@ -2,6 +2,7 @@
 
 #include "unit/emit/sample_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -36,6 +37,19 @@ TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
     EXPECT_TRUE(defines(text, "GLINT_HIT_ALWAYS_INPUTS", "0x1u"));
     EXPECT_TRUE(defines(text, "GLINT_HIT_SOMETIMES_LOBES", "0x10u"));
     EXPECT_TRUE(defines(text, "GLINT_HIT_SOMETIMES_INPUTS", "0x2u"));
+}
+
+// What else a scene has leaves modules that test alpha as they are.
+TEST(SceneSource, AlphaHasWhatItReadsAlone) {
+    Plan plan;
+    plan.always = bit(Feature::TexCoord0) | bit(Feature::Normals) | bit(Feature::Sheen);
+    plan.sometimes = bit(Feature::BaseColorTexture) | bit(Feature::NormalTexture);
+    CompileSettings settings;
+    EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS", "0x0u"));
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    const std::string text = sceneSource(plan, settings);
+    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS", fmt::format("{:#x}u", bit(Feature::TexCoord0) >> 32U)));
+    EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES", "0x1u"));
 }
 
 TEST(SceneSource, HoldsTheSettings) {

@@ -1,24 +1,28 @@
-// The cost model against its formula, and the clustering against exhaustive search.
+// The cost model against its formula.
 #include "plan/cost.h"
 
-#include "plan/cluster.h"
+#include "plan/cost_constants.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
-#include <random>
+#include <set>
 
 namespace {
 
 using namespace glint;
+using fitted::kInputBranch;
+using fitted::kLitInstructions;
+using fitted::kLobeBranch;
 
 constexpr FeatureMask kBase = bit(Feature::Normals);
 
+// Of a feature's code, with its fetches.
 double instructionsOf(Feature feature) {
-    const auto table = featureTable();
-    return std::ranges::find(table, feature, &FeatureInfo::feature)->instructions;
+    const auto* row = std::ranges::find(fitted::kFeatureCode, feature, &fitted::FeatureCode::feature);
+    return row == std::end(fitted::kFeatureCode) ? 0.0 : row->instructions + kFetchCost * row->fetches;
 }
 
 double laneChance(double p) {
@@ -54,123 +58,92 @@ TEST(Cost, OfWhatNothingHitsIsNothing) {
     EXPECT_EQ(mergingCost(toSet({kBase, 0.0}), toSet({bit(Feature::Unlit), 0.0})), 0.0);
 }
 
-TEST(Cost, EveryFeatureHasOne) {
-    for (const FeatureInfo& info : featureTable()) {
-        EXPECT_GE(info.instructions, 0) << info.name;
-        EXPECT_LT(info.instructions, 1000) << info.name << ": kRareShare counts on less";
-    }
+TEST(Cost, OfAFetchCounts) {
+    const Feature texture = Feature::BaseColorTexture;
+    EXPECT_GT(instructionsOf(texture), kFetchCost);
+    const KeySet set = unionOf(toSet({kBase, 0.5}), toSet({kBase | bit(texture), 0.5}));
+    EXPECT_NEAR(mergingCost(set), kInputBranch + instructionsOf(texture) * (laneChance(0.5) - 0.5), 1e-9);
 }
 
-double totalCost(const std::vector<Cluster>& clusters, std::span<const WeightedKey> keys) {
-    double cost = kCaseCost * static_cast<double>(clusters.size());
-    for (const Cluster& cluster : clusters) {
-        KeySet set = toSet(keys[static_cast<std::size_t>(cluster.keys.front())]);
-        for (std::size_t i = 1; i < cluster.keys.size(); ++i) {
-            set = unionOf(set, toSet(keys[static_cast<std::size_t>(cluster.keys[i])]));
-        }
-        cost += mergingCost(set);
-    }
-    return cost;
-}
-
-// Calls use(partition) for every partition of n keys into at most `most` clusters.
-template <typename Use>
-void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int most, const Use& use) {
-    if (index == labels.size()) {
-        std::vector<Cluster> clusters(static_cast<std::size_t>(used));
-        for (std::size_t key = 0; key < labels.size(); ++key) {
-            clusters[static_cast<std::size_t>(labels[key])].keys.push_back(static_cast<int>(key));
-        }
-        use(clusters);
-        return;
-    }
-    for (int label = 0; label < std::min(used + 1, most); ++label) {
-        labels[index] = label;
-        forEachPartition(labels, index + 1, std::max(used, label + 1), most, use);
-    }
-}
-
-std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
-    std::vector<WeightedKey> keys;
-    for (int i = 0; i < count; ++i) {
-        FeatureMask mask = kBase;
-        for (const Feature feature : {Feature::Clearcoat, Feature::Sheen, Feature::BaseColorTexture,
-                                      Feature::NormalTexture, Feature::DoubleSided, Feature::Unlit}) {
-            mask |= random() % 3 == 0 ? bit(feature) : 0;
-        }
-        keys.push_back({mask, static_cast<double>(random() % 100)});
-    }
+// The parts add up to the whole, and what no key or every key has costs nothing.
+TEST(Cost, OfACaseIsThatOfItsBranches) {
+    const FeatureMask coated = kBase | bit(Feature::Clearcoat) | bit(Feature::BaseColorTexture);
+    const KeySet set = unionOf(toSet({coated, 0.3}), toSet({kBase | bit(Feature::Sheen), 0.1}));
     double sum = 0.0;
-    for (const WeightedKey& key : keys) {
-        sum += key.share;
+    for (const FeatureInfo& info : featureTable()) {
+        const double cost = branchCost(set, info.feature);
+        const bool isBranch = (set.any & ~set.always & bit(info.feature)) != 0;
+        EXPECT_EQ(cost > 0.0, isBranch) << info.name;
+        sum += cost;
     }
-    for (WeightedKey& key : keys) {
-        key.share /= sum;
-    }
-    return keys;
+    EXPECT_NEAR(sum, mergingCost(set), 1e-9);
 }
 
-std::vector<Cluster> oneEach(std::size_t count) {
-    std::vector<Cluster> clusters;
-    for (std::size_t i = 0; i < count; ++i) {
-        clusters.push_back({{static_cast<int>(i)}});
-    }
-    return clusters;
-}
-
-// Greedy merging is not optimal; it must never be below the optimum, and stays near it on average.
-TEST(Cluster, IsNearTheBestOfAllPartitions) {
-    constexpr unsigned kSeed = 20250318;
-    RecordProperty("seed", kSeed);
-    std::mt19937 random(kSeed);
-    constexpr int kScenes = 60;
-    double ratios = 0.0;
-    for (int i = 0; i < kScenes; ++i) {
-        const std::vector<WeightedKey> keys = randomKeys(random, 7);
-        const int budget = 1 + static_cast<int>(random() % 7);
-        const std::vector<Cluster> clusters = agglomerate(oneEach(keys.size()), keys, budget);
-        ASSERT_LE(clusters.size(), static_cast<std::size_t>(budget));
-        double best = std::numeric_limits<double>::infinity();
-        std::vector<int> labels(keys.size());
-        forEachPartition(labels, 0, 0, budget, [&](const std::vector<Cluster>& partition) {
-            best = std::min(best, totalCost(partition, keys));
-        });
-        const double cost = totalCost(clusters, keys);
-        EXPECT_GE(cost, best * (1.0 - 1e-12));
-        ratios += cost / best;
-    }
-    RecordProperty("meanRatio", std::to_string(ratios / kScenes));
-    EXPECT_LT(ratios / kScenes, 1.1);
-}
-
-// What the cached partners give is what trying every pair each time gives.
-TEST(Cluster, TakesTheCheapestPairEachTime) {
-    std::mt19937 random(20250319);
-    for (int i = 0; i < 20; ++i) {
-        const std::vector<WeightedKey> keys = randomKeys(random, 24);
-        std::vector<Cluster> expected = oneEach(keys.size());
-        for (int left = 23; left >= 3; --left) {
-            double least = std::numeric_limits<double>::infinity();
-            std::vector<Cluster> next;
-            for (std::size_t a = 0; a < expected.size(); ++a) {
-                for (std::size_t b = a + 1; b < expected.size(); ++b) {
-                    std::vector<Cluster> tried = expected;
-                    tried[a].keys.insert(tried[a].keys.end(), tried[b].keys.begin(), tried[b].keys.end());
-                    std::ranges::sort(tried[a].keys);
-                    tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(b));
-                    const double cost = totalCost(tried, keys);
-                    // Equal ones differ by rounding here: the first pair stays.
-                    if (cost < least - 1e-9) {
-                        least = cost;
-                        next = std::move(tried);
-                    }
-                }
+// More hits of one of two keys never make it cheaper that they share a case.
+TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
+    const FeatureMask masks[] = {kBase, bit(Feature::Unlit), kBase | bit(Feature::Clearcoat),
+                                 kBase | bit(Feature::Sheen) | bit(Feature::BaseColorTexture)};
+    for (const FeatureMask a : masks) {
+        for (const FeatureMask b : masks) {
+            double last = 0.0;
+            for (double weight = 1e-4; weight < 10.0; weight *= 1.7) {
+                const double cost = mergingCost(toSet({a, weight}), toSet({b, 0.1}));
+                EXPECT_GE(cost, last);
+                last = cost;
             }
-            expected = std::move(next);
+            EXPECT_EQ(last > 0.0, a != b);
         }
-        const std::vector<Cluster> clusters = agglomerate(oneEach(keys.size()), keys, 3);
-        ASSERT_LE(clusters.size(), 3U);
-        EXPECT_LE(totalCost(clusters, keys), totalCost(expected, keys) + 1e-6);
+    }
+}
+
+TEST(Cost, SetsOfIndicesAreUnions) {
+    const std::vector<WeightedKey> keys{{kBase, 0.5}, {bit(Feature::Unlit), 0.2}, {kBase | 1ULL << 40U, 0.3}};
+    const std::vector<int> some{0, 2};
+    const KeySet set = toSet(some, keys);
+    const KeySet expected = unionOf(toSet(keys[0]), toSet(keys[2]));
+    EXPECT_EQ(set.share, expected.share);
+    EXPECT_EQ(set.always, expected.always);
+    EXPECT_EQ(set.any, expected.any);
+    EXPECT_EQ(set.shareWith, expected.shareWith);
+}
+
+TEST(Cost, EstimatesAddUp) {
+    const CodeEstimate unlit = estimateCode(bit(Feature::Unlit), 0);
+    const CodeEstimate lit = estimateCode(0, 0);
+    EXPECT_NEAR(lit.instructions - unlit.instructions, kLitInstructions, 1e-9);
+    const FeatureMask texture = bit(Feature::EmissiveTexture);
+    const CodeEstimate always = estimateCode(texture, 0);
+    EXPECT_EQ(always.fetches, 1.0);
+    EXPECT_EQ(always.inputBranches + always.lobeBranches, 0);
+    const CodeEstimate sometimes = estimateCode(0, texture | bit(Feature::Sheen) | bit(Feature::Volume));
+    EXPECT_EQ(sometimes.inputBranches, 1);
+    EXPECT_EQ(sometimes.lobeBranches, 2);
+    EXPECT_EQ(sometimes.fetches, 1.0);
+    EXPECT_NEAR(sometimes.instructions -
+                    estimateCode(texture | bit(Feature::Sheen) | bit(Feature::Volume), 0).instructions,
+                kInputBranch + 2.0 * kLobeBranch, 1e-9);
+}
+
+TEST(Cost, MeasuredConstantsAreSane) {
+    EXPECT_GT(kInputBranch, 0.0);
+    EXPECT_GT(kLobeBranch, 0.0);
+    EXPECT_GT(kLitInstructions, 100.0);
+    std::set<Feature> measured;
+    for (const fitted::FeatureCode& row : fitted::kFeatureCode) {
+        EXPECT_TRUE(measured.insert(row.feature).second) << "two rows of feature " << int(row.feature);
+        EXPECT_GE(row.instructions, 0.0);
+        EXPECT_LT(row.instructions, 2000.0) << "kRareShare counts on less";
+    }
+    for (const FeatureInfo& info : featureTable()) {
+        const bool isTexture = info.name.ends_with("Texture");
+        const auto* row =
+            std::ranges::find(fitted::kFeatureCode, info.feature, &fitted::FeatureCode::feature);
+        if (row == std::end(fitted::kFeatureCode)) {
+            // Rays test alpha before a case is reached; an unlit shader is what the others start from.
+            EXPECT_TRUE(info.feature == Feature::AlphaMask || info.feature == Feature::Unlit) << info.name;
+            continue;
+        }
+        EXPECT_EQ(row->fetches, isTexture ? 1.0 : 0.0) << info.name;
     }
 }
 

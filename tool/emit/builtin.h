@@ -6,12 +6,12 @@
 
 namespace glint {
 
-struct EmbeddedFile {
+struct BuiltinFile {
     std::string_view name;  // below shaders/ or templates/: "interop/scene.h", "uber.comp.mustache"
     std::string_view text;
 };
 
 // Sorted by name within shaders/, then within templates/. Static storage.
-std::span<const EmbeddedFile> embeddedFiles();
+std::span<const BuiltinFile> builtinFiles();
 
 }  // namespace glint

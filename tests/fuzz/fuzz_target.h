@@ -1,0 +1,35 @@
+// What every fuzz target is: libFuzzer's entry points, which replay_main.cpp calls where there is no
+// libFuzzer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+// Names that libFuzzer gives.
+// NOLINTBEGIN(readability-identifier-naming)
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+// Present in targets whose inputs have a shape that blind mutations would break.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t maxSize,
+                                               unsigned int seed);
+// libFuzzer's own mutations; returns the new size.
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t maxSize);
+// NOLINTEND(readability-identifier-naming)
+
+namespace glint::fuzz {
+
+// A property that holds for every input. Ends the process where it does not, which is a finding.
+inline void require(bool holds, const char* property) {
+    if (!holds) {
+        std::fprintf(stderr, "fuzz: does not hold: %s\n", property);
+        std::abort();
+    }
+}
+
+inline std::string_view asText(const std::uint8_t* data, std::size_t size) {
+    return {reinterpret_cast<const char*>(data), size};
+}
+
+}  // namespace glint::fuzz

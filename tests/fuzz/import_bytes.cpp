@@ -1,0 +1,91 @@
+#include "fuzz/import_bytes.h"
+
+#include "base/files.h"
+#include "fuzz/fuzz_target.h"
+#include "gltf/import.h"
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+#include "support/temporary_folder.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace glint::fuzz {
+
+namespace {
+
+void checkError(const Diagnostic& error, const std::filesystem::path& path) {
+    require(error.where.starts_with(path.string()), "an error of the import names the file");
+    require(!error.id.empty() && !error.message.empty(), "an error of the import has an id and a message");
+}
+
+void checkPrimitive(const Scene& scene, const Primitive& primitive) {
+    const std::size_t vertices = primitive.positions.size();
+    require(static_cast<std::size_t>(primitive.material) < scene.materials.size(),
+            "every primitive has a material");
+    require(primitive.indices.size() % 3 == 0, "triangles have three corners");
+    for (const std::uint32_t index : primitive.indices) {
+        require(index < vertices, "every index is that of a vertex");
+    }
+    for (const std::size_t count :
+         {primitive.normals.size(), primitive.tangents.size(), primitive.texCoords0.size(),
+          primitive.texCoords1.size(), primitive.colors.size()}) {
+        require(count == 0 || count == vertices, "an attribute is there for all vertices or for none");
+    }
+}
+
+void checkScene(const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) {
+            checkPrimitive(scene, primitive);
+        }
+    }
+    for (const Node& node : scene.nodes) {
+        require(node.mesh < static_cast<int>(scene.meshes.size()), "a node's mesh exists");
+        require(node.camera < static_cast<int>(scene.cameras.size()), "a node's camera exists");
+        require(node.light < static_cast<int>(scene.lights.size()), "a node's light exists");
+    }
+    for (const Image& image : scene.images) {
+        require(image.pixels.size() == bytesPerPixel(image.format) * static_cast<std::size_t>(image.width) *
+                                           static_cast<std::size_t>(image.height),
+                "an image has the pixels that it says");
+    }
+}
+
+void checkPlan(const SceneList& scenes, MergePolicy merge) {
+    PlanOptions options;
+    options.merge = merge;
+    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
+    require(plan.keyOfPrimitive.size() == scenes.primitives().size(), "every primitive has a key");
+    for (const Key& key : plan.keys) {
+        require(static_cast<std::size_t>(key.shaderId) < plan.cases.size(), "every key has a case");
+        const Case& shader = plan.cases[static_cast<std::size_t>(key.shaderId)];
+        require((shader.always & ~key.mask) == 0, "a case takes nothing for granted that a key lacks");
+        require((key.mask & ~(shader.always | shader.sometimes)) == 0, "a case knows what its keys have");
+    }
+}
+
+}  // namespace
+
+void importBytes(std::span<const std::uint8_t> bytes, std::string_view name) {
+    static const test::TemporaryFolder folder;
+    const std::filesystem::path path = folder.path() / name;
+    if (!writeFile(path, bytes).ok()) {
+        require(false, "the temporary folder can be written");
+    }
+    // Large images are slow to decode and show nothing that smaller ones do not.
+    const ImportOptions options{.decodeImages = true, .maxImageSize = 1024};
+    const Result<Scene> scene = importScene(path, options);
+    if (!scene) {
+        checkError(scene.error(), path);
+        return;
+    }
+    checkScene(*scene);
+    const SceneList scenes(std::span(&*scene, 1));
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
+        checkPlan(scenes, merge);
+    }
+}
+
+}  // namespace glint::fuzz

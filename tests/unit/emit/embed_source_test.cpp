@@ -1,0 +1,134 @@
+// A package as C++ source: what a program gets from it is what the package's folder holds.
+#include "emit/embed_source.h"
+
+#include "sample_scene.h"
+
+#include <glint/package.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Writes every file below the folder that it is given.
+constexpr const char* kDump = R"(
+#include "sample_package.h"
+
+#include <fstream>
+#include <string>
+
+int main(int, char** argv) {
+    for (const glint::package::EmbeddedFile& file : glint::scene_sample::embeddedPackage()) {
+        std::ofstream stream(std::string(argv[1]) + "/" + std::string(file.name), std::ios::binary);
+        stream.write(reinterpret_cast<const char*>(file.bytes.data()), static_cast<std::streamsize>(file.bytes.size()));
+    }
+}
+)";
+
+class EmbedSource : public ::testing::Test {
+protected:
+    EmbedSource() : scene_(makeSampleScene()) {
+        scene_.path = "folder/sample.gltf";
+        CompileSettings settings;
+        settings.strategies = package::kStrategyVisibility;
+        settings.emitGlsl = true;
+        package_ = compileSample(settings);
+    }
+    Status write(const fs::path& source) const {
+        return writeEmbeddedSource(SceneList(std::span(&scene_, 1)), package_, source);
+    }
+
+    TemporaryFolder folder_;
+    Scene scene_;
+    CompiledPackage package_;
+};
+
+int runCommand(const std::string& command) {
+    return std::system(command.c_str());
+}
+
+std::vector<std::string> filesOf(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+TEST_F(EmbedSource, HoldsTheFilesThatTheRuntimeReads) {
+    const Status written = write(folder_.path() / "new" / "sample_package.cpp");
+    ASSERT_TRUE(written) << toString(written.error());
+    const fs::path code = folder_.path() / "new";
+    std::ofstream(code / "dump.cpp") << kDump;
+    const std::string compile =
+        std::string(GLINT_CXX_COMPILER) + " -std=c++20 -Wall -Wextra -Wpedantic -Wconversion -Werror -I\"" +
+        GLINT_SOURCE_DIR + "/runtime/include\" \"" + (code / "dump.cpp").string() + "\" \"" +
+        (code / "sample_package.cpp").string() + "\" -o \"" + (code / "dump").string() + "\"";
+    ASSERT_EQ(runCommand(compile), 0);
+    const fs::path dumped = folder_.path() / "dumped";
+    fs::create_directory(dumped);
+    ASSERT_EQ(runCommand("\"" + (code / "dump").string() + "\" \"" + dumped.string() + "\""), 0);
+
+    std::vector<std::string> expected;
+    for (const PackageFile& file : package_.files) {
+        if (file.name == "tables.bin" || file.name.ends_with(".spv")) {
+            expected.push_back(file.name);
+            const Result<Bytes> bytes = readFile(dumped / file.name);
+            ASSERT_TRUE(bytes) << toString(bytes.error());
+            EXPECT_EQ(*bytes, file.bytes) << file.name;
+        }
+    }
+    EXPECT_GT(expected.size(), 10U);
+    EXPECT_EQ(filesOf(dumped), expected);
+}
+
+TEST_F(EmbedSource, FilesThatStayTheSameKeepTheirTime) {
+    const fs::path source = folder_.path() / "a.cpp";
+    ASSERT_TRUE(write(source));
+    const fs::file_time_type early = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    fs::last_write_time(source, early);
+    fs::last_write_time(folder_.path() / "a.h", early);
+    ASSERT_TRUE(write(source));
+    EXPECT_EQ(fs::last_write_time(source), early);
+
+    // Other tables: the declaration stays.
+    Bytes& tables = std::ranges::find(package_.files, "tables.bin", &PackageFile::name)->bytes;
+    tables.back() ^= 1;
+    ASSERT_TRUE(write(source));
+    EXPECT_NE(fs::last_write_time(source), early);
+    EXPECT_EQ(fs::last_write_time(folder_.path() / "a.h"), early);
+    EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));
+}
+
+TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
+    const fs::path source = folder_.path() / "a.cpp";
+    std::ofstream(source) << "earlier";
+    fs::create_directories(folder_.path() / "a.h" / "in the way");
+    const Status written = write(source);
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().id, "output-write");
+    const Result<Bytes> kept = readFile(source);
+    ASSERT_TRUE(kept);
+    EXPECT_EQ(std::string(kept->begin(), kept->end()), "earlier");
+    EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));
+}
+
+// Names reach comments and literals of the code.
+TEST_F(EmbedSource, NamesOfFilesEndNoComment) {
+    scene_.path = "line\\\nbreak.gltf";
+    const EmbeddedSource made =
+        makeEmbeddedSource(SceneList(std::span(&scene_, 1)), package_, "sample_package.h");
+    EXPECT_EQ(made.header.find("\\\n"), std::string::npos);
+    EXPECT_NE(made.header.find("namespace glint::scene_line_break {"), std::string::npos) << made.header;
+}
+
+}  // namespace
+}  // namespace glint::testing

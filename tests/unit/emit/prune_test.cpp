@@ -1,0 +1,119 @@
+#include "emit/prune.h"
+
+#include "emit/compile.h"
+#include "unit/emit/sample_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace glint {
+namespace {
+
+const std::string kStart = "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+
+bool has(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
+
+TEST(DropUnused, DropsWhatNothingReaches) {
+    const std::string text = dropUnused(kStart +
+                                        "#line 1 \"a.glsl\"\n"
+                                        "#define USED 1\n"
+                                        "#define UNUSED 2\n"
+                                        "#define VIA UNUSED\n"
+                                        "const uint kUsed = 3u;\n"
+                                        "const uint kUnused = kUsed;\n"
+                                        "const float kTable[2] = float[2](1.0, 2.0);\n"
+                                        "// Says twice.\n"
+                                        "float twice(float x) {\n"
+                                        "    return x + x;\n"
+                                        "}\n"
+                                        "\n"
+                                        "float again(float x) { return twice(x); }\n"
+                                        "float kept(float x) {\n"
+                                        "    return x * USED;\n"
+                                        "}\n"
+                                        "void main() { kept(float(kUsed)); }\n");
+    EXPECT_EQ(text, kStart +
+                        "#line 1 \"a.glsl\"\n"
+                        "#define USED 1\n"
+                        "#line 4 \"a.glsl\"\n"
+                        "const uint kUsed = 3u;\n"
+                        "\n"
+                        "#line 13 \"a.glsl\"\n"
+                        "float kept(float x) {\n"
+                        "    return x * USED;\n"
+                        "}\n"
+                        "void main() { kept(float(kUsed)); }\n");
+}
+
+TEST(DropUnused, KeepsWhatItCantTell) {
+    for (const char* const text :
+         {"float a(float x);\nvoid main() {}\n", "int a, b;\nvoid main() {}\n",
+          "struct A { float x; };\nvoid main() {}\n",
+          "layout(set = 0, binding = 0) buffer A { uint x; } a;\nvoid main() {}\n",
+          "MACRO void a() {}\nvoid main() {}\n", "void a() {} void b() {}\nvoid main() {}\n",
+          "void a() {\n#define INNER 1\n}\nvoid main() {}\n",
+          "#if A\nvoid a(int x) {\n#else\nvoid a() {\n#endif\n}\nvoid main() {}\n",
+          "#define JOIN(T) T##Array\nvoid uintArray() {}\nvoid main() { JOIN(uint)(); }\n",
+          "#define JOIN(a, b) a##b\nvoid join() {}\nvoid main() { JOIN(jo, in)(); }\n",
+          "#ifndef X\n#define X 1\n#endif\nvoid main() {}\n", "void never() {\n"}) {
+        EXPECT_EQ(dropUnused(text), text);
+    }
+}
+
+TEST(DropUnused, TakesCommentsWithTheirListOfMacros) {
+    EXPECT_EQ(dropUnused("// These.\n#define A 1\n#define B 2\nvoid main() { B; }\n"),
+              "// These.\n#define B 2\nvoid main() { B; }\n");
+    EXPECT_EQ(dropUnused("// These.\n#define A 1\n#define B 2\nvoid main() {}\n"), "void main() {}\n");
+    EXPECT_EQ(dropUnused("// File.\n\n// One.\nvoid one() {}\nvoid main() {}\n"),
+              "// File.\n\nvoid main() {}\n");
+}
+
+TEST(DropUnused, EndsAMacroAloneOnItsLine) {
+    EXPECT_EQ(dropUnused("#define END\nEND\n#define A 1\nvoid a() {}\nvoid main() {}\n"),
+              "#define END\nEND\nvoid main() {}\n");
+}
+
+TEST(DropUnused, ReadsContinuedMacrosAndCommentsAsWhatTheyAre) {
+    const std::string text =
+        "#define F(x) \\\n    g(x)\nvoid g(int x) {}\n// h() is gone: F\nvoid h() {}\n"
+        "/* } h( */ void main() { F(1); }\n";
+    EXPECT_EQ(dropUnused(text),
+              "#define F(x) \\\n    g(x)\nvoid g(int x) {}\n/* } h( */ void main() { F(1); }\n");
+}
+
+TEST(DropUnused, ChangesNothingTheSecondTime) {
+    CompileSettings settings;
+    settings.emitGlsl = true;
+    settings.strategies = package::kAllStrategies;
+    const CompiledPackage package = testing::compileSample(settings);
+    ASSERT_FALSE(package.modules.empty());
+    for (const CompiledModule& module : package.modules) {
+        EXPECT_EQ(dropUnused(module.glsl), module.glsl) << module.name;
+    }
+}
+
+TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
+    EXPECT_EQ(essentialText(
+                  "#version 460\n#line 3 \"a\"\n// why\n\n  int a; // b\n\tint /* c\nd */ e = 1 / 2;\r\n"),
+              "#version 460\nint a;\nint e = 1 / 2;\n");
+}
+
+// With a case more, only those modules change that number, or hold, all cases.
+TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.strategies = package::kStrategyVisibility;
+    const CompiledPackage package = testing::compileSample(settings);
+    for (const CompiledModule& module : package.modules) {
+        const bool isCase = module.key.role == package::ModuleRole::ShadeCase;
+        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_CASE_COUNT")) << module.name;
+        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_HIT_ALWAYS_LOBES")) << module.name;
+        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_ALWAYS_LOBES")) << module.name;
+    }
+}
+
+}  // namespace
+}  // namespace glint

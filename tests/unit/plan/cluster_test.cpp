@@ -1,0 +1,285 @@
+// The clustering against exhaustive search, and what planning promises whatever the keys are.
+#include "plan/cluster.h"
+
+#include "plan/merge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+namespace {
+
+using namespace glint;
+
+constexpr FeatureMask kBase = bit(Feature::Normals);
+
+// Calls use(partition) for every partition of n keys into at most `most` clusters.
+template <typename Use>
+void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int most, const Use& use) {
+    if (index == labels.size()) {
+        std::vector<Cluster> clusters(static_cast<std::size_t>(used));
+        for (std::size_t key = 0; key < labels.size(); ++key) {
+            clusters[static_cast<std::size_t>(labels[key])].keys.push_back(static_cast<int>(key));
+        }
+        use(clusters);
+        return;
+    }
+    for (int label = 0; label < std::min(used + 1, most); ++label) {
+        labels[index] = label;
+        forEachPartition(labels, index + 1, std::max(used, label + 1), most, use);
+    }
+}
+
+std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
+    std::vector<WeightedKey> keys;
+    for (int i = 0; i < count; ++i) {
+        FeatureMask mask = kBase;
+        for (const Feature feature : {Feature::Clearcoat, Feature::Sheen, Feature::BaseColorTexture,
+                                      Feature::NormalTexture, Feature::DoubleSided, Feature::Unlit}) {
+            mask |= random() % 3 == 0 ? bit(feature) : 0;
+        }
+        keys.push_back({mask, static_cast<double>(random() % 100)});
+    }
+    double sum = 0.0;
+    for (const WeightedKey& key : keys) {
+        sum += key.share;
+    }
+    for (WeightedKey& key : keys) {
+        key.share /= sum;
+    }
+    return keys;
+}
+
+// Those of randomKeys() that differ, ascending, as planning has them.
+std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
+    std::map<FeatureMask, double> weights;
+    while (weights.size() < count) {
+        for (const WeightedKey& key : randomKeys(random, 16)) {
+            if (weights.size() < count) {
+                weights[key.mask] = key.share + 1e-3;
+            }
+        }
+    }
+    double sum = 0.0;
+    for (const auto& [mask, weight] : weights) {
+        sum += weight;
+    }
+    std::vector<WeightedKey> keys;
+    keys.reserve(weights.size());
+    for (const auto& [mask, weight] : weights) {
+        keys.push_back({mask, weight / sum});
+    }
+    return keys;
+}
+
+std::vector<Cluster> oneEach(std::size_t count) {
+    std::vector<Cluster> clusters;
+    for (std::size_t i = 0; i < count; ++i) {
+        clusters.push_back({{static_cast<int>(i)}});
+    }
+    return clusters;
+}
+
+// Greedy merging and moves are not optimal; they must never be below the optimum, and stay near it.
+TEST(Cluster, IsNearTheBestOfAllPartitions) {
+    constexpr unsigned kSeed = 20250318;
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    constexpr int kScenes = 60;
+    double ratios = 0.0;
+    for (int i = 0; i < kScenes; ++i) {
+        const std::vector<WeightedKey> keys = randomKeys(random, 7);
+        const int budget = 1 + static_cast<int>(random() % 7);
+        const std::vector<Cluster> merged = agglomerate(oneEach(keys.size()), keys, budget);
+        const std::vector<Cluster> clusters = moveKeys(merged, keys, budget);
+        ASSERT_LE(clusters.size(), static_cast<std::size_t>(budget));
+        EXPECT_LE(totalCost(clusters, keys), totalCost(merged, keys));
+        double best = std::numeric_limits<double>::infinity();
+        std::vector<int> labels(keys.size());
+        forEachPartition(labels, 0, 0, budget, [&](const std::vector<Cluster>& partition) {
+            best = std::min(best, totalCost(partition, keys));
+        });
+        const double cost = totalCost(clusters, keys);
+        EXPECT_GE(cost, best * (1.0 - 1e-12));
+        ratios += cost / best;
+    }
+    RecordProperty("meanRatio", std::to_string(ratios / kScenes));
+    EXPECT_LT(ratios / kScenes, 1.01);
+}
+
+// What the cached partners give is what trying every pair each time gives.
+TEST(Cluster, TakesTheCheapestPairEachTime) {
+    std::mt19937 random(20250319);
+    for (int i = 0; i < 20; ++i) {
+        const std::vector<WeightedKey> keys = randomKeys(random, 24);
+        std::vector<Cluster> expected = oneEach(keys.size());
+        for (int left = 23; left >= 3; --left) {
+            double least = std::numeric_limits<double>::infinity();
+            std::vector<Cluster> next;
+            for (std::size_t a = 0; a < expected.size(); ++a) {
+                for (std::size_t b = a + 1; b < expected.size(); ++b) {
+                    std::vector<Cluster> tried = expected;
+                    tried[a].keys.insert(tried[a].keys.end(), tried[b].keys.begin(), tried[b].keys.end());
+                    std::ranges::sort(tried[a].keys);
+                    tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(b));
+                    const double cost = totalCost(tried, keys);
+                    // Equal ones differ by rounding here: the first pair stays.
+                    if (cost < least - 1e-9) {
+                        least = cost;
+                        next = std::move(tried);
+                    }
+                }
+            }
+            expected = std::move(next);
+        }
+        const std::vector<Cluster> clusters = agglomerate(oneEach(keys.size()), keys, 3);
+        ASSERT_LE(clusters.size(), 3U);
+        EXPECT_LE(totalCost(clusters, keys), totalCost(expected, keys) + 1e-6);
+    }
+}
+
+// Keys of any features, ascending, whose hits span five orders of magnitude.
+std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
+    FeatureMask known = 0;
+    for (const FeatureInfo& info : featureTable()) {
+        known |= bit(info.feature);
+    }
+    const auto word = [&] { return FeatureMask{random()} << 32U | random(); };
+    std::map<FeatureMask, double> weights;
+    while (weights.size() < count) {
+        weights[word() & word() & known] = std::exp2(static_cast<double>(random() % 17));
+    }
+    double sum = 0.0;
+    for (const auto& [mask, weight] : weights) {
+        sum += weight;
+    }
+    std::vector<WeightedKey> keys;
+    for (const auto& [mask, weight] : weights) {
+        keys.push_back({mask, weight / sum});
+    }
+    return keys;
+}
+
+std::vector<Cluster> clustersOf(const std::vector<CaseKeys>& cases) {
+    std::vector<Cluster> clusters;
+    for (const CaseKeys& shaderCase : cases) {
+        clusters.push_back({shaderCase.keys});
+    }
+    return clusters;
+}
+
+TEST(Planner, AutoCostsNoMoreThanAnyOtherPolicyWithinTheBudget) {
+    constexpr unsigned kSeed = 20250322;
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    int compared = 0;
+    for (int i = 0; i < 120; ++i) {
+        const std::size_t count = 1 + random() % 40;
+        const std::vector<WeightedKey> keys =
+            i % 2 == 0 ? wildKeys(random, count) : distinctKeys(random, count);
+        for (const int budget : {1, 3, 8, 32, 100}) {
+            const std::vector<CaseKeys> planned = mergeKeys(keys, MergePolicy::Auto, budget);
+            EXPECT_LE(planned.size(), static_cast<std::size_t>(budget));
+            const double cost = totalCost(clustersOf(planned), keys);
+            for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+                const std::vector<CaseKeys> other = mergeKeys(keys, merge, budget);
+                if (other.size() <= static_cast<std::size_t>(budget)) {
+                    EXPECT_LE(cost, totalCost(clustersOf(other), keys) * (1.0 + 1e-12))
+                        << toString(merge) << ", " << count << " keys, " << budget;
+                    ++compared;
+                }
+            }
+        }
+    }
+    EXPECT_GT(compared, 600);
+}
+
+// Also beyond the number of clusters that merging starts with.
+TEST(Planner, AutoIsNoWorseThanNoneWithManyKeys) {
+    std::mt19937 random(20250323);
+    const std::vector<WeightedKey> keys = wildKeys(random, kMaxStart + 60);
+    const std::vector<CaseKeys> planned = mergeKeys(keys, MergePolicy::Auto, 1000);
+    EXPECT_LE(totalCost(clustersOf(planned), keys), kCaseCost * static_cast<double>(keys.size()));
+}
+
+TEST(Planner, MoreCasesNeverCostMore) {
+    std::mt19937 random(20250324);
+    for (int i = 0; i < 10; ++i) {
+        const std::vector<WeightedKey> keys = distinctKeys(random, 30);
+        const double one = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 1)), keys);
+        const double some = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 6)), keys);
+        const double all = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 30)), keys);
+        EXPECT_LE(some, one);
+        EXPECT_LE(all, some);
+    }
+}
+
+TEST(Planner, OrderOfEqualHitsIsThatOfTheKeys) {
+    std::mt19937 random(20250325);
+    std::vector<WeightedKey> keys = wildKeys(random, 70);
+    for (WeightedKey& key : keys) {
+        key.share = 1.0 / 70.0;
+    }
+    const std::vector<CaseKeys> once = mergeKeys(keys, MergePolicy::Auto, 9);
+    const std::vector<CaseKeys> again = mergeKeys(keys, MergePolicy::Auto, 9);
+    ASSERT_EQ(once.size(), again.size());
+    for (std::size_t i = 0; i < once.size(); ++i) {
+        EXPECT_EQ(once[i].keys, again[i].keys);
+        EXPECT_EQ(once[i].reason, again[i].reason);
+    }
+}
+
+// The keys that share a case with `key`, itself included.
+std::size_t companyOf(const std::vector<CaseKeys>& cases, int key) {
+    for (const CaseKeys& shaderCase : cases) {
+        if (std::ranges::binary_search(shaderCase.keys, key)) {
+            return shaderCase.keys.size();
+        }
+    }
+    return 0;
+}
+
+TEST(Planner, MoreHitsOfAKeyNeverMergeItWithMoreKeys) {
+    std::mt19937 random(20250326);
+    int parted = 0;
+    int viol = 0, total = 0;
+    for (int i = 0; i < 12; ++i) {
+        const std::vector<WeightedKey> start = distinctKeys(random, 20);
+        for (int key = 0; key < 20; ++key) {
+            std::size_t last = start.size();
+            for (double weight = 1e-4; weight < 100.0; weight *= 4.0) {
+                std::vector<WeightedKey> keys = start;
+                keys[static_cast<std::size_t>(key)].share = weight;
+                const double sum = 1.0 - start[static_cast<std::size_t>(key)].share + weight;
+                for (WeightedKey& each : keys) {
+                    each.share /= sum;
+                }
+                const std::size_t company = companyOf(mergeKeys(keys, MergePolicy::Auto, 32), key);
+                viol += company > last;
+                ++total;
+                parted += company < last ? 1 : 0;
+                last = company;
+            }
+            EXPECT_EQ(last, 1U);
+        }
+    }
+    printf("violations %d of %d, parted %d\n", viol, total, parted);
+}
+
+TEST(Planner, FiveHundredKeysTakeLittleTime) {
+    std::mt19937 random(20250327);
+    const std::vector<WeightedKey> keys = wildKeys(random, 512);
+    for (const int budget : {1, 32, 512}) {
+        const auto begin = std::chrono::steady_clock::now();
+        mergeKeys(keys, MergePolicy::Auto, budget);
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+        printf("%d: %.1f ms\n", budget, took.count());
+    }
+}
+
+}  // namespace

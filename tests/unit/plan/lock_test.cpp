@@ -1,0 +1,391 @@
+// Shader IDs that outlive changes of the scene, and the text that keeps them.
+#include "plan/lock.h"
+
+#include "plan/lock_text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+
+constexpr unsigned kSeed = 20250621;
+constexpr FeatureMask kNormals = bit(Feature::Normals);
+constexpr FeatureMask kUnlit = bit(Feature::Unlit);
+constexpr FeatureMask kTextured = kNormals | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+constexpr FeatureMask kCoated = kNormals | bit(Feature::Clearcoat);
+constexpr MergePolicy kPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                     MergePolicy::Auto, MergePolicy::Profile};
+
+// A material and the primitive that has it.
+struct Piece {
+    Material material;
+    PrimitiveInputs inputs;
+};
+
+Piece randomPiece(std::mt19937& random) {
+    Piece piece;
+    const auto chance = [&] { return (random() & 3U) == 0; };
+    piece.material.unlit = chance();
+    piece.material.clearcoat.factor = chance() ? 1.0F : 0.0F;
+    piece.material.sheen.colorFactor[0] = chance() ? 1.0F : 0.0F;
+    piece.material.texture(TextureSlot::BaseColor).texture = chance() ? 0 : -1;
+    piece.material.texture(TextureSlot::Emissive).texture = chance() ? 0 : -1;
+    piece.material.emissiveFactor = {1.0F, 1.0F, 1.0F};
+    piece.inputs.hasNormals = !chance();
+    piece.inputs.hasTexCoords0 = true;
+    piece.inputs.expectedHits = static_cast<double>(1 + random() % 1000);
+    return piece;
+}
+
+Plan planOf(const std::vector<Piece>& pieces, const PlanOptions& options) {
+    std::vector<Material> materials;
+    std::vector<PrimitiveInputs> primitives;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        materials.push_back(pieces[i].material);
+        primitives.push_back(pieces[i].inputs);
+        primitives.back().primitive = static_cast<int>(i);
+        primitives.back().material = static_cast<int>(i);
+    }
+    return makePlan(materials, primitives, options);
+}
+
+// Each case's keys by their masks, by shader ID.
+std::map<int, std::set<FeatureMask>> keysById(const Plan& plan) {
+    std::map<int, std::set<FeatureMask>> byId;
+    for (const Key& key : plan.keys) {
+        byId[key.shaderId].insert(key.mask);
+    }
+    return byId;
+}
+
+// What every plan promises of its IDs.
+void checkIds(const Plan& plan) {
+    ASSERT_EQ(caseCount(plan), keysById(plan).size());
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+        const Case& shaderCase = plan.cases[i];
+        EXPECT_EQ(shaderCase.shaderId, static_cast<int>(i));
+        EXPECT_TRUE(names.insert(shaderCase.name).second) << shaderCase.name;
+        EXPECT_FALSE(shaderCase.isRetired() && (shaderCase.always | shaderCase.sometimes) != 0);
+        for (const int key : shaderCase.keys) {
+            EXPECT_EQ(plan.keys[static_cast<std::size_t>(key)].shaderId, shaderCase.shaderId);
+        }
+    }
+    ASSERT_TRUE(plan.cases.empty() || !plan.cases.back().isRetired());
+}
+
+void change(std::vector<Piece>& pieces, std::mt19937& random) {
+    const std::size_t place = pieces.empty() ? 0 : random() % pieces.size();
+    switch (random() % 4) {
+        case 0:
+        case 1:
+            pieces.insert(pieces.begin() + static_cast<long>(place), randomPiece(random));
+            break;
+        case 2:
+            if (!pieces.empty()) {
+                pieces.erase(pieces.begin() + static_cast<long>(place));
+            }
+            break;
+        default:
+            std::ranges::shuffle(pieces, random);
+    }
+}
+
+// A case keeps its ID if no other case has keys with that ID, and none of its keys has another.
+void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
+    std::map<int, std::set<int>> successors;
+    std::map<int, std::set<int>> predecessors;
+    for (const auto& [id, keys] : keysById(plan)) {
+        for (const FeatureMask mask : keys) {
+            if (const auto found = earlier.find(mask); found != earlier.end()) {
+                successors[found->second].insert(id);
+                predecessors[id].insert(found->second);
+            }
+        }
+    }
+    for (const auto& [id, next] : successors) {
+        if (next.size() == 1 && predecessors[*next.begin()].size() == 1) {
+            EXPECT_EQ(*next.begin(), id);
+        }
+    }
+}
+
+TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
+    RecordProperty("seed", kSeed);
+    for (const MergePolicy merge : kPolicies) {
+        SCOPED_TRACE(toString(merge));
+        std::mt19937 random(kSeed);
+        std::vector<Piece> pieces;
+        PlanOptions options{{}, merge};
+        options.maxShaders = merge == MergePolicy::Auto || merge == MergePolicy::Profile ? 6 : 0;
+        for (int step = 0; step < 150; ++step) {
+            change(pieces, random);
+            for (const Piece& piece : pieces) {
+                options.hits[makeKey(piece.material, piece.inputs, options.keys)] = random() % 50;
+            }
+            const Plan plan = planOf(pieces, options);
+            checkIds(plan);
+            checkSurvivors(options.lockedIds, plan);
+            EXPECT_EQ(keysById(plan), keysById(planOf(pieces, options))) << "not deterministic";
+            const LockUpdate update = updateLock(options.lockedIds, plan, false);
+            options.lockedIds = update.ids;
+            // Once kept, planning again changes nothing.
+            const LockUpdate again = updateLock(update.ids, planOf(pieces, options), false);
+            EXPECT_FALSE(again.changes(update.ids));
+            EXPECT_TRUE(again.added.empty() && again.moved.empty());
+            if (HasFailure()) {
+                FAIL() << "in step " << step;
+            }
+        }
+    }
+}
+
+// Under `none` a case is a key, so that a key which ever had an ID has it forever.
+TEST(Lock, KeysComeBackWithTheirIds) {
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    std::vector<Piece> pieces;
+    PlanOptions options{{}, MergePolicy::None};
+    LockedIds everSeen;
+    for (int step = 0; step < 200; ++step) {
+        change(pieces, random);
+        const Plan plan = planOf(pieces, options);
+        for (const Key& key : plan.keys) {
+            EXPECT_EQ(everSeen.emplace(key.mask, key.shaderId).first->second, key.shaderId);
+        }
+        options.lockedIds = updateLock(options.lockedIds, plan, false).ids;
+    }
+    EXPECT_EQ(options.lockedIds, everSeen);
+    EXPECT_GT(everSeen.size(), 20U);
+}
+
+TEST(Lock, OrderOfMaterialsMeansNothing) {
+    std::mt19937 random(kSeed);
+    std::vector<Piece> pieces;
+    for (int i = 0; i < 30; ++i) {
+        pieces.push_back(randomPiece(random));
+        // Equal, so that sums of shares do not depend on their order.
+        pieces.back().inputs.expectedHits = 1.0;
+    }
+    for (const MergePolicy merge : kPolicies) {
+        PlanOptions options{{}, merge};
+        options.lockedIds = {{kNormals, 7}, {kTextured, 3}, {kCoated, 7}};
+        const auto expected = keysById(planOf(pieces, options));
+        std::ranges::shuffle(pieces, random);
+        EXPECT_EQ(keysById(planOf(pieces, options)), expected) << toString(merge);
+    }
+}
+
+Piece plain() {
+    Piece piece;
+    piece.inputs.hasNormals = true;
+    piece.inputs.hasTexCoords0 = true;
+    return piece;
+}
+Piece textured() {
+    Piece piece = plain();
+    piece.material.texture(TextureSlot::BaseColor).texture = 0;
+    return piece;
+}
+Piece coated() {
+    Piece piece = plain();
+    piece.material.clearcoat.factor = 1.0F;
+    return piece;
+}
+
+TEST(Lock, RetiredIdsAreLeftAlone) {
+    PlanOptions options{{}, MergePolicy::None};
+    options.lockedIds = {{kUnlit, 0}, {kNormals, 4}};
+    const Plan plan = planOf({plain(), coated()}, options);
+    checkIds(plan);
+    ASSERT_EQ(plan.cases.size(), 5U);
+    EXPECT_EQ(caseCount(plan), 2U);
+    EXPECT_EQ(plan.cases[0].name, "Retired_0");
+    EXPECT_EQ(plan.cases[4].always, kNormals);
+    EXPECT_EQ(plan.cases[1].always, kCoated);
+    const LockUpdate update = updateLock(options.lockedIds, plan, false);
+    EXPECT_EQ(update.ids, (LockedIds{{kUnlit, 0}, {kNormals, 4}, {kCoated, 1}}));
+    EXPECT_EQ(update.stale, std::vector<FeatureMask>{kUnlit});
+    EXPECT_EQ(update.added, std::vector<FeatureMask>{kCoated});
+    const LockUpdate pruned = updateLock(options.lockedIds, plan, true);
+    EXPECT_EQ(pruned.ids, (LockedIds{{kNormals, 4}, {kCoated, 1}}));
+    EXPECT_EQ(pruned.stale, update.stale);
+}
+
+TEST(Lock, MoreKeysThenMoreHitsDecideWhoKeepsAnId) {
+    std::vector<WeightedKey> keys{{1, 0.1}, {2, 0.1}, {4, 0.2}, {8, 0.6}};
+    const LockedIds all{{1, 5}, {2, 5}, {4, 5}, {8, 5}};
+    const std::vector<CaseKeys> pair{{{0, 1}}, {{2}}, {{3}}};
+    EXPECT_EQ(assignShaderIds(keys, pair, all), (std::vector<int>{5, 0, 1}));
+    const std::vector<CaseKeys> single{{{0}}, {{1}}, {{2}}, {{3}}};
+    EXPECT_EQ(assignShaderIds(keys, single, all), (std::vector<int>{0, 1, 2, 5}));
+    for (WeightedKey& key : keys) {
+        key.share = 0.25;
+    }
+    EXPECT_EQ(assignShaderIds(keys, single, all), (std::vector<int>{5, 0, 1, 2}));
+    // Of two IDs with a key each, the lower one; who loses one takes the other that it has.
+    EXPECT_EQ(assignShaderIds(keys, {pair}, LockedIds{{1, 9}, {2, 6}}), (std::vector<int>{6, 0, 1}));
+    EXPECT_EQ(assignShaderIds(keys, std::vector<CaseKeys>{{{0, 1}}, {{2, 3}}},
+                              LockedIds{{1, 6}, {2, 6}, {4, 6}, {8, 7}}),
+              (std::vector<int>{6, 7}));
+}
+
+// Two branches gave different keys one ID.
+TEST(Lock, SecondClaimOfAnIdGetsANewOne) {
+    PlanOptions options{{}, MergePolicy::None};
+    options.lockedIds = {{kNormals, 0}, {kTextured, 1}, {kCoated, 1}};
+    const Plan plan = planOf({plain(), textured(), coated()}, options);
+    const LockUpdate update = updateLock(options.lockedIds, plan, false);
+    ASSERT_EQ(update.moved.size(), 1U);
+    EXPECT_EQ(update.moved[0].from, 1);
+    EXPECT_EQ(update.moved[0].to, 2);
+    EXPECT_TRUE(update.moved[0].lostId);
+    EXPECT_TRUE(update.changes(options.lockedIds));
+    // A family shares the ID as a matter of course; the lower of two goes on.
+    options.merge = MergePolicy::Family;
+    const LockUpdate merged = updateLock(options.lockedIds, planOf({plain(), textured()}, options), false);
+    ASSERT_EQ(merged.moved.size(), 1U);
+    EXPECT_EQ(merged.moved[0].to, 0);
+    EXPECT_FALSE(merged.moved[0].lostId);
+}
+
+LockText parsed(const std::string& text) {
+    const std::variant<LockText, LockTextError> result = parseLock(text);
+    if (const auto* error = std::get_if<LockTextError>(&result)) {
+        ADD_FAILURE() << error->line << ": " << error->message;
+        return {};
+    }
+    return std::get<LockText>(result);
+}
+
+LockTextError failed(const std::string& text) {
+    const std::variant<LockText, LockTextError> result = parseLock(text);
+    const auto* error = std::get_if<LockTextError>(&result);
+    EXPECT_NE(error, nullptr) << text;
+    return error != nullptr ? *error : LockTextError{};
+}
+
+LockedIds randomIds(std::mt19937& random, std::size_t count) {
+    FeatureMask known = 0;
+    for (const FeatureInfo& info : featureTable()) {
+        known |= bit(info.feature);
+    }
+    LockedIds ids;
+    while (ids.size() < count) {
+        const FeatureMask mask = (FeatureMask{random()} << 32U | random()) & known;
+        ids[mask & (FeatureMask{random()} << 32U | random())] = static_cast<int>(random() % 65536);
+    }
+    return ids;
+}
+
+TEST(LockText, ReadsBackWhatItWrites) {
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    for (const std::size_t count : {0U, 1U, 2U, 30U, 500U}) {
+        const LockedIds ids = randomIds(random, count);
+        const LockText text = parsed(formatLock(ids));
+        EXPECT_EQ(text.ids, ids);
+        EXPECT_TRUE(text.repeated.empty());
+    }
+    EXPECT_EQ(parsed(formatLock({{0, 3}})).ids, (LockedIds{{0, 3}}));
+}
+
+TEST(LockText, IsSortedByFeatures) {
+    const std::string text = formatLock({{kUnlit, 0}, {kTextured, 2}, {0, 9}, {kNormals, 1}});
+    const std::string keys = text.substr(text.find("version"));
+    EXPECT_EQ(keys, "version 1\n9 -\n2 baseColorTexture texCoord0 normals\n1 normals\n0 unlit\n");
+    EXPECT_TRUE(text.starts_with("# "));
+}
+
+// What a merge that takes both sides leaves, and an editor of another system.
+TEST(LockText, OrderRepetitionAndLineEndsMeanNothing) {
+    const LockText text = parsed(
+        "\xEF\xBB\xBF# mine\r\nversion 1\r\n4 normals clearcoat\r\n\r\n# theirs\nversion 1\n"
+        "  1\tnormals \n4 clearcoat normals\n0 unlit");
+    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 0}, {kNormals, 1}, {kCoated, 4}}));
+    EXPECT_TRUE(text.repeated.empty());
+}
+
+TEST(LockText, LowerOfTwoIdsOfAKeyCounts) {
+    const LockText text = parsed("version 1\n7 unlit\n3 unlit\n5 unlit\n");
+    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 3}}));
+    ASSERT_EQ(text.repeated.size(), 2U);
+    EXPECT_EQ(text.repeated[0].line, 3);
+    EXPECT_EQ(text.repeated[0].ignored, 7);
+    EXPECT_EQ(text.repeated[1].kept, 3);
+    EXPECT_EQ(text.repeated[1].ignored, 5);
+}
+
+TEST(LockText, MistakesHaveTheirLines) {
+    const std::vector<std::pair<std::string, std::pair<int, std::string>>> mistakes{
+        {"", {1, "ends without"}},
+        {"# only a comment\n\n", {2, "ends without"}},
+        {"\n0 unlit\n", {2, "comes before"}},
+        {"version 2\n", {1, "\"2\""}},
+        {"version\n", {1, "version"}},
+        {"version 1 1\n", {1, "version"}},
+        {"version 1\n<<<<<<< HEAD\n0 unlit\n", {2, "merge conflict"}},
+        {"version 1\n0 unlit\n=======\n", {3, "merge conflict"}},
+        {"version 1\n||||||| base\n", {2, "merge conflict"}},
+        {"<<<<<<< HEAD\n", {1, "merge conflict"}},
+        {"version 1\n>>>>>>> theirs", {2, "merge conflict"}},
+        {"version 1\n-1 unlit\n", {2, "\"-1\" is no shader ID"}},
+        {"version 1\n65536 unlit\n", {2, "\"65536\" is no shader ID"}},
+        {"version 1\n99999999999999999999 unlit\n", {2, "is no shader ID"}},
+        {"version 1\nunlit 0\n", {2, "\"unlit\" is no shader ID"}},
+        {"version 1\n0\n", {2, "no features"}},
+        {"version 1\n0 - unlit\n", {2, "\"unlit\" follows"}},
+        {"version 1\n0 unlit clearcaot\n", {2, "\"clearcaot\" is no feature"}},
+    };
+    for (const auto& [text, expected] : mistakes) {
+        const LockTextError error = failed(text);
+        EXPECT_EQ(error.line, expected.first) << text;
+        EXPECT_NE(error.message.find(expected.second), std::string::npos) << text << ": " << error.message;
+        EXPECT_FALSE(error.hint.empty()) << text;
+    }
+    EXPECT_EQ(failed("version 1\n0 unlit clearcaot\n").unknownFeature, "clearcaot");
+}
+
+// Whatever a file holds, it is read or refused with a line of it, in printable words.
+TEST(LockText, RandomEditsAreReadOrRefused) {
+    RecordProperty("seed", kSeed);
+    std::mt19937 random(kSeed);
+    const std::string whole = formatLock(randomIds(random, 20));
+    const std::string_view pieces[] = {"<<<<<<<",   "version 1\n", "version 9", "-",    "\n", "\r", " ",
+                                       "999999999", "unlit",       "#",         "\xFF", "",   "0",  "\t"};
+    int accepted = 0;
+    int refused = 0;
+    for (int round = 0; round < 20'000; ++round) {
+        std::string text = whole;
+        for (std::size_t edits = 1 + random() % 3; edits > 0; --edits) {
+            const std::size_t place = random() % (text.size() + 1);
+            const std::size_t erased = random() % 3 == 0 ? random() % 60 : random() % 2;
+            text.replace(place, erased, pieces[random() % std::size(pieces)]);
+        }
+        text += random() % 8 == 0 ? std::string(1, '\0') : "";
+        const std::variant<LockText, LockTextError> result = parseLock(text);
+        if (const auto* error = std::get_if<LockTextError>(&result)) {
+            ++refused;
+            const auto lines = 1 + std::ranges::count(text, '\n');
+            ASSERT_TRUE(error->line >= 1 && error->line <= lines) << text;
+            ASSERT_TRUE(std::ranges::all_of(error->message, [](char c) { return c >= ' ' && c <= '~'; }));
+        } else {
+            ++accepted;
+            const LockedIds& ids = std::get<LockText>(result).ids;
+            ASSERT_EQ(parsed(formatLock(ids)).ids, ids);
+        }
+    }
+    EXPECT_GT(accepted, 300);
+    EXPECT_GT(refused, 1000);
+}
+
+}  // namespace

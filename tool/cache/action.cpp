@@ -1,0 +1,104 @@
+#include "cache/action.h"
+
+#include "base/files.h"
+#include "cache/packing.h"
+
+#include <algorithm>
+#include <system_error>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool isCurrent(const FileState& file) {
+    std::error_code error;
+    if (fs::file_size(file.path, error) != file.bytes || error ||
+        (!file.real.empty() && realPath(file.path) != file.real)) {
+        return false;
+    }
+    const std::optional<FileState> now = stateOf(file.path);
+    return now && now->bytes == file.bytes && now->hash == file.hash;
+}
+
+void pack(Packer& packer, const std::vector<FileState>& files) {
+    packer.add(files.size());
+    for (const FileState& file : files) {
+        packer.add(std::string_view(file.path))
+            .add(file.bytes)
+            .add(file.hash)
+            .add(std::string_view(file.real));
+    }
+}
+
+std::string textOf(Unpacker& unpacker) {
+    return std::string(unpacker.text().value_or(""));
+}
+
+std::vector<FileState> unpackFiles(Unpacker& unpacker) {
+    std::vector<FileState> files(unpacker.count().value_or(0));
+    for (FileState& file : files) {
+        file.path = textOf(unpacker);
+        file.bytes = unpacker.number().value_or(0);
+        file.hash = unpacker.number().value_or(0);
+        file.real = textOf(unpacker);
+    }
+    return files;
+}
+
+}  // namespace
+
+std::optional<FileState> stateOf(const fs::path& path) {
+    const Result<Bytes> bytes = readFile(path);
+    if (!bytes) {
+        return std::nullopt;
+    }
+    return FileState{path.string(), bytes->size(), hashBytes(*bytes), {}};
+}
+
+std::string realPath(const fs::path& path) {
+    std::error_code error;
+    const fs::path real = fs::canonical(path, error);
+    return error ? std::string() : real.string();
+}
+
+bool isCurrent(const ActionRecord& record) {
+    const auto current = [](const FileState& file) { return isCurrent(file); };
+    return std::ranges::all_of(record.inputs, current) && std::ranges::all_of(record.outputs, current);
+}
+
+std::string pack(const ActionRecord& record) {
+    Packer packer;
+    pack(packer, record.inputs);
+    pack(packer, record.outputs);
+    packer.add(record.diagnostics.size());
+    for (const Diagnostic& diagnostic : record.diagnostics) {
+        packer.add(static_cast<std::uint64_t>(diagnostic.severity));
+        for (const std::string* const text :
+             {&diagnostic.id, &diagnostic.where, &diagnostic.message, &diagnostic.hint}) {
+            packer.add(std::string_view(*text));
+        }
+    }
+    return packer.add(std::string_view(record.summary)).take();
+}
+
+std::optional<ActionRecord> unpackAction(std::string_view bytes) {
+    Unpacker unpacker(bytes);
+    ActionRecord record;
+    record.inputs = unpackFiles(unpacker);
+    record.outputs = unpackFiles(unpacker);
+    record.diagnostics.resize(unpacker.count().value_or(0));
+    for (Diagnostic& diagnostic : record.diagnostics) {
+        const std::uint64_t severity = unpacker.number().value_or(0);
+        diagnostic.severity = severity == 0 ? Severity::Note : Severity::Warning;
+        for (std::string* const text :
+             {&diagnostic.id, &diagnostic.where, &diagnostic.message, &diagnostic.hint}) {
+            *text = textOf(unpacker);
+        }
+    }
+    record.summary = textOf(unpacker);
+    return unpacker.atEnd() ? std::optional(std::move(record)) : std::nullopt;
+}
+
+}  // namespace glint

@@ -1,0 +1,67 @@
+#include "cache/module_cache.h"
+
+#include "cache/packing.h"
+
+#include <cstring>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kKind = "module";
+
+// Whoever adds a count packs it, too.
+static_assert(sizeof(SpirvStatistics) == sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t));
+
+std::string packed(const CachedModule& module) {
+    const SpirvStatistics& counts = module.statistics;
+    Packer packer;
+    for (const std::uint64_t count :
+         {counts.bytes, std::uint64_t{counts.instructions}, std::uint64_t{counts.textureFetches},
+          std::uint64_t{counts.rayQueries}, std::uint64_t{counts.branches}, std::uint64_t{counts.traces},
+          std::uint64_t{counts.functions}}) {
+        packer.add(count);
+    }
+    packer.add(std::string_view(reinterpret_cast<const char*>(module.spirv.data()),
+                                module.spirv.size() * sizeof(std::uint32_t)));
+    return packer.take();
+}
+
+std::optional<CachedModule> unpacked(std::string_view bytes) {
+    CachedModule module;
+    SpirvStatistics& counts = module.statistics;
+    Unpacker unpacker(bytes);
+    counts.bytes = unpacker.number().value_or(0);
+    for (std::uint32_t* const count : {&counts.instructions, &counts.textureFetches, &counts.rayQueries,
+                                       &counts.branches, &counts.traces, &counts.functions}) {
+        *count = static_cast<std::uint32_t>(unpacker.number().value_or(0));
+    }
+    const std::optional<std::string_view> words = unpacker.text();
+    if (!words || !unpacker.atEnd() || words->empty() || words->size() % sizeof(std::uint32_t) != 0) {
+        return std::nullopt;
+    }
+    module.spirv.resize(words->size() / sizeof(std::uint32_t));
+    std::memcpy(module.spirv.data(), words->data(), words->size());
+    return module;
+}
+
+}  // namespace
+
+ModuleCache::ModuleCache(CacheStore& store, std::string compiler)
+    : store_(store), compiler_(std::move(compiler)) {}
+
+std::string ModuleCache::keyOf(std::string_view source) const {
+    return Packer().add(compiler_).add(source).take();
+}
+
+std::optional<CachedModule> ModuleCache::find(std::string_view source) const {
+    const std::optional<std::string> found = store_.find(kKind, keyOf(source));
+    return found ? unpacked(*found) : std::nullopt;
+}
+
+void ModuleCache::put(std::string_view source, const CachedModule& module) const {
+    store_.put(kKind, keyOf(source), packed(module));
+}
+
+}  // namespace glint

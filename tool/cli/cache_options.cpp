@@ -1,0 +1,76 @@
+#include "cli/cache_options.h"
+
+#include "cache/packing.h"
+#include "cli/options.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kNone = "none";
+
+// Whatever the values of these, a command writes the same; and diagnostics are judged when they are reported.
+constexpr std::array<std::string_view, 11> kWithoutEffect = {
+    "--cache", "--cache-size", "--color",  "--depfile", "--depfile-target", "--jobs", "--json",
+    "--quiet", "--verbose",    "--werror", "-W"};
+
+// Empty where it is not set.
+std::string variable(const char* name) {
+    const char* const value = std::getenv(name);
+    return value == nullptr ? std::string() : value;
+}
+
+}  // namespace
+
+void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
+    addText(command, "--cache", arguments.folder, "DIR",
+            "folder that keeps compiled shaders; none: no folder\n"
+            "(default: $GLINT_CACHE, else $XDG_CACHE_HOME/glint,\nelse ~/.cache/glint)")
+        .group("Output");
+    constexpr std::int64_t kLargest = 1 << 20;
+    addInteger(command, "--cache-size", arguments.mebibytes, 1, kLargest,
+               "MiB that the cache may have; what was not used for\nlongest goes")
+        .group("Output");
+}
+
+std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {
+    std::string folder = arguments.folder.empty() ? variable("GLINT_CACHE") : arguments.folder;
+    if (folder == kNone) {
+        return std::nullopt;
+    }
+    if (!folder.empty()) {
+        return folder;
+    }
+    // A relative one is to be ignored: XDG Base Directory Specification, 0.8.
+    const fs::path caches = variable("XDG_CACHE_HOME");
+    if (caches.is_absolute()) {
+        return caches / "glint";
+    }
+    const fs::path home = variable("HOME");
+    return home.is_absolute() ? std::optional(home / ".cache" / "glint") : std::nullopt;
+}
+
+std::string describeOptions(const CLI::App& command) {
+    Packer packer;
+    packer.add(std::string_view(command.get_name()));
+    for (const CLI::Option* const option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || std::ranges::find(kWithoutEffect, name) != kWithoutEffect.end()) {
+            continue;
+        }
+        packer.add(std::string_view(name)).add(option->results().size());
+        for (const std::string& value : option->results()) {
+            packer.add(std::string_view(value));
+        }
+    }
+    return packer.take();
+}
+
+}  // namespace glint

@@ -1,0 +1,41 @@
+// Shell completion scripts, made from the command line's own description.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// What a shell offers after an option, or in place of a positional argument.
+struct ArgumentModel {
+    std::vector<std::string> choices;  // empty: none that are known
+    bool isList = false;               // of choices, separated by commas
+    bool files = false;
+    bool folders = false;
+};
+
+struct OptionModel {
+    std::vector<std::string> names;  // "-o", "--output"
+    std::string help;                // the first line
+    bool takesValue = false;
+    ArgumentModel value;
+};
+
+struct CommandModel {
+    std::string name;
+    std::string help;
+    std::vector<OptionModel> options;
+    ArgumentModel positional;  // of all positionals together
+};
+
+// The commands of `app`, in order, as they are declared.
+std::vector<CommandModel> describeCommands(CLI::App& app);
+
+// The whole script; `options` are those of glint itself.
+std::string bashCompletion(const std::vector<CommandModel>& commands);
+std::string zshCompletion(const std::vector<CommandModel>& commands);
+std::string fishCompletion(const std::vector<CommandModel>& commands);
+
+}  // namespace glint

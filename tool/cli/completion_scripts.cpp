@@ -1,0 +1,240 @@
+// The same model as a script for each shell.
+#include "cli/completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string_view>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kMadeBy =
+    "# Shell completion for glint, made by `glint completion {}`. The version that made it: glint {}.\n";
+
+std::string head(std::string_view shell) {
+    return fmt::format(fmt::runtime(kMadeBy), shell, GLINT_VERSION);
+}
+
+std::vector<std::string> namesOf(const CommandModel& command) {
+    std::vector<std::string> names;
+    for (const OptionModel& option : command.options) {
+        names.insert(names.end(), option.names.begin(), option.names.end());
+    }
+    return names;
+}
+
+std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
+    std::vector<std::string> names;
+    for (const CommandModel& command : commands) {
+        names.push_back(command.name);
+    }
+    return names;
+}
+
+// In single quotes, as bash and zsh take them.
+std::string shellQuoted(std::string_view text) {
+    std::string result = "'";
+    for (const char c : text) {
+        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return result + "'";
+}
+
+// --- bash ---------------------------------------------------------------------------------------
+
+// What fills COMPREPLY for one argument; empty where nothing is known of it.
+std::string bashAction(const ArgumentModel& argument) {
+    if (!argument.choices.empty()) {
+        return fmt::format("{} {}", argument.isList ? "_glint_list" : "_glint_words",
+                           shellQuoted(fmt::format("{}", fmt::join(argument.choices, " "))));
+    }
+    return argument.files ? "_glint_files" : argument.folders ? "_glint_folders" : "";
+}
+
+std::string bashCommand(const CommandModel& command) {
+    std::string text = fmt::format("        {})\n            case $previous in\n", command.name);
+    for (const OptionModel& option : command.options) {
+        if (option.takesValue) {
+            const std::string action = bashAction(option.value);
+            text += fmt::format("                {}) {}; return ;;\n", fmt::join(option.names, "|"),
+                                action.empty() ? ":" : action);
+        }
+    }
+    const std::string positional = bashAction(command.positional);
+    return text + fmt::format(
+                      "            esac\n"
+                      "            if [[ $current == -* ]]; then\n"
+                      "                _glint_words {}\n"
+                      "            else\n"
+                      "                {}\n"
+                      "            fi\n"
+                      "            ;;\n",
+                      shellQuoted(fmt::format("{}", fmt::join(namesOf(command), " "))),
+                      positional.empty() ? ":" : positional);
+}
+
+// `current` is the word up to the cursor, `previous` the option that it belongs to: bash takes --merge=none
+// apart at the sign.
+constexpr std::string_view kBashHelpers = R"(
+_glint_words() {
+    mapfile -t COMPREPLY < <(compgen -W "$1" -- "$current")
+}
+
+# The last of several values that commas separate.
+_glint_list() {
+    local before=
+    [[ $current == *,* ]] && before=${current%,*},
+    mapfile -t COMPREPLY < <(compgen -P "$before" -W "$1" -- "${current##*,}")
+    compopt -o nospace 2>/dev/null
+}
+
+_glint_files() {
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+}
+
+_glint_folders() {
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -d -- "$current")
+}
+
+_glint() {
+    local current=${COMP_WORDS[COMP_CWORD]} previous=
+    ((COMP_CWORD > 0)) && previous=${COMP_WORDS[COMP_CWORD - 1]}
+    if [[ $current == = ]]; then
+        current=
+    elif [[ $previous == = ]]; then
+        previous=${COMP_WORDS[COMP_CWORD - 2]}
+    fi
+    COMPREPLY=()
+    if ((COMP_CWORD == 1)); then
+)";
+
+// --- zsh ----------------------------------------------------------------------------------------
+
+// Within _arguments brackets and colons have a meaning of their own.
+std::string escaped(std::string_view text, std::string_view special) {
+    std::string result;
+    for (const char c : text) {
+        if (special.find(c) != std::string_view::npos) {
+            result += '\\';
+        }
+        result += c;
+    }
+    return result;
+}
+
+std::string zshAction(const ArgumentModel& argument) {
+    if (!argument.choices.empty()) {
+        const std::string choices = fmt::format("{}", fmt::join(argument.choices, " "));
+        return argument.isList ? fmt::format("_values -s , value {}", choices) : fmt::format("({})", choices);
+    }
+    return argument.files ? "_files" : argument.folders ? "_files -/" : " ";
+}
+
+std::string zshCommand(const CommandModel& command) {
+    std::string text = fmt::format("                {})\n                    _arguments \\\n", command.name);
+    for (const OptionModel& option : command.options) {
+        for (const std::string& name : option.names) {
+            const bool isLong = name.starts_with("--");
+            const std::string value =
+                option.takesValue ? fmt::format(":value:{}", zshAction(option.value)) : std::string();
+            text += fmt::format("                        {} \\\n",
+                                shellQuoted(fmt::format("{}{}[{}]{}", name, option.takesValue && isLong ? "=" : "",
+                                                   escaped(option.help, "[]:\\"), value)));
+        }
+    }
+    return text + fmt::format("                        {}\n                    ;;\n",
+                              shellQuoted("*:argument:" + zshAction(command.positional)));
+}
+
+// --- fish ---------------------------------------------------------------------------------------
+
+std::string fishQuoted(std::string_view text) {
+    return "'" + escaped(text, "'\\") + "'";
+}
+
+std::string fishOption(const CommandModel& command, const OptionModel& option) {
+    std::string line = fmt::format("complete -c glint -n '__fish_seen_subcommand_from {}'", command.name);
+    for (const std::string& name : option.names) {
+        line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+    }
+    if (option.takesValue) {
+        const ArgumentModel& value = option.value;
+        line += !value.choices.empty()
+                    ? " -x -a " + fishQuoted(fmt::format("{}", fmt::join(value.choices, " ")))
+                : value.files   ? " -r -F"
+                : value.folders ? " -x -a '(__fish_complete_directories)'"
+                                : " -x";
+    }
+    return line + " -d " + fishQuoted(option.help) + "\n";
+}
+
+}  // namespace
+
+std::string bashCompletion(const std::vector<CommandModel>& commands) {
+    std::string text = head("bash") + std::string(kBashHelpers);
+    text += fmt::format("        _glint_words {}\n        return\n    fi\n    case ${{COMP_WORDS[1]}} in\n",
+                        shellQuoted(fmt::format("{} --help --version", fmt::join(namesOf(commands), " "))));
+    for (const CommandModel& command : commands) {
+        text += bashCommand(command);
+    }
+    return text + "    esac\n}\n\ncomplete -F _glint glint\n";
+}
+
+std::string zshCompletion(const std::vector<CommandModel>& commands) {
+    std::string text = "#compdef glint\n" + head("zsh") +
+                       "\n_glint() {\n"
+                       "    local -a commands=(\n";
+    for (const CommandModel& command : commands) {
+        text += fmt::format("        {}\n", shellQuoted(command.name + ":" + escaped(command.help, ":\\")));
+    }
+    text +=
+        "    )\n"
+        "    local context state state_descr line\n"
+        "    typeset -A opt_args\n"
+        "    _arguments -C '(- *)--help[print help]' '(- *)--version[print the version]' "
+        "'1:command:->command' '*::argument:->argument'\n"
+        "    case $state in\n"
+        "        command) _describe command commands ;;\n"
+        "        argument)\n"
+        "            case $words[1] in\n";
+    for (const CommandModel& command : commands) {
+        text += zshCommand(command);
+    }
+    return text +
+           "            esac\n"
+           "            ;;\n"
+           "    esac\n"
+           "}\n\n"
+           "if [[ $funcstack[1] == _glint ]]; then\n"
+           "    _glint \"$@\"\n"
+           "else\n"
+           "    compdef _glint glint\n"
+           "fi\n";
+}
+
+std::string fishCompletion(const std::vector<CommandModel>& commands) {
+    std::string text = head("fish") + "\n";
+    for (const CommandModel& command : commands) {
+        text += fmt::format("complete -c glint -n __fish_use_subcommand -x -a {} -d {}\n", command.name,
+                            fishQuoted(command.help));
+    }
+    for (const CommandModel& command : commands) {
+        text += "\n";
+        const ArgumentModel& positional = command.positional;
+        if (!positional.choices.empty() || !(positional.files || positional.folders)) {
+            text +=
+                fmt::format("complete -c glint -n '__fish_seen_subcommand_from {}' -f -a {}\n", command.name,
+                            fishQuoted(fmt::format("{}", fmt::join(positional.choices, " "))));
+        }
+        for (const OptionModel& option : command.options) {
+            text += fishOption(command, option);
+        }
+    }
+    return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+#include "cli/depfile.h"
+
+#include "base/files.h"
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+namespace glint {
+
+namespace {
+
+// Syntax of Make or Ninja, which both take literally after a backslash.
+constexpr std::string_view kEscaped = " #:";
+// Ninja ends a name here (its depfile parser knows the characters of names), Make at some of them.
+constexpr std::string_view kImpossible = "\"&'*;<>?^`|\t\n\r";
+// Make takes a line with a '=' for an assignment, one with a '%' left of the colon for a pattern.
+constexpr std::string_view kNotInTargets = "=%";
+
+bool isAmong(char c, std::string_view characters) {
+    return characters.find(c) != std::string_view::npos;
+}
+
+Diagnostic nameError(std::string_view name, const std::string& why) {
+    return makeError("depfile-name", std::string(name),
+                     "can't stand in a file that Make and Ninja read: " + why,
+                     "rename the file, or leave out --depfile");
+}
+
+Result<std::string> escape(std::string_view name, bool isTarget) {
+    std::string text;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const char c = name[i];
+        const bool isLast = i + 1 == name.size();
+        if (isAmong(c, kImpossible) || (isTarget && isAmong(c, kNotInTargets))) {
+            return nameError(name, c < ' ' ? "it has a control character" : fmt::format("it has a {}", c));
+        }
+        if (c == '\\' && (isLast || isAmong(name[i + 1], kEscaped))) {
+            return nameError(name, "they disagree about its backslash");
+        }
+        if (c == ':' && isLast) {
+            return nameError(name, "it ends in a colon");
+        }
+        text += c == '$' ? "$" : isAmong(c, kEscaped) ? "\\" : "";
+        text += c;
+    }
+    // Make takes a leading ~ for a home folder.
+    if (text.starts_with('~')) {
+        text.insert(0, "./");
+    }
+    return text;
+}
+
+}  // namespace
+
+void addDepfileOptions(CLI::App& command, DepfileArguments& arguments) {
+    addText(command, "--depfile", arguments.file, "FILE", "list what was read, for Make and Ninja")
+        .group("Output");
+    addTexts(command, "--depfile-target", arguments.targets, "NAME",
+             "what the list is of (default: the package's\nmanifest.json, else the file of --embed)")
+        .group("Output")
+        ->allow_extra_args(false);
+}
+
+Result<std::string> makeDepfile(std::span<const std::string> targets,
+                                std::span<const std::string> dependencies) {
+    std::string text;
+    for (const std::string& target : targets) {
+        const Result<std::string> escaped = escape(target, true);
+        if (!escaped) {
+            return escaped;
+        }
+        if (!text.empty()) {
+            text += ' ';
+        }
+        text += *escaped;
+    }
+    text += ':';
+    // Make takes what follows the colon for an assignment if the first name has a '='.
+    std::vector<std::string_view> names(dependencies.begin(), dependencies.end());
+    std::ranges::stable_partition(names, [](std::string_view name) { return !isAmong('=', name); });
+    std::set<std::string_view> known;
+    for (const std::string_view name : names) {
+        if (!known.insert(name).second) {
+            continue;
+        }
+        const Result<std::string> escaped = escape(name, false);
+        if (!escaped) {
+            return escaped;
+        }
+        text += " \\\n  ";
+        text += *escaped;
+    }
+    if (!names.empty() && isAmong('=', names.front())) {
+        return nameError(names.front(), "every name has a '='");
+    }
+    text += '\n';
+    return text;
+}
+
+Status writeDepfile(const DepfileArguments& arguments, std::span<const std::string> dependencies) {
+    if (arguments.file.empty()) {
+        return okStatus();
+    }
+    const Result<std::string> text = makeDepfile(arguments.targets, dependencies);
+    return text ? writeFile(arguments.file, *text) : Status(text.error());
+}
+
+}  // namespace glint

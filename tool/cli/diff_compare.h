@@ -1,0 +1,81 @@
+// What is different between two packages.
+#pragma once
+
+#include "cli/diff_package.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct SettingChange {
+    std::string name;
+    std::string before;  // "-" where a package lacks the setting
+    std::string after;
+};
+
+enum class ShaderChangeKind : std::uint8_t {
+    Added,
+    Removed,
+    Moved,      // another ID
+    Renamed,    // the same ID
+    Keys,       // the same ID and name, other keys
+    Merged,     // several became one
+    Split,      // one became several
+    Regrouped,  // several became several others
+};
+
+// Shaders that have keys in common, directly or by way of others.
+struct ShaderChange {
+    ShaderChangeKind kind{};
+    std::vector<int> before;  // shader IDs, ascending
+    std::vector<int> after;
+    std::vector<std::vector<std::string>> keysAdded;
+    std::vector<std::vector<std::string>> keysRemoved;
+};
+
+// A module of both packages whose SPIR-V differs, or one that only one has. Modules of cases belong together
+// where their cases do.
+struct ModuleChange {
+    package::ModuleKey key;       // index 0 for those of cases
+    std::optional<int> idBefore;  // of cases
+    std::optional<int> idAfter;
+    const DiffModule* before = nullptr;
+    const DiffModule* after = nullptr;
+};
+
+struct MaterialChange {
+    DiffMaterial material;
+    std::vector<int> before;  // shader IDs; empty: it was not in use
+    std::vector<int> after;
+};
+
+struct TotalChange {
+    std::string name;
+    std::uint64_t before = 0;
+    std::uint64_t after = 0;
+};
+
+struct PackageDiff {
+    std::vector<SettingChange> settings;
+    std::vector<ShaderChange> shaders;
+    std::vector<ModuleChange> modules;
+    std::vector<MaterialChange> materials;
+    std::vector<TotalChange> totals;
+    bool tablesDiffer = false;
+    // What both have alike.
+    std::size_t sameShaders = 0;
+    std::size_t sameModules = 0;
+    std::size_t sameMaterials = 0;
+
+    bool isEmpty() const {
+        return settings.empty() && shaders.empty() && modules.empty() && materials.empty() && !tablesDiffer;
+    }
+};
+
+// Valid as long as the packages.
+PackageDiff comparePackages(const DiffPackage& before, const DiffPackage& after);
+
+}  // namespace glint

@@ -1,0 +1,23 @@
+// What `glint diff` prints.
+#pragma once
+
+#include "cli/diff_compare.h"
+#include "cli/report.h"
+
+#include <string>
+
+namespace glint {
+
+// What `diff` is of, and what they are called.
+struct DiffSides {
+    std::string nameBefore;  // folders, as given
+    std::string nameAfter;
+    const DiffPackage& before;
+    const DiffPackage& after;
+};
+
+// Tables of what differs, and a line that counts what does not.
+std::string diffText(const PackageDiff& diff, const DiffSides& sides);
+Json diffJson(const PackageDiff& diff, const DiffSides& sides);
+
+}  // namespace glint

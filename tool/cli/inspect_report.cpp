@@ -1,0 +1,229 @@
+#include "cli/inspect_package.h"
+#include "cli/module_report.h"
+#include "cli/table.h"
+#include "emit/json.h"
+
+#include <fmt/format.h>
+
+namespace glint {
+
+namespace {
+
+Json describe(const InspectedPackage& inspected, const InspectedModule& module) {
+    const package::RoleInfo& info = *package::findRole(module.entry->role);
+    const bool isCase = info.repeated == package::Repeated::ByCase;
+    return {{"role", std::string(info.name)},
+            {"shaderId", isCase ? Json(module.entry->index) : Json(nullptr)},
+            {"tracer", textOrNull(tracerName(module.key()))},
+            {"ordering", textOrNull(orderingName(module.key()))},
+            {"file", inspected.file(module)}};
+}
+
+Json modulesToJson(const InspectedPackage& inspected) {
+    Json list = Json::array();
+    for (const InspectedModule& module : inspected.modules) {
+        Json entry = describe(inspected, module);
+        entry.update(statisticsToJson(module.statistics));
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+Json stagesOf(const InspectedPackage& inspected, std::uint32_t shaderId) {
+    Json stages = Json::object();
+    for (const InspectedModule* module : inspected.modulesOf(shaderId)) {
+        Json entry{{"file", inspected.file(*module)}};
+        entry.update(statisticsToJson(module->statistics));
+        stages[std::string(stageName(module->key()))] = std::move(entry);
+    }
+    return stages;
+}
+
+Json shadersToJson(const InspectedPackage& inspected) {
+    Json list = Json::array();
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : inspected.package.cases()) {
+        Json materials = Json::array();
+        const auto found = inspected.materials.find(id);
+        if (found != inspected.materials.end()) {
+            for (const MaterialPlace& material : found->second) {
+                materials.push_back(Json{{"scene", material.first},
+                                         {"index", material.second},
+                                         {"name", inspected.materialName(material)}});
+            }
+        }
+        list.push_back(Json{{"id", id},
+                            {"name", std::string(inspected.package.string(shader.name))},
+                            {"always", featuresToJson(shader.always)},
+                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"keys", shader.keyCount},
+                            {"materials", materials},
+                            {"stages", stagesOf(inspected, id)}});
+        ++id;
+    }
+    return list;
+}
+
+Json scenesToJson(const InspectedPackage& inspected) {
+    Json list = Json::array();
+    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
+        const PackageScene scene = inspected.package.scene(i);
+        list.push_back(Json{{"name", std::string(scene.name)},
+                            {"variant", textOrNull(inspected.variantOf(i))},
+                            {"materials", scene.materials.size()},
+                            {"primitives", scene.primitives.size()},
+                            {"textures", scene.textures.size()},
+                            {"samplers", scene.samplers.size()}});
+    }
+    return list;
+}
+
+std::string skyOf(const Package& package) {
+    return package.environmentMap() ? "map" : "gradient";
+}
+
+std::string sceneTable(const InspectedPackage& inspected) {
+    std::vector<std::vector<std::string>> rows{
+        {"scene", "variant", "materials", "primitives", "textures", "samplers"}};
+    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
+        const PackageScene scene = inspected.package.scene(i);
+        const std::string variant = inspected.variantOf(i);
+        rows.push_back({std::string(scene.name), variant.empty() ? "-" : variant,
+                        fmt::format("{}", scene.materials.size()), fmt::format("{}", scene.primitives.size()),
+                        fmt::format("{}", scene.textures.size()), fmt::format("{}", scene.samplers.size())});
+    }
+    return formatTable(rows);
+}
+
+// The first few names, and how many more there are.
+std::string materialsText(const InspectedPackage& inspected, std::uint32_t shaderId) {
+    constexpr std::size_t kShown = 3;
+    const auto found = inspected.materials.find(shaderId);
+    if (found == inspected.materials.end()) {
+        return "-";
+    }
+    std::vector<std::string> names;
+    for (const MaterialPlace& material : found->second) {
+        if (names.size() < kShown) {
+            names.push_back(inspected.materialName(material));
+        }
+    }
+    const std::size_t more = found->second.size() - names.size();
+    return join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
+}
+
+std::string shaderTable(const InspectedPackage& inspected) {
+    std::vector<std::vector<std::string>> rows{{"id", "shader", "keys", "always", "sometimes", "materials"}};
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : inspected.package.cases()) {
+        rows.push_back({fmt::format("{}", id), std::string(inspected.package.string(shader.name)),
+                        fmt::format("{}", shader.keyCount), featureList(shader.always),
+                        featureList(shader.sometimes), materialsText(inspected, id)});
+        ++id;
+    }
+    return formatTable(rows);
+}
+
+// The shader's ID or the ordering, where a role has several.
+std::string whichText(const InspectedModule& module) {
+    const bool isCase = package::findRole(module.entry->role)->repeated == package::Repeated::ByCase;
+    const std::string ordering = orderingName(module.key());
+    return isCase ? fmt::format(" {}", module.entry->index) : ordering.empty() ? "" : " " + ordering;
+}
+
+std::string titleOf(const InspectedModule& module) {
+    return std::string(package::roleName(module.entry->role)) + whichText(module);
+}
+
+std::string moduleTable(const InspectedPackage& inspected) {
+    std::vector<std::vector<std::string>> rows{
+        {"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
+    for (const InspectedModule& module : inspected.modules) {
+        const std::string tracer = tracerName(module.key());
+        const SpirvStatistics& it = module.statistics;
+        rows.push_back({titleOf(module), tracer.empty() ? "-" : tracer, inspected.file(module),
+                        fmt::format("{}", it.bytes), fmt::format("{}", it.instructions),
+                        fmt::format("{}", it.textureFetches), fmt::format("{}", it.rayQueries),
+                        fmt::format("{}", it.branches)});
+    }
+    return formatTable(rows);
+}
+
+std::string hitLobesText(const Manifest& manifest) {
+    return manifest.hitLobes.size() == featureNames(kLobeMask).size() ? "all" : join(manifest.hitLobes);
+}
+
+}  // namespace
+
+Json toJson(const InspectedPackage& inspected) {
+    const Package& package = inspected.package;
+    const Manifest& manifest = inspected.manifest;
+    return {{"package", inspected.folder},
+            {"version", package::kVersion},
+            {"tool", manifest.toolVersion},
+            {"strategies", strategyNames(package.shape().strategies)},
+            {"tracers", tracerNames(package.shape().tracers)},
+            {"merge", manifest.merge},
+            {"alpha", package.alphaTested() ? "tested" : "opaque"},
+            {"scenes", scenesToJson(inspected)},
+            {"settings",
+             {{"hitLobes", manifest.hitLobes},
+              {"energyCompensation", manifest.energyCompensation},
+              {"textureLod", manifest.textureLod},
+              {"shadows", std::string(package::nameOf(package.shape().shadows))},
+              {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+              {"sky", skyOf(package)}}},
+            {"counts",
+             {{"cases", inspected.caseCount()},
+              {"buckets", package.bucketCount()},
+              {"modules", package.modules().size()},
+              {"uniqueSpirv", inspected.uniqueFiles()}}},
+            {"spirvBytes", inspected.spirvBytes()},
+            {"shaders", shadersToJson(inspected)},
+            {"modules", modulesToJson(inspected)}};
+}
+
+std::string toText(const InspectedPackage& inspected) {
+    const Package& package = inspected.package;
+    const Manifest& manifest = inspected.manifest;
+    const std::string summary = formatFields(
+        {{"package", inspected.folder},
+         {"made by", fmt::format("glint {}, format {}", manifest.toolVersion, package::kVersion)},
+         {"strategies", join(strategyNames(package.shape().strategies))},
+         {"tracers", join(tracerNames(package.shape().tracers))},
+         {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
+         {"hit record", std::string(package::nameOf(package.hitRecord()))},
+         {"sky", skyOf(package)},
+         {"merge", manifest.merge},
+         {"alpha", package.alphaTested() ? "tested" : "opaque"},
+         {"hit lobes", hitLobesText(manifest)},
+         {"energy compensation", manifest.energyCompensation ? "on" : "off"},
+         {"texture LOD", manifest.textureLod},
+         {"cases", fmt::format("{}", inspected.caseCount())},
+         {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),
+                                inspected.uniqueFiles(), formatBytes(inspected.spirvBytes()))}});
+    return summary + "\n" + sceneTable(inspected) + "\n" + shaderTable(inspected) + "\n" +
+           moduleTable(inspected);
+}
+
+Json toJson(const InspectedPackage& inspected, const std::vector<Disassembly>& list) {
+    Json modules = Json::array();
+    for (const Disassembly& entry : list) {
+        Json module = describe(inspected, *entry.module);
+        module["text"] = entry.text;
+        modules.push_back(std::move(module));
+    }
+    return {{"package", inspected.folder}, {"disassembly", modules}};
+}
+
+std::string toText(const InspectedPackage& inspected, const std::vector<Disassembly>& list) {
+    std::string text;
+    for (const Disassembly& entry : list) {
+        const std::string tracer = tracerName(entry.module->key());
+        text += fmt::format("{}; {}: {}{}\n{}", text.empty() ? "" : "\n", inspected.file(*entry.module),
+                            titleOf(*entry.module), tracer.empty() ? "" : ", " + tracer, entry.text);
+    }
+    return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,44 @@
+// --lock FILE: shader IDs that stay the same from build to build, kept in a file.
+#pragma once
+
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+
+#include <glint/result.h>
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct LockArguments {
+    std::string file;        // empty: none
+    bool frozen = false;     // --locked: error rather than change the file
+    bool prune = false;      // --lock-prune: keys that no scene has go
+    bool isWritten = false;  // by the command; else the file must be there
+};
+
+// --lock FILE, for commands that only read it.
+void addLockInput(CLI::App& command, LockArguments& arguments);
+// --lock FILE, --locked and --lock-prune, for commands that write it.
+void addLockOptions(CLI::App& command, LockArguments& arguments);
+
+struct LockChoice {
+    std::optional<std::string> text;  // what is to be written; nothing where the file stays as it is
+    std::vector<Diagnostic> warnings;
+    std::vector<Diagnostic> notes;
+};
+
+// Reads the file and hands its IDs to `options`; does nothing without one. Warns of keys whose IDs clash
+// ("lock-conflict"); notes tell of other IDs that change ("lock-moved") and of keys that no scene has
+// ("lock-stale"). Errors: of readFile() and checkOutputFile(); "lock-format" with the line; "lock-outdated"
+// where --locked and something would change.
+Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& scenes, PlanOptions& options);
+
+// Errors of writeFile().
+Status writeLock(const LockArguments& arguments, const LockChoice& choice);
+
+}  // namespace glint

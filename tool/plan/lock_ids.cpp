@@ -1,0 +1,80 @@
+#include "plan/lock_ids.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+
+namespace glint {
+
+namespace {
+
+constexpr int kNone = -1;
+
+// A case whose keys have an ID in the lock.
+struct Claim {
+    int keys = 0;  // of the case, that have the ID
+    double share = 0.0;
+    int id = 0;
+    std::size_t shaderCase = 0;
+};
+
+// Whether `a` comes first.
+bool isStronger(const Claim& a, const Claim& b) {
+    if (a.keys != b.keys) {
+        return a.keys > b.keys;
+    }
+    if (a.share != b.share) {
+        return a.share > b.share;
+    }
+    return a.id != b.id ? a.id < b.id : a.shaderCase < b.shaderCase;
+}
+
+std::vector<Claim> claimsOf(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
+                            const LockedIds& locked) {
+    std::vector<Claim> claims;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        double share = 0.0;
+        std::map<int, int> keysById;
+        for (const int index : cases[i].keys) {
+            const WeightedKey& key = keys[static_cast<std::size_t>(index)];
+            share += key.share;
+            if (const auto found = locked.find(key.mask); found != locked.end()) {
+                ++keysById[found->second];
+            }
+        }
+        for (const auto& [id, count] : keysById) {
+            claims.push_back({count, share, id, i});
+        }
+    }
+    std::ranges::sort(claims, isStronger);
+    return claims;
+}
+
+}  // namespace
+
+std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
+                                 const LockedIds& locked) {
+    std::vector<int> ids(cases.size(), kNone);
+    std::set<int> taken;
+    for (const Claim& claim : claimsOf(keys, cases, locked)) {
+        if (ids[claim.shaderCase] == kNone && taken.insert(claim.id).second) {
+            ids[claim.shaderCase] = claim.id;
+        }
+    }
+    // IDs of the lock are for its keys, which may come back.
+    for (const auto& [mask, id] : locked) {
+        taken.insert(id);
+    }
+    int next = 0;
+    for (int& id : ids) {
+        if (id == kNone) {
+            while (taken.contains(next)) {
+                ++next;
+            }
+            id = next++;
+        }
+    }
+    return ids;
+}
+
+}  // namespace glint

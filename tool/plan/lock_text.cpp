@@ -1,0 +1,189 @@
+#include "plan/lock_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kHeader =
+    "# Shader IDs of Glint: a line a key, with its ID and its features. Written by glint compile --lock; "
+    "commit\n"
+    "# it, so that IDs stay the same from build to build. In a merge conflict keep the lines of both sides, "
+    "in\n"
+    "# any order: where two keys claim one ID, the next compile gives one of them a new one, and says so.\n";
+constexpr std::string_view kVersionWord = "version";
+constexpr int kVersion = 1;
+constexpr std::string_view kNoFeatures = "-";
+constexpr std::array<std::string_view, 4> kMarkers{"<<<<<<<", "|||||||", "=======", ">>>>>>>"};
+
+// Part of a line that may be anything, for a message.
+std::string quote(std::string_view word) {
+    constexpr std::size_t kMaxLength = 40;
+    std::string text;
+    for (const char character : word.substr(0, kMaxLength)) {
+        text += character >= ' ' && character <= '~' ? character : '?';
+    }
+    return fmt::format("\"{}{}\"", text, word.size() > kMaxLength ? "..." : "");
+}
+
+// Takes the next word off the front of `rest`; empty where there is none.
+std::string_view takeWord(std::string_view& rest) {
+    constexpr std::string_view kBlanks = " \t\r";
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+    const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
+    rest.remove_prefix(word.size());
+    return word;
+}
+
+std::optional<int> parseNumber(std::string_view word, int max) {
+    int value = 0;
+    const char* end = word.data() + word.size();
+    const auto parsed = std::from_chars(word.data(), end, value);
+    const bool isWhole = parsed.ec == std::errc() && parsed.ptr == end && !word.empty();
+    return isWhole && value >= 0 && value <= max ? std::optional(value) : std::nullopt;
+}
+
+class Parser {
+public:
+    std::variant<LockText, LockTextError> parse(std::string_view text) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (text.starts_with(kByteOrderMark)) {
+            text.remove_prefix(kByteOrderMark.size());
+        }
+        while (!text.empty() && !error_) {
+            const std::string_view line = text.substr(0, text.find('\n'));
+            text.remove_prefix(std::min(line.size() + 1, text.size()));
+            ++line_;
+            parseLine(line);
+        }
+        if (!error_ && !hasVersion_) {
+            line_ = std::max(line_, 1);
+            fail(fmt::format("ends without a line \"{} {}\"", kVersionWord, kVersion),
+                 "this is no lock file");
+        }
+        return error_ ? std::variant<LockText, LockTextError>(*error_) : std::move(lock_);
+    }
+
+private:
+    void fail(std::string message, std::string hint, std::string_view unknownFeature = {}) {
+        error_ = {line_, std::move(message), std::move(hint), std::string(unknownFeature)};
+    }
+
+    void parseLine(std::string_view line) {
+        std::string_view rest = line;
+        const std::string_view first = takeWord(rest);
+        if (first.empty() || first.starts_with('#')) {
+            return;
+        }
+        const auto isMarker = [&](std::string_view marker) { return first.starts_with(marker); };
+        if (std::ranges::any_of(kMarkers, isMarker)) {
+            fail("a merge conflict was left unresolved",
+                 "keep the lines of both sides, and take out the markers");
+        } else if (first == kVersionWord) {
+            parseVersion(rest);
+        } else if (!hasVersion_) {
+            fail(fmt::format("{} comes before a line \"{} {}\"", quote(first), kVersionWord, kVersion),
+                 "this is no lock file, or a merge took its head off");
+        } else {
+            parseKey(first, rest);
+        }
+    }
+
+    // The line may stand twice: where both branches of a merge have made the file.
+    void parseVersion(std::string_view rest) {
+        const std::string_view word = takeWord(rest);
+        if (word != fmt::format("{}", kVersion) || !takeWord(rest).empty()) {
+            fail(fmt::format("is of version {}; this glint reads {}", quote(word), kVersion),
+                 "use the version of Glint that wrote the file");
+        }
+        hasVersion_ = true;
+    }
+
+    void parseKey(std::string_view first, std::string_view rest) {
+        const std::optional<int> id = parseNumber(first, kMaxLockedId);
+        if (!id) {
+            fail(fmt::format("{} is no shader ID, a number from 0 to {}", quote(first), kMaxLockedId),
+                 "a line is a shader ID and the names of features");
+            return;
+        }
+        const FeatureMask mask = parseFeatures(rest);
+        if (error_) {
+            return;
+        }
+        const auto [known, isNew] = lock_.ids.emplace(mask, *id);
+        if (!isNew && known->second != *id) {
+            const auto [low, high] = std::minmax({known->second, *id});
+            lock_.repeated.push_back({line_, mask, low, high});
+            known->second = low;
+        }
+    }
+
+    FeatureMask parseFeatures(std::string_view rest) {
+        FeatureMask mask = 0;
+        std::string_view word = takeWord(rest);
+        if (word.empty()) {
+            fail("has a shader ID and no features",
+                 fmt::format("a key without features is written \"{}\"", kNoFeatures));
+        }
+        if (word == kNoFeatures) {
+            word = takeWord(rest);
+            if (!word.empty()) {
+                fail(fmt::format("{} follows \"{}\", which stands for no features", quote(word), kNoFeatures),
+                     fmt::format("take out \"{}\"", kNoFeatures));
+            }
+            return mask;
+        }
+        for (; !word.empty() && !error_; word = takeWord(rest)) {
+            const std::span<const FeatureInfo> table = featureTable();
+            const auto row = std::ranges::find(table, word, &FeatureInfo::name);
+            if (row == table.end()) {
+                fail(fmt::format("{} is no feature", quote(word)),
+                     "mend the name, or use the version of Glint that wrote it", word);
+                break;
+            }
+            mask |= bit(row->feature);
+        }
+        return mask;
+    }
+
+    LockText lock_;
+    std::optional<LockTextError> error_;
+    int line_ = 0;
+    bool hasVersion_ = false;
+};
+
+}  // namespace
+
+std::variant<LockText, LockTextError> parseLock(std::string_view text) {
+    return Parser().parse(text);
+}
+
+std::string formatLock(const LockedIds& ids) {
+    std::vector<std::pair<std::string, int>> lines;
+    lines.reserve(ids.size());
+    for (const auto& [mask, id] : ids) {
+        lines.emplace_back(lockKeyName(mask), id);
+    }
+    std::ranges::sort(lines);
+    std::string text = fmt::format("{}{} {}\n", kHeader, kVersionWord, kVersion);
+    for (const auto& [features, id] : lines) {
+        text += fmt::format("{} {}\n", id, features);
+    }
+    return text;
+}
+
+std::string lockKeyName(FeatureMask mask) {
+    const std::vector<std::string_view> names = featureNames(mask);
+    return names.empty() ? std::string(kNoFeatures) : fmt::format("{}", fmt::join(names, " "));
+}
+
+}  // namespace glint

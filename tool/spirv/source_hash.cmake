@@ -1,0 +1,12 @@
+# cmake -DFOLDER=… -DOUTPUT=file.h -P source_hash.cmake: a header with one hash of the folder's C++ files.
+file(GLOB files RELATIVE "${FOLDER}" "${FOLDER}/*.h" "${FOLDER}/*.cpp")
+list(SORT files)
+set(all "")
+foreach(name IN LISTS files)
+  file(SHA256 "${FOLDER}/${name}" hash)
+  string(APPEND all "${name} ${hash}\n")
+endforeach()
+string(SHA256 hash "${all}")
+string(CONCAT header "// Made by tool/spirv/source_hash.cmake. Do not edit.\n#pragma once\n\nnamespace glint {\n\n"
+              "inline constexpr const char* kSpirvSourceHash = \"${hash}\";\n\n}  // namespace glint\n")
+file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT "${header}" @ONLY)
