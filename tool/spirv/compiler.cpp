@@ -2,9 +2,11 @@
 
 #include "spirv/optimize.h"
 
+#include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
+#include <glslang/build_info.h>
 #include <spirv-tools/libspirv.hpp>
 
 #include <charconv>
@@ -134,6 +136,14 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
         return valid.error();
     }
     return optimized;
+}
+
+bool supportsPositionFetch() {
+    return GLSLANG_VERSION_MAJOR > 12 || (GLSLANG_VERSION_MAJOR == 12 && GLSLANG_VERSION_MINOR >= 2);
+}
+
+std::string glslangVersion() {
+    return fmt::format("{}.{}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR);
 }
 
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {

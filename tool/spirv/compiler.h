@@ -28,6 +28,11 @@ struct ShaderCompileOptions {
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
 
+// Whether the glslang that this was built with knows GL_EXT_ray_tracing_position_fetch.
+bool supportsPositionFetch();
+// Its version, "12.0".
+std::string glslangVersion();
+
 // Text form of a module, for people.
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words);
 
