@@ -44,8 +44,8 @@ TEST_P(PositionFetch, GivesTheSameImage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Strategies, PositionFetch, ::testing::Values("uber", "hit-shaders"),
-                         [](const auto& info) {
-                             return std::string(info.param) == "uber" ? "Uber" : "HitShaders";
+                         [](const auto& instance) {
+                             return std::string(instance.param) == "uber" ? "Uber" : "HitShaders";
                          });
 
 class PositionFetchCompile : public CommandTest {};
