@@ -35,6 +35,7 @@ struct BlasCapacity {
 
 struct BlasInput {
     std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
+    bool dataAccess = false;               // shaders read the positions of hit triangles from it
 };
 
 // What one BLAS of this device may hold: its limits, and no structure or scratch above maxStorageBufferRange,

@@ -22,6 +22,9 @@ constexpr MemoryDependency kBuildToAll{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTUR
                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                        VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
 
+// VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_DATA_ACCESS_KHR, which Vulkan headers before 1.3.249 lack.
+constexpr VkBuildAccelerationStructureFlagsKHR kAllowDataAccess = 0x800;
+
 // An input in Vulkan's terms. `info` points into `geometries`: vectors keep that when a Blas moves.
 struct BlasBuild {
     std::vector<VkAccelerationStructureGeometryKHR> geometries;
@@ -60,7 +63,8 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
     build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
     build.info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
-                       VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+                       VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR |
+                       (input.dataAccess ? kAllowDataAccess : 0U);
     build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     build.info.geometryCount = static_cast<std::uint32_t>(build.geometries.size());
     build.info.pGeometries = build.geometries.data();

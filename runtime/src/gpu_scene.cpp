@@ -77,10 +77,11 @@ Status uploadData(GpuScene::State& state, const PackageScene& known, const Scene
 }
 
 Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
-                         const SceneLayout& layout) {
+                         const SceneLayout& layout, bool dataAccess) {
     std::vector<BlasInput> inputs;
     for (const MeshPart& part : layout.parts) {
         BlasInput input;
+        input.dataAccess = dataAccess;
         for (const TriangleRange& range : part.ranges) {
             const PrimitiveView& view = scene.primitives[range.primitive];
             const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
@@ -150,6 +151,14 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
                              " is not in the package, which has " + std::to_string(package.sceneCount()),
                          "find its index by Package::findScene()");
     }
+    if (package.positionFetch() && !contextState.handles.positionFetch) {
+        return makeError(
+            "position-fetch", "",
+            "the package's shaders read positions from acceleration structures, which the device does "
+            "not allow or was not created for",
+            "create it with VK_KHR_ray_tracing_position_fetch and set DeviceHandles::positionFetch, or "
+            "compile without --position-fetch");
+    }
     const PackageScene known = package.scene(scene.packageScene);
     if (Status s = checkScene(known, scene, contextState.limits.core.maxImageDimension2D); !s) {
         return s.error();
@@ -159,7 +168,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     if (Status s = uploadData(*state, known, scene, layout); !s) {
         return s.error();
     }
-    if (Status s = buildBottomLevels(*state, known, scene, layout); !s) {
+    if (Status s = buildBottomLevels(*state, known, scene, layout, package.positionFetch()); !s) {
         return s.error();
     }
     if (Status s = buildTopLevel(*state, scene, layout); !s) {

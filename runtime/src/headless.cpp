@@ -154,8 +154,9 @@ Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& sta
 
 // The first device with that name and all features; the error says of each device what is wrong with it.
 // Of that device the tracers are left that it has.
-Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const std::string& wanted,
+Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const HeadlessOptions& options,
                                       std::uint32_t& tracers) {
+    const std::string& wanted = options.deviceName;
     Result<std::vector<VkPhysicalDevice>> devices = enumerateDevices(state);
     if (!devices) {
         return devices.error();
@@ -178,6 +179,9 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const std::st
         const std::uint32_t common = tracersOf(report) & tracers;
         if (missing.empty() && common == 0) {
             missing.emplace_back("the tracers that were asked for");
+        }
+        if (options.positionFetch && !hasExtension(report, kPositionFetchExtension)) {
+            missing.emplace_back(kPositionFetchExtension);
         }
         if (missing.empty()) {
             tracers = common;
@@ -211,7 +215,7 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 }
 
 Status createDevice(Context::State& state) {
-    DeviceRequirements requirements(state.handles.tracers);
+    DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -262,7 +266,8 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         return status.error();
     }
     state->handles.tracers = options.tracers;
-    Result<VkPhysicalDevice> device = chooseDevice(*state, options.deviceName, state->handles.tracers);
+    state->handles.positionFetch = options.positionFetch;
+    Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
     if (!device) {
         return device.error();
     }

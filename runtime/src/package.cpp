@@ -70,6 +70,10 @@ bool Package::environmentMap() const {
     return state_->header.environmentMap != 0;
 }
 
+bool Package::positionFetch() const {
+    return state_->header.positionFetch != 0;
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }

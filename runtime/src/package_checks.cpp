@@ -99,6 +99,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.hitRecord > package::HitRecordFormat::Packed) {
         return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
     }
+    if (header.positionFetch > 1) {
+        return outside("the source of positions", header.positionFetch);
+    }
     if (header.environmentMap > 1) {
         return outside("the kind of sky", header.environmentMap);
     }

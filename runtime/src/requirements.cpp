@@ -59,10 +59,6 @@ constexpr TracerNeeds kTracerNeeds[] = {
     {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
 };
 
-bool hasExtension(const DeviceReport& report, const char* name) {
-    return std::ranges::find(report.extensions, name) != report.extensions.end();
-}
-
 // The accessors take a mutable chain; nothing is written through them here.
 bool hasFeature(const DeviceReport& report, const RequiredFeature& feature) {
     return feature.bit(const_cast<DeviceRequirements&>(report.features)) != VK_FALSE;
@@ -87,9 +83,12 @@ std::string versionName(std::uint32_t version) {
            std::to_string(VK_API_VERSION_MINOR(version));
 }
 
+// Numbers of the Vulkan registry, for headers that lack them.
+constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000);
+
 }  // namespace
 
-DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
+DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
@@ -97,7 +96,8 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
       vulkan13{},
       accelerationStructure{},
       rayQuery{},
-      rayPipeline{} {
+      rayPipeline{},
+      positionFetch{} {
     vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     vulkan11.pNext = &vulkan12;
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -113,6 +113,12 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
     if ((tracers & package::kTracerRayPipeline) != 0) {
         rayPipeline.pNext = std::exchange(accelerationStructure.pNext, &rayPipeline);
     }
+    positionFetch.sType = kPositionFetchFeatures;
+    if (fetchesPositions) {
+        positionFetch.pNext = std::exchange(accelerationStructure.pNext, &positionFetch);
+        positionFetch.rayTracingPositionFetch = VK_TRUE;
+        extensions.push_back(kPositionFetchExtension);
+    }
     // An umbrella bit: the specification asks for it where its parts are used with SPIR-V 1.5 modules.
     vulkan12.descriptorIndexing = VK_TRUE;
     for (const RequiredFeature& feature : kFeatures) {
@@ -126,6 +132,10 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers)
             }
         }
     }
+}
+
+bool hasExtension(const DeviceReport& report, const char* name) {
+    return std::ranges::find(report.extensions, name) != report.extensions.end();
 }
 
 void clearFeatures(DeviceReport& report) {

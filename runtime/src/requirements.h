@@ -11,6 +11,9 @@
 
 namespace glint {
 
+// Where it is supported, so is its feature (Vulkan 1.3 specification, "Feature Requirements").
+inline constexpr const char* kPositionFetchExtension = "VK_KHR_ray_tracing_position_fetch";
+
 // What a physical device reports: features in a DeviceRequirements chain, plus limits and extensions.
 struct DeviceReport {
     std::uint32_t apiVersion = 0;
@@ -28,6 +31,8 @@ std::vector<std::string> missingFrom(const DeviceReport& report);
 
 // package::Tracer bits of which `report` has every extension and feature.
 std::uint32_t tracersOf(const DeviceReport& report);
+
+bool hasExtension(const DeviceReport& report, const char* name);
 
 // Takes every feature out of `report`.
 void clearFeatures(DeviceReport& report);

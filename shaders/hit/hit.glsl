@@ -4,6 +4,10 @@
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
 
+#ifndef GLINT_CORNER
+#define GLINT_CORNER(i) geometry.positions.data[corner[i]]
+#endif
+
 struct Hit {
     vec3 position;         // world
     vec3 geometricNormal;  // unit, on the viewer's side
@@ -54,9 +58,9 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.pixel = pixel;
 
     // Position and the plane of the triangle. Counter-clockwise is the front in object space.
-    vec3 p0 = geometry.positions.data[corner.x];
-    vec3 e1 = geometry.positions.data[corner.y] - p0;
-    vec3 e2 = geometry.positions.data[corner.z] - p0;
+    vec3 p0 = GLINT_CORNER(0);
+    vec3 e1 = GLINT_CORNER(1) - p0;
+    vec3 e2 = GLINT_CORNER(2) - p0;
     precise vec3 objectPosition = p0 + (barycentrics.x * e1 + barycentrics.y * e2);
     precise vec3 position = transformPoint(instance.objectToWorld, objectPosition);
     hit.position = position;

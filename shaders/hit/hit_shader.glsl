@@ -1,6 +1,11 @@
 // Closest-hit shaders of the strategy hit-shaders: shading, with the shadow ray left to ray generation.
 #extension GL_EXT_ray_tracing : require
 
+#include "generated/scene.glsl"
+#if GLINT_POSITION_FETCH
+#extension GL_EXT_ray_tracing_position_fetch : require
+#define GLINT_CORNER(i) gl_HitTriangleVertexPositionsEXT[i]
+#endif
 #include "hit/payload.glsl"
 #include "hit/shade.glsl"
 

@@ -48,6 +48,9 @@ HitRecord traceRay(RayRecord ray, uint rayIndex) {
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
         return missRecord(ray, rayIndex);
     }
+#ifdef GLINT_KEEPS_CORNERS
+    rayQueryGetIntersectionTriangleVertexPositionsEXT(query, true, tracedCorners);
+#endif
     return hitRecord(ray, rayIndex,
                      TracePayload(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
                                        rayQueryGetIntersectionGeometryIndexEXT(query, true)),

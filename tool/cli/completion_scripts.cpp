@@ -141,9 +141,10 @@ std::string zshCommand(const CommandModel& command) {
             const bool isLong = name.starts_with("--");
             const std::string value =
                 option.takesValue ? fmt::format(":value:{}", zshAction(option.value)) : std::string();
-            text += fmt::format("                        {} \\\n",
-                                shellQuoted(fmt::format("{}{}[{}]{}", name, option.takesValue && isLong ? "=" : "",
-                                                   escaped(option.help, "[]:\\"), value)));
+            text += fmt::format(
+                "                        {} \\\n",
+                shellQuoted(fmt::format("{}{}[{}]{}", name, option.takesValue && isLong ? "=" : "",
+                                        escaped(option.help, "[]:\\"), value)));
         }
     }
     return text + fmt::format("                        {}\n                    ;;\n",

@@ -138,6 +138,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"payload-bytes", kNote | kWarning, "`glint lint`: a ray payload is large."},
     {"png-encode", kError, "An image can't be written as PNG."},
     {"pose-degenerate", kWarning, "The scale of a node leaves its camera or light without a direction."},
+    {"position-fetch", kError,
+     "`--position-fetch`: this build's glslang, the device, or every strategy of the package can't."},
     {"position-missing", kError, "A primitive has no positions."},
     {"position-not-finite", kWarning, "Positions are NaN or infinite; their triangles are dropped."},
     {"primitive-empty", kWarning, "A primitive has no triangle."},

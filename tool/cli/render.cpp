@@ -68,10 +68,17 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOption
     return package;
 }
 
+// Of the package in a folder, if there is one. What is wrong with it is told when it is used.
+bool fetchesPositions(const std::string& folder) {
+    const Result<Package> package = folder.empty() ? Result<Package>(Diagnostic{}) : Package::load(folder);
+    return package && package->positionFetch();
+}
+
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
+    options.positionFetch = arguments.tracing.positionFetch || fetchesPositions(arguments.package);
     return Context::createHeadless(options);
 }
 

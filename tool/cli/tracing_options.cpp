@@ -52,9 +52,13 @@ std::vector<CLI::Option*> addPlacement(CLI::App& command, TracingArguments& argu
     CLI::Option& record = addChoice(
         command, "--hit-record", arguments.hitRecord, {"full", "packed"},
         "what is kept of a hit between passes (visibility,\nsorted-uber); full: 32 bytes; packed: 16");
+    CLI::Option& fetch = addFlag(command, "--position-fetch", arguments.positionFetch,
+                                 "uber with ray queries and hit-shaders read positions\n"
+                                 "from the acceleration structure, not from vertices");
     shadows.group("Shaders");
     record.group("Shaders");
-    return {&shadows, &record};
+    fetch.group("Shaders");
+    return {&shadows, &record, &fetch};
 }
 
 }  // namespace
@@ -83,6 +87,7 @@ void TracingArguments::apply(CompileSettings& settings, std::uint32_t available)
                             : queries      ? package::kTracerRayQuery
                                            : package::kTracerRayPipeline;
     }
+    settings.positionFetch = positionFetch;
     settings.shadows =
         shadows == "deferred" ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
     settings.hitRecord =

@@ -17,12 +17,13 @@ struct TracingArguments {
     std::vector<std::string> tracers;
     std::string shadows = "inline";
     std::string hitRecord = "full";
+    bool positionFetch = false;
     // `available`: Tracer bits among which "auto" chooses, ray queries first.
     void apply(CompileSettings& settings, std::uint32_t available = package::kTracerRayQuery) const;
 };
-// --strategy and --tracer of lists, --shadows, --hit-record.
+// --strategy and --tracer of lists, --shadows, --hit-record, --position-fetch.
 void addTracingLists(CLI::App& command, TracingArguments& arguments);
-// --strategy and --tracer of one value, --shadows, --hit-record. Returns what a package decides: all but the
+// --strategy and --tracer of one value, --shadows, --hit-record, --position-fetch. Returns what a package decides: all but the
 // first.
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
 

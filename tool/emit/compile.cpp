@@ -8,6 +8,7 @@
 #include "emit/sources.h"
 #include "emit/tables.h"
 #include "gltf/scene_list.h"
+#include "spirv/compiler.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +46,28 @@ void addModuleFiles(CompiledPackage& package, const std::string& source, bool em
     }
 }
 
+Status checkPositionFetch(const CompileSettings& settings, const std::string& where) {
+    if (!supportsPositionFetch()) {
+        return makeError(
+            "position-fetch", where,
+            fmt::format(
+                "position fetch needs GL_EXT_ray_tracing_position_fetch, which this glint's glslang {} "
+                "does not know",
+                glslangVersion()),
+            "build glint with glslang 12.2 or newer, as Debian 13 has it, or leave out --position-fetch");
+    }
+    const bool uber = (settings.strategies & package::kStrategyUber) != 0 &&
+                      (settings.tracers & package::kTracerRayQuery) != 0;
+    if (!uber && (settings.strategies & package::kStrategyHitShaders) == 0) {
+        return makeError(
+            "position-fetch", where,
+            "no shader of this package could fetch positions: only those that shade a hit where they "
+            "find it can, of uber with ray queries and of hit-shaders",
+            "add one of these strategies, or leave out --position-fetch");
+    }
+    return okStatus();
+}
+
 Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
                                 ModuleCache* cache) {
     if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
@@ -55,6 +78,11 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     if (settings.tracers == 0 || settings.tracers > package::kAllTracers) {
         return makeError("tracer", scenes.path(), fmt::format("{:#x} is no set of tracers", settings.tracers),
                          "choose ray-query, ray-pipeline or both");
+    }
+    if (settings.positionFetch) {
+        if (Status possible = checkPositionFetch(settings, scenes.path()); !possible) {
+            return possible.error();
+        }
     }
     CompiledPackage package;
     package.plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);

@@ -32,6 +32,9 @@ struct CompileSettings {
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     bool environmentMap = false;  // rays that leave the scene read an environment map instead of a gradient
+    // The strategies uber with ray queries and hit-shaders read positions of hit triangles from the
+    // acceleration structure instead of the vertex buffer.
+    bool positionFetch = false;
     PlanOptions plan;
     bool energyCompensation = true;  // of light that bounces between microfacets more than once
     TextureLod textureLod = TextureLod::Cones;

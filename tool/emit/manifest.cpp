@@ -58,7 +58,8 @@ Json settingsOf(const CompileSettings& settings) {
             {"textureLod", toString(settings.textureLod)},
             {"shadows", package::nameOf(settings.shadows)},
             {"hitRecord", package::nameOf(settings.hitRecord)},
-            {"sky", settings.environmentMap ? "map" : "gradient"}};
+            {"sky", settings.environmentMap ? "map" : "gradient"},
+            {"positionFetch", settings.positionFetch}};
 }
 
 // The budget of cases; null: none.

@@ -52,6 +52,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
+    text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
     return text;

@@ -218,6 +218,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.shadows = settings.shadows;
     header.hitRecord = settings.hitRecord;
     header.environmentMap = settings.environmentMap ? 1 : 0;
+    header.positionFetch = settings.positionFetch ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
     header.interopHash = static_cast<std::uint32_t>(interopHash());

@@ -7,6 +7,7 @@
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
+#include <glslang/build_info.h>
 #include <spirv-tools/libspirv.h>
 #include <spirv-tools/libspirv.hpp>
 
@@ -144,6 +145,14 @@ std::string compilerIdentity() {
     return fmt::format("glslang {}.{}.{}{}; {}; {}", version.major, version.minor, version.patch,
                        version.flavor == nullptr ? "" : version.flavor, spvSoftwareVersionDetailsString(),
                        kSpirvSourceHash);
+}
+
+bool supportsPositionFetch() {
+    return GLSLANG_VERSION_MAJOR > 12 || (GLSLANG_VERSION_MAJOR == 12 && GLSLANG_VERSION_MINOR >= 2);
+}
+
+std::string glslangVersion() {
+    return fmt::format("{}.{}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR);
 }
 
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {

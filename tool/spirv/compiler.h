@@ -28,9 +28,13 @@ struct ShaderCompileOptions {
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
 
-// Equal for two programs whose compileShader() gives the same words for the same source: versions of glslang and
-// SPIRV-Tools, and a hash of the code around them.
+// Equal for two programs whose compileShader() gives the same words for the same source: versions of glslang
+// and SPIRV-Tools, and a hash of the code around them.
 std::string compilerIdentity();
+// Whether the glslang that this was built with knows GL_EXT_ray_tracing_position_fetch.
+bool supportsPositionFetch();
+// Its version, "12.0".
+std::string glslangVersion();
 
 // Text form of a module, for people.
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words);

@@ -25,6 +25,8 @@ struct DeviceHandles {
     // VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Glint runs without it, with
     // textures that are blurrier at grazing angles.
     bool samplerAnisotropy = false;
+    // VK_KHR_ray_tracing_position_fetch is enabled on the device: packages run that need it.
+    bool positionFetch = false;
     // package::Tracer bits whose extensions and features are enabled on the device: those that its
     // DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -38,16 +40,27 @@ struct HeadlessOptions {
     std::string deviceName;  // part of the wanted device's name; empty: the first that has all features
     // package::Tracer bits to enable where the device has them; it has at least one of them.
     std::uint32_t tracers = package::kAllTracers;
+    // VK_KHR_ray_tracing_position_fetch, for packages that need it. Error "device-features" where it is
+    // missing.
+    bool positionFetch = false;
 };
 
 // package::Tracer bits that a device can be created with; 0: Glint does not run on it.
 std::uint32_t deviceTracers(VkPhysicalDevice device);
 
+// VkPhysicalDeviceRayTracingPositionFetchFeaturesKHR, which Vulkan headers before 1.3.249 lack.
+struct PositionFetchFeatures {
+    VkStructureType sType;
+    void* pNext;
+    VkBool32 rayTracingPositionFetch;
+};
+
 // What a device must be created with for Glint to use it: chain `features.pNext` into VkDeviceCreateInfo.
 // Points into static memory or itself; neither copy nor move.
 struct DeviceRequirements {
     // `tracers`: which to enable, some of deviceTracers(). Packages run whose tracer is among them.
-    explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery);
+    // positionFetch: for packages that need it.
+    explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
@@ -60,6 +73,7 @@ struct DeviceRequirements {
     VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure;
     VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;               // in the chain if among the tracers
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // likewise
+    PositionFetchFeatures positionFetch;                        // in the chain if asked for
 };
 
 // Every extension and feature that `device` lacks, by name; empty if Glint runs on it. Of the tracers it

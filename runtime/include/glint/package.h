@@ -54,6 +54,9 @@ public:
     package::HitRecordFormat hitRecord() const;
     // Whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
+    // Whether shaders read positions of hit triangles from acceleration structures:
+    // DeviceHandles::positionFetch.
+    bool positionFetch() const;
     std::uint32_t caseCount() const;
     // Buckets of a visibility buffer: 0 for misses, 1 + shader ID for hits.
     std::uint32_t bucketCount() const;

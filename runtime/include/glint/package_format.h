@@ -73,6 +73,8 @@ struct PackageHeader {
     ShadowPlacement shadows;
     HitRecordFormat hitRecord;
     std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
+    std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -188,7 +190,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 64);
+static_assert(sizeof(PackageHeader) == 72);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

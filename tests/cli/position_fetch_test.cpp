@@ -1,0 +1,85 @@
+// --position-fetch: the same picture, or the reason why this build or device can't.
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+#include "spirv/compiler.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+class PositionFetch : public CommandTest, public ::testing::WithParamInterface<const char*> {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        scene_ = writeTinyScene(path("")).string();
+    }
+    Outcome render(const std::string& image, bool fetches) {
+        std::vector<std::string> arguments{"render", scene_,       "-o",     image,        "--size",
+                                           "64x36",  "--validate", "--json", "--strategy", GetParam()};
+        if (fetches) {
+            arguments.emplace_back("--position-fetch");
+        }
+        return run(arguments);
+    }
+    std::string scene_;
+};
+
+TEST_P(PositionFetch, GivesTheSameImage) {
+    const Outcome fetched = render("fetched.exr", true);
+    if (!supportsPositionFetch()) {
+        EXPECT_EQ(fetched.exit, 1);
+        EXPECT_NE(fetched.err.find("GL_EXT_ray_tracing_position_fetch"), std::string::npos) << fetched.err;
+        GTEST_SKIP() << "built with glslang " << glslangVersion() << ", which has no position fetch";
+    }
+    if (fetched.err.find("VK_KHR_ray_tracing_position_fetch") != std::string::npos) {
+        GTEST_SKIP() << "the device has no position fetch";
+    }
+    ASSERT_EQ(fetched.exit, 0) << fetched.err;
+    const Outcome stored = render("stored.exr", false);
+    ASSERT_EQ(stored.exit, 0) << stored.err;
+    EXPECT_EQ(run({"compare", "fetched.exr", "stored.exr", "--max-error", "0"}).exit, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Strategies, PositionFetch, ::testing::Values("uber", "hit-shaders"),
+                         [](const auto& instance) {
+                             return std::string(instance.param) == "uber" ? "Uber" : "HitShaders";
+                         });
+
+class PositionFetchCompile : public CommandTest {};
+
+// What no shader of the package would do is no setting of it.
+TEST_F(PositionFetchCompile, IsRefusedWhereNoShaderCould) {
+    const std::string scene = writeTinyScene(path("")).string();
+    const Outcome outcome =
+        run({"compile", scene, "-o", "package", "--strategy", "visibility", "--position-fetch"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_NE(outcome.err.find("[position-fetch]"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(path("package")));
+}
+
+// The modules that shade where they find, and no other, read positions from the acceleration structure.
+TEST_F(PositionFetchCompile, IsInTheModulesThatCan) {
+    const std::string scene = writeTinyScene(path("")).string();
+    const Outcome outcome =
+        run({"compile", scene, "-o", "package", "--strategy", "all", "--tracer", "all", "--position-fetch"});
+    if (!supportsPositionFetch()) {
+        EXPECT_EQ(outcome.exit, 1);
+        GTEST_SKIP() << "built with glslang " << glslangVersion() << ", which has no position fetch";
+    }
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const std::string extension = "SPV_KHR_ray_tracing_position_fetch";
+    for (const std::string& file : filesBelow(path("package"))) {
+        if (!file.ends_with(".spv")) {
+            continue;
+        }
+        const bool fetches = readText(path("package") / file).find(extension) != std::string::npos;
+        EXPECT_EQ(fetches, file == "uber.spv" || (file.starts_with("hit_") && file.ends_with(".rchit.spv")))
+            << file;
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing
