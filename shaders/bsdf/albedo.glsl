@@ -44,9 +44,9 @@ vec2 ggxMeanAlbedo(float alpha) {
     return vec2(a2 * loss, 0.0390746 + alpha * (-0.08094045 + 0.04194681 * alpha));
 }
 
-// 1 / (n·v (1 + sheenLambda())), to 0.4% near grazing and 4% elsewhere. sheenLambda() is the exponential of a number up to
-// 17 and has as many times the rounding errors, which 1 - E would show. The terms of a sum here are at most 3 times the
-// sum in all.
+// 1 / (n·v (1 + sheenLambda())), to 0.4% near grazing and 4% elsewhere. sheenLambda() is the exponential of a number up
+// to 17 and has as many times the rounding errors, which 1 - E would show. The terms of a sum here are at most 3 times
+// the sum in all.
 float sheenMasking(float nDotV, float alpha) {
     float t = (1.0 - alpha) * (1.0 - alpha);
     float s = sqrt(nDotV);

@@ -25,25 +25,30 @@ vec3 filmSensitivity(float pathDifference, vec3 turns) {
 // Below 0.03 nm the film's index fades to that of air, so that no film is no film. The loop of the extension's text
 // stands unrolled: two orders of interference.
 vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness) {
-    float ior = mix(1.0, filmIor, smoothstep(0.0, 0.03, thickness));
-    float refracted2 = refractedCosine2(exactSquare(vec2(cosine, 0.0)), ior);
-    if (refracted2 <= 0.0) {
+    // The index less 1, which has the digits that 1 plus it loses where it is small.
+    float excess = (filmIor - 1.0) * smoothstep(0.0, 0.03, thickness);
+    float ior = 1.0 + excess;
+    // By Snell's law: cosine² + ior² - 1, over ior².
+    vec2 square = exactAddProduct(2.0 * excess, excess, excess);
+    vec2 sum = exactAddProduct(square.x, cosine, cosine);
+    if (sum.x <= 0.0) {
         return vec3(1.0);
     }
-    float cosineInFilm = sqrt(refracted2);
+    float cosineInFilm = sqrt(sum.x + (sum.y + square.y)) / ior;
 
     // Air to film. Reflection off the denser side turns the phase by half a cycle.
-    float r12 = mix(dielectricF0(ior), 1.0, schlickWeight(cosine));
+    float root12 = excess / (2.0 + excess);
+    float r12 = mix(root12 * root12, 1.0, schlickWeight(cosine));
     float t121 = 1.0 - r12;
-    float turn21 = ior < 1.0 ? 0.0 : 0.5;
+    float turn21 = excess < 0.0 ? 0.0 : 0.5;
 
     // Film to base. An F0 of 1 has no finite index: 0.9999 is one of 4e4.
     vec3 root = sqrt(clamp(baseF0, vec3(0.0), vec3(0.9999)));
-    vec3 baseIor = (vec3(1.0) + root) / (vec3(1.0) - root);
-    vec3 ratio = (baseIor - vec3(ior)) / (baseIor + vec3(ior));
+    vec3 baseExcess = 2.0 * root / (vec3(1.0) - root);
+    vec3 ratio = (baseExcess - vec3(excess)) / (baseExcess + vec3(2.0 + excess));
     vec3 r23 = mix(ratio * ratio, vec3(1.0), vec3(schlickWeight(cosineInFilm)));
-    vec3 turns = vec3(turn21) + vec3(baseIor.x < ior ? 0.5 : 0.0, baseIor.y < ior ? 0.5 : 0.0,
-                                     baseIor.z < ior ? 0.5 : 0.0);
+    vec3 turns = vec3(turn21) + vec3(baseExcess.x < excess ? 0.5 : 0.0, baseExcess.y < excess ? 0.5 : 0.0,
+                                     baseExcess.z < excess ? 0.5 : 0.0);
 
     // The series of internal reflections; the cut keeps its sum finite.
     vec3 r123 = clamp(r12 * r23, vec3(1e-5), vec3(0.9999));

@@ -78,7 +78,8 @@ float planeError(vec3 n, TrianglePoint point, vec4 objectToWorld[3], vec3 normal
                       dot(abs(objectToWorld[2]), vec4(abs(point.position), 1.0)));
     precise float world = dot(abs(n), terms);
     // And back: by the inverse, which is the transposed cofactors over the determinant.
-    precise vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r), dot(abs(normalToWorld[2]), r));
+    precise vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r),
+                                dot(abs(normalToWorld[2]), r));
     precise float determinant = dot(objectToWorld[0].xyz, normalToWorld[0]);
     precise float back = dot(inverse, terms) / determinant;
     // Past a condition of 1000 an origin so far off would leave the scene's detail behind.

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <set>
 #include <string>
 
 namespace {
@@ -18,9 +19,11 @@ struct Settings {
     numerics::MeasureOptions measure = numerics::optionsFromEnvironment();
     std::string document;
     std::string json;
+    std::string function;  // empty: all
 };
 
-Result<numerics::Report> measureAll(const numerics::MeasureOptions& options) {
+Result<numerics::Report> measureAll(const Settings& settings) {
+    const numerics::MeasureOptions& options = settings.measure;
     Result<std::unique_ptr<numerics::ProbeDevice>> device = numerics::ProbeDevice::create();
     if (!device) {
         return device.error();
@@ -31,6 +34,9 @@ Result<numerics::Report> measureAll(const numerics::MeasureOptions& options) {
     }
     numerics::Report report{(*device)->description(), options, {}};
     for (const numerics::Probe& probe : numerics::allProbes()) {
+        if (!settings.function.empty() && probe.function != settings.function) {
+            continue;
+        }
         Result<numerics::ProbeResult> result = numerics::measure(**device, *glsl, probe, options);
         if (!result) {
             return result.error();
@@ -73,7 +79,7 @@ Status writeReport(const Settings& settings, const numerics::Report& report) {
 }
 
 int run(const Settings& settings) {
-    const Result<numerics::Report> report = measureAll(settings.measure);
+    const Result<numerics::Report> report = measureAll(settings);
     if (!report) {
         std::fprintf(stderr, "%s\n", toString(report.error()).c_str());
         return 1;
@@ -95,7 +101,15 @@ int main(int argc, char** argv) {
             ->capture_default_str()
             ->check(CLI::PositiveNumber);
         app.add_option("--seed", settings.measure.seed, "Seed of the inputs")->capture_default_str();
-        app.add_option("--report", settings.document, "Markdown file whose generated region is replaced");
+        std::set<std::string> functions;
+        for (const numerics::Probe& probe : numerics::allProbes()) {
+            functions.emplace(probe.function);
+        }
+        CLI::Option* const one =
+            app.add_option("--function", settings.function, "Measure this function alone")
+                ->check(CLI::IsMember(functions));
+        app.add_option("--report", settings.document, "Markdown file whose generated region is replaced")
+            ->excludes(one);
         app.add_option("--json", settings.json, "JSON file to write");
         CLI11_PARSE(app, argc, argv);
         return run(settings);

@@ -173,9 +173,8 @@ constexpr Probe kProbes[] = {
      .inputs = 6,
      .outputs = 3,
      .fill = fillFilm,
-     // Interference cancels: errors count against full reflectance. Near grazing the series of internal
-     // reflections magnifies them, by 1e4 at most.
-     .bounds = {1e-3, 1e-6, 1.0},
+     // Interference cancels: errors count against full reflectance.
+     .bounds = {1e-5, 1e-6, 1.0},
      .undecidedShare = 1e-4},
     {.name = "RefractDirection",
      .function = "refractDirection",

@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# Builds and tests what is committed in a Debian 13 root, whose glslang and Mesa are newer: --position-fetch works there.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+usage() {
+    cat <<'TEXT'
+usage: scripts/debian13.sh ROOT [COMMAND…]
+
+Makes a Debian 13 root in the folder ROOT by debootstrap, where there is none, from
+the mirror that apt has here. Copies the commit that is checked out to ROOT/glint,
+with ../shared where it is, and runs COMMAND there, scripts/test.sh if none is given.
+What was built there before is kept, so that a second run builds what changed.
+
+Needs root, some 4 GB and the package debootstrap, which it installs.
+TEXT
+}
+
+fail() {
+    printf 'debian13: error: %s\n' "$*" >&2
+    exit 1
+}
+
+# The URI of the mirror that Debian's main component comes from here, and the file of its keys.
+find_mirror() {
+    local release component origin uri
+    # shellcheck disable=SC2016 # apt expands these, not the shell
+    while IFS='|' read -r release component origin uri keys; do
+        if [[ $component == main && $origin == Debian && $release != *-* ]]; then
+            mirror=$uri
+            return
+        fi
+    done < <(apt-get indextargets --format '$(RELEASE)|$(COMPONENT)|$(ORIGIN)|$(REPO_URI)|$(SIGNED_BY)' \
+        'Created-By: Packages')
+    fail "found no source of Debian's main component to take the mirror from: run this on Debian"
+}
+
+make_root() {
+    find_mirror
+    if ! command -v debootstrap >/dev/null; then
+        DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends debootstrap
+    fi
+    local options=(--variant=minbase --include=ca-certificates)
+    # Keys that stand in the source itself are no file; debootstrap then takes those of Debian's own package.
+    if [[ $keys == /* ]]; then
+        options+=("--keyring=$keys")
+    fi
+    debootstrap "${options[@]}" trixie "$root" "$mirror"
+}
+
+# Through a pack of commits, so that files that stay as they were keep their time stamps.
+copy_commit() {
+    if [[ ! -d $root/glint/.git ]]; then
+        git clone -q --no-hardlinks . "$root/glint"
+    fi
+    git -C "$root/glint" fetch -q "$PWD" HEAD
+    git -C "$root/glint" reset -q --hard FETCH_HEAD
+}
+
+if [[ $# -eq 0 || $1 == -h || $1 == --help ]]; then
+    usage
+    exit "$(($# == 0 ? 2 : 0))"
+fi
+[[ $(id -u) -eq 0 ]] || fail "this makes a root folder and mounts /proc in it: run it as root"
+mkdir -p "$1"
+root=$(realpath "$1")
+shift
+[[ $root != / ]] || fail "ROOT is to be a folder of its own, not this system"
+[[ $# -gt 0 ]] || set -- scripts/test.sh
+
+mirror=
+keys=
+if [[ ! -x $root/usr/bin/apt-get ]]; then
+    make_root
+fi
+version=$(sed -n 's/^VERSION_ID="\?\([0-9]*\)"\?$/\1/p' "$root/etc/os-release")
+[[ $version == 13 ]] || fail "$root holds another system than Debian 13"
+copy_commit
+
+# The mounts are those of a namespace that ends with the command. The shell in the middle is the root's own.
+shared=$(realpath -q ../shared || true)
+# shellcheck disable=SC2016 # the inner shell expands these
+exec unshare --mount bash -c '
+    set -euo pipefail
+    root=$1 shared=$2
+    shift 2
+    mount -t proc proc "$root/proc"
+    mount --rbind /dev "$root/dev"
+    cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
+    if [[ -d $shared ]]; then
+        mkdir -p "$root/shared"
+        mount --bind "$shared" "$root/shared"
+    fi
+    exec chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+        bash -c "cd /glint && exec \"\$@\"" bash "$@"
+' bash "$root" "$shared" "$@"
