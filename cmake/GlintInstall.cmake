@@ -1,5 +1,5 @@
 # Install, and export as the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler, Glint::glint and
-# glint_add_materials().
+# glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_runtime)
@@ -21,6 +21,8 @@ if(GLINT_BUILD_COMPILER)
   endforeach()
 endif()
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)
+export(EXPORT GlintTargets NAMESPACE Glint:: FILE "${CMAKE_CURRENT_BINARY_DIR}/GlintTargets.cmake")
+configure_file(cmake/GlintMaterials.cmake "${CMAKE_CURRENT_BINARY_DIR}/GlintMaterials.cmake" COPYONLY)
 
 configure_package_config_file(cmake/GlintConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/GlintConfig.cmake"
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)

@@ -1,26 +1,26 @@
 # What every target of the project has in common.
 
-add_library(glint_options INTERFACE)
-target_compile_options(glint_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+set(glint_compile_options -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+set(glint_link_options "")
 if(GLINT_WARNINGS_AS_ERRORS)
-  target_compile_options(glint_options INTERFACE -Werror)
+  list(APPEND glint_compile_options -Werror)
 endif()
 if(GLINT_SANITIZE)
-  target_compile_options(glint_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
-                                                -fno-omit-frame-pointer)
-  target_link_options(glint_options INTERFACE -fsanitize=address,undefined)
+  list(APPEND glint_compile_options -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  list(APPEND glint_link_options -fsanitize=address,undefined)
 endif()
 if(GLINT_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "GLINT_FUZZ needs Clang: cmake --preset fuzz")
   endif()
   # Coverage counters in everything that targets run; the targets themselves bring libFuzzer.
-  target_compile_options(glint_options INTERFACE -fsanitize=fuzzer-no-link)
-  target_link_options(glint_options INTERFACE -fsanitize=fuzzer-no-link)
+  list(APPEND glint_compile_options -fsanitize=fuzzer-no-link)
+  list(APPEND glint_link_options -fsanitize=fuzzer-no-link)
 endif()
 
 # glint_configure(TARGET): the project's warnings and sanitizers, for its own sources only.
 function(glint_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:glint_options>)
+  target_compile_options(${target} PRIVATE ${glint_compile_options})
+  target_link_options(${target} PRIVATE ${glint_link_options})
 endfunction()

@@ -1,0 +1,37 @@
+# Builds examples/cmake-consumer against a Glint that is not installed: the folder that it was built in or, with
+# GLINT_SOURCE, its sources as a subdirectory. There only the runtime is built; the tool is EXECUTABLE, as where a build is
+# for another machine than the one that it runs on.
+# -DGLINT_BUILD=… -DWORK=… -DEXAMPLE=… -DGENERATOR=… [-DGLINT_SOURCE=… -DEXECUTABLE=…] [-DFLAGS=…] [-DLAUNCHER=…]
+cmake_minimum_required(VERSION 3.25)
+include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
+
+set(build "${WORK}/build")
+file(REMOVE_RECURSE "${WORK}")
+file(COPY "${EXAMPLE}/" DESTINATION "${WORK}/source/example")
+if(GLINT_SOURCE)
+  file(WRITE "${WORK}/source/CMakeLists.txt"
+       "cmake_minimum_required(VERSION 3.25)\nproject(game LANGUAGES CXX)\n"
+       "add_subdirectory(\"${GLINT_SOURCE}\" glint)\nadd_subdirectory(example)\n")
+  set(source "${WORK}/source")
+  set(glint -DGLINT_BUILD_COMPILER=OFF "-DGLINT_EXECUTABLE=${EXECUTABLE}")
+  set(program "${build}/example/cubes")
+else()
+  set(source "${WORK}/source/example")
+  set(glint "-DGlint_DIR=${GLINT_BUILD}")
+  set(program "${build}/cubes")
+endif()
+
+run(${CMAKE_COMMAND} -S "${source}" -B "${build}" -G "${GENERATOR}" ${glint} "-DCMAKE_CXX_FLAGS=${FLAGS}"
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+run(${CMAKE_COMMAND} --build "${build}")
+if(NOT output MATCHES "Compiling the materials of cubes")
+  message(FATAL_ERROR "the materials were not compiled\n${output}")
+endif()
+run("${program}")
+if(NOT output MATCHES "4 shaders, 5 buckets")
+  message(FATAL_ERROR "the program says\n${output}")
+endif()
+run(${CMAKE_COMMAND} --build "${build}")
+if(output MATCHES "Building|Linking|Compiling")
+  message(FATAL_ERROR "the second build does something\n${output}")
+endif()
