@@ -23,6 +23,19 @@ tidy() {
         { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
 }
 
+# tidy_project FOLDER FILE…: of a project of its own, which is built with the Glint of this build.
+tidy_project() {
+    local folder=$1 build=build/lint/${1//\//-}
+    shift
+    mkdir -p build/lint/scenes
+    cp examples/cmake-consumer/scene/* build/lint/scenes/
+    cp build/lint/scenes/cubes.gltf build/lint/scenes/copy.gltf
+    cmake -S "$folder" -B "$build" -G Ninja -DGlint_DIR="$PWD/build/release" -DSCENES="$PWD/build/lint/scenes" \
+        -DCMAKE_EXPORT_COMPILE_COMMANDS=ON --no-warn-unused-cli >/dev/null &&
+        cmake --build "$build" &&
+        tidy "$build" "$@"
+}
+
 printf 'lint: clang-tidy\n'
 cmake --preset release >/dev/null
 # Generated sources must be there before anything that includes them can be read.
@@ -33,10 +46,13 @@ else
     mapfile -t sources < <(git ls-files '*.cpp')
 fi
 own=()
+programs=()
 consumers=()
 for source in "${sources[@]}"; do
     if [[ $source == tests/install/consumer/* ]]; then
         consumers+=("$source")
+    elif [[ $source == examples/cmake-consumer/* ]]; then
+        programs+=("$source")
     elif ! grep -qF "/$source\"" build/release/compile_commands.json; then
         printf 'lint: %s: not part of this build, left out\n' "$source"
     else
@@ -49,9 +65,10 @@ if [[ ${#own[@]} -gt 0 ]]; then
     tidy build/release "${own[@]}" || failed=1
 fi
 if [[ ${#consumers[@]} -gt 0 ]]; then
-    # A project of its own, which its test configures.
-    ctest --preset release -R '^Install\.' --no-tests=error --output-on-failure
-    tidy build/release/tests/install/consumer-build "${consumers[@]}" || failed=1
+    tidy_project tests/install/consumer "${consumers[@]}" || failed=1
+fi
+if [[ ${#programs[@]} -gt 0 ]]; then
+    tidy_project examples/cmake-consumer "${programs[@]}" || failed=1
 fi
 if [[ $failed -ne 0 ]]; then
     printf 'lint: error: clang-tidy has findings, printed above\n' >&2

@@ -76,7 +76,8 @@ void fillBinnedDirection(InputSource& in) {
 }
 
 // A ray from a point in view, in clip space of a perspective or orthographic camera, and a share of its line.
-// Up to 1e9 times as far away as the near plane: from there w cancels to nothing where the ray comes back to it.
+// Up to 1e9 times as far away as the near plane: from there w cancels to nothing where the ray comes back to
+// it.
 void fillScreenRay(InputSource& in) {
     const double nearest = in.logUniform(1e-3, 1.0);
     const bool orthographic = in.chance(0.2);

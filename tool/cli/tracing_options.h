@@ -23,8 +23,8 @@ struct TracingArguments {
 };
 // --strategy and --tracer of lists, --shadows, --hit-record, --position-fetch.
 void addTracingLists(CLI::App& command, TracingArguments& arguments);
-// --strategy and --tracer of one value, --shadows, --hit-record, --position-fetch. Returns what a package decides: all but the
-// first.
+// --strategy and --tracer of one value, --shadows, --hit-record, --position-fetch. Returns what a package
+// decides: all but the first.
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
 
 // Throws a CLI::ParseError where the tracer can't run the strategy.
