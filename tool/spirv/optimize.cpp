@@ -2,6 +2,7 @@
 
 #include "spirv/call_graph.h"
 
+#include <glslang/SPIRV/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 
@@ -48,7 +49,20 @@ void registerLevel(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
 }
 
-void registerPasses(spvtools::Optimizer& optimizer, bool keepNames) {
+// Whether the module belongs to a ray tracing pipeline. Capabilities come first in a module: SPIR-V 2.4.
+bool tracesByPipeline(const std::vector<std::uint32_t>& words) {
+    constexpr std::size_t kHeaderWords = 5;
+    constexpr std::uint32_t kOpcodeMask = 0xFFFF;
+    for (std::size_t i = kHeaderWords; i + 1 < words.size() && (words[i] & kOpcodeMask) == spv::OpCapability;
+         i += words[i] >> 16U) {
+        if (words[i + 1] == spv::CapabilityRayTracingKHR) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void registerPasses(spvtools::Optimizer& optimizer, bool keepNames, bool keepMembers) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
@@ -59,8 +73,13 @@ void registerPasses(spvtools::Optimizer& optimizer, bool keepNames) {
     optimizer.RegisterPerformancePasses();
     // What the performance passes uncover late, folded once more: features are decided through two masks.
     registerFolding(optimizer);
-    optimizer.RegisterPass(spvtools::CreateVectorDCEPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass())
+    optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
+    if (!keepMembers) {
+        // Every module declares the whole scene; what is left of it are the members that the module reads, at
+        // their offsets.
+        optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
+    }
+    optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
         .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
         .RegisterPass(spvtools::CreateCompactIdsPass());
 }
@@ -150,9 +169,12 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
             return status.error();
         }
     }
-    if (Status status = runPasses(
-            optimized, name, [&](spvtools::Optimizer& optimizer) { registerPasses(optimizer, keepNames); });
-        !status) {
+    // Payloads have no offsets: the stages of a pipeline must agree on their members.
+    const bool keepMembers = tracesByPipeline(optimized);
+    const auto registerAll = [&](spvtools::Optimizer& optimizer) {
+        registerPasses(optimizer, keepNames, keepMembers);
+    };
+    if (Status status = runPasses(optimized, name, registerAll); !status) {
         return status.error();
     }
     // Drivers may inline as they like.

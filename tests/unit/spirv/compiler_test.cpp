@@ -57,6 +57,36 @@ TEST(CompileShader, FoldsDecidedFeaturesAway) {
     EXPECT_EQ(statistics->branches, 2U);
 }
 
+std::string disassembled(const ShaderSource& source) {
+    const auto words = compileShader(source, {});
+    const auto text = words ? disassemble(*words) : Result<std::string>(words.error());
+    EXPECT_TRUE(text) << toString(text.error());
+    return text ? *text : std::string();
+}
+
+TEST(CompileShader, LeavesMembersThatAreReadAtTheirOffsets) {
+    const std::string text = disassembled(
+        {"members.comp", ShaderStage::Compute,
+         "#version 460\n#extension GL_EXT_buffer_reference : require\n"
+         "layout(buffer_reference) buffer Data { vec4 unused[2]; float read; float other; float written; };\n"
+         "layout(push_constant) uniform Push { Data data; };\n"
+         "void main() { data.written = data.read; }\n"});
+    EXPECT_NE(text.find("Offset 32"), std::string::npos) << text;
+    EXPECT_NE(text.find("Offset 40"), std::string::npos) << text;
+    EXPECT_EQ(text.find("ArrayStride"), std::string::npos) << text;
+    EXPECT_EQ(text.find("Offset 36"), std::string::npos) << text;
+}
+
+// Payloads have no offsets: another stage of the pipeline finds a member by its number.
+TEST(CompileShader, LeavesPayloadsWhole) {
+    const std::string text = disassembled({"payload.rchit", ShaderStage::ClosestHit,
+                                           "#version 460\n#extension GL_EXT_ray_tracing : require\n"
+                                           "struct Payload { uint id; float distance; vec2 uv; };\n"
+                                           "layout(location = 0) rayPayloadInEXT Payload payload;\n"
+                                           "void main() { payload.distance = gl_HitTEXT; }\n"});
+    EXPECT_NE(text.find("OpTypeStruct %uint %float %v2float"), std::string::npos) << text;
+}
+
 TEST(CompileShader, MakesSpirv15) {
     const auto words = compileShader({"a.comp", ShaderStage::Compute, computeShader("")}, {});
     ASSERT_TRUE(words) << toString(words.error());
