@@ -106,7 +106,7 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
     command
         .add_option("-W", arguments.warnings,
                     "-Wno-ID: leave out warnings and notes of that id;\n-Werror=ID, -Werror: as --werror")
-        ->type_name("no-ID")
+        ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)
         ->group(group)
         ->check(CLI::Validator(checkWarning, ""));
