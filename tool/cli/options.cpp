@@ -35,10 +35,14 @@ std::string quoted(const std::string& text) {
 // The name of a check that checks nothing: its description holds the choices, for choicesOf().
 constexpr const char* kChoices = "choices";
 
-CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& choices) {
+void keepChoices(CLI::Option* option, const std::vector<std::string>& choices) {
     CLI::Validator known([](const std::string&) { return std::string(); },
                          fmt::format("{}", fmt::join(choices, " ")), kChoices);
     option->check(known.active(false));
+}
+
+CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& choices) {
+    keepChoices(option, choices);
     return check(option, [choices](const std::string& text) {
         if (std::find(choices.begin(), choices.end(), text) != choices.end()) {
             return std::string();
@@ -116,6 +120,7 @@ CLI::Option& addMerge(CLI::App& command, std::string& value) {
                                     "own, the others merged (default: {})",
                                     value))
             ->type_name("none|family|all|auto|profile[:FILE]");
+    keepChoices(option, choices);
     return check(option, [choices](const std::string& text) {
         const bool isKnown = std::find(choices.begin(), choices.end(), text) != choices.end();
         const bool namesFile = text.starts_with(kProfilePrefix) && text.size() > kProfilePrefix.size();
