@@ -38,7 +38,7 @@ protected:
     }
 };
 
-TEST_F(Schemas, HoldCompile) {
+TEST_F(Schemas, HoldCompileAndInspect) {
     const std::vector<std::string> options{"--strategy", "all", "--tracer", "all", "--emit", "glsl,header"};
     const Json made = compile("package", options);
     expectResult("compile", made);
@@ -46,13 +46,14 @@ TEST_F(Schemas, HoldCompile) {
     const Json repeated = compile("package", options);
     expectResult("compile", repeated);
     EXPECT_EQ(repeated.at("upToDate"), true);
+    expectFits("manifest", Json::parse(readText(path("package/manifest.json"))));
+    expectResult("inspect", json({"inspect", "package"}));
+    expectResult("inspect", json({"inspect", "package", "--disassemble", "0"}));
     expectResult("compile", json({"compile", "scene.gltf", "--dry-run", "--variant", "Day"}));
     expectResult("compile", json({"compile", "scene.gltf", "--embed", "scene.cpp", "--cache", "none"}));
 }
 
 TEST_F(Schemas, HoldTheManifest) {
-    compile("package", {"--strategy", "all", "--tracer", "all", "--emit", "glsl,header"});
-    expectFits("manifest", Json::parse(readText(path("package/manifest.json"))));
     compile("small", {"--strategy", "uber", "--merge", "auto", "--max-shaders", "1", "--variant", "Night",
                       "--environment-map", "--hit-lobes", "base"});
     expectFits("manifest", Json::parse(readText(path("small/manifest.json"))));
@@ -62,12 +63,6 @@ TEST_F(Schemas, HoldExplain) {
     expectResult("explain", json({"explain", "scene.gltf"}));
     expectResult("explain", json({"explain", "scene.gltf", "--material", "Spare", "--merge", "auto"}));
     expectResult("explain", json({"explain", "scene.gltf", "--variant", "Day", "--hit-lobes", "base"}));
-}
-
-TEST_F(Schemas, HoldInspect) {
-    compile("package", {"--strategy", "all", "--tracer", "all"});
-    expectResult("inspect", json({"inspect", "package"}));
-    expectResult("inspect", json({"inspect", "package", "--disassemble", "0"}));
 }
 
 TEST_F(Schemas, HoldDiff) {
@@ -81,7 +76,7 @@ TEST_F(Schemas, HoldDiff) {
 }
 
 TEST_F(Schemas, HoldLint) {
-    compile("package", {"--strategy", "all", "--tracer", "all", "--alpha", "tested"});
+    compile("package", {"--strategy", "uber,hit-shaders", "--merge", "all", "--alpha", "tested"});
     writeText(path("package/broken.spv"), "this is no SPIR-V");
     const Json found = json({"lint", "package", "package/broken.spv", "--max-instructions", "10"}, 1);
     expectResult("lint", found);
