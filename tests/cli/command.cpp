@@ -1,9 +1,14 @@
 #include "cli/command.h"
 
+#include "cli/diagnostic_table.h"
+
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,11 +22,8 @@ namespace {
 // In the child process: only calls that are safe between fork and exec of a single-threaded parent.
 [[noreturn]] void execute(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& variables,
-                          const fs::path& folder, const fs::path& out, const fs::path& err) {
+                          const fs::path& folder, int outFile, int errFile) {
     constexpr int kCantRun = 127;
-    constexpr int kMode = 0600;
-    const int outFile = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
-    const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
     if (outFile < 0 || errFile < 0 || dup2(outFile, STDOUT_FILENO) < 0 || dup2(errFile, STDERR_FILENO) < 0 ||
         chdir(folder.c_str()) != 0) {
         _exit(kCantRun);
@@ -39,6 +41,47 @@ namespace {
     pointers.push_back(nullptr);
     execv(pointers[0], pointers.data());
     _exit(kCantRun);
+}
+
+int openForWriting(const fs::path& path) {
+    constexpr int kMode = 0600;
+    return open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+}
+
+// -1 where it was ended.
+int waitFor(pid_t child) {
+    int status = 0;
+    return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// Everything until the other side of the terminal is closed.
+std::string readTerminal(int terminal) {
+    std::string text;
+    std::array<char, 4096> part{};
+    for (ssize_t count = 0; (count = read(terminal, part.data(), part.size())) > 0;) {
+        text.append(part.data(), static_cast<std::size_t>(count));
+    }
+    return text;
+}
+
+// Every diagnostic has an id of the table, with a severity that it says. `raised`: warnings may be errors.
+void expectKnownDiagnostics(const std::string& err, bool raised) {
+    static const std::regex kDiagnostic(R"((?:^|: )(error|warning|note): .*\[([a-z0-9-]+)\]$)");
+    std::istringstream lines(err);
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch match;
+        if (!std::regex_search(line, match, kDiagnostic)) {
+            continue;
+        }
+        const DiagnosticInfo* const info = findDiagnostic(match[2].str());
+        if (info == nullptr) {
+            ADD_FAILURE() << "not in the table of diagnostics: " << line;
+            continue;
+        }
+        const std::uint8_t severity = match[1] == "error" ? kError : match[1] == "warning" ? kWarning : kNote;
+        const bool isRaised = raised && severity == kError && (info->severities & kWarning) != 0;
+        EXPECT_TRUE((info->severities & severity) != 0 || isRaised) << line;
+    }
 }
 
 }  // namespace
@@ -81,17 +124,42 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments,
     const fs::path err = folder_.string() + ".err";
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, out, err);
+        execute(arguments, variables, folder_, openForWriting(out), openForWriting(err));
     }
-    int status = 0;
     Outcome outcome;
-    if (child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status)) {
-        outcome.exit = WEXITSTATUS(status);
-    }
+    outcome.exit = waitFor(child);
     outcome.out = readText(out);
     outcome.err = readText(err);
     fs::remove(out);
     fs::remove(err);
+    const bool raised = std::ranges::any_of(arguments, [](const std::string& argument) {
+        return argument.starts_with("--werror") || argument.starts_with("-Werror");
+    });
+    expectKnownDiagnostics(outcome.err, raised);
+    return outcome;
+}
+
+Outcome CommandTest::runOnTerminal(const std::vector<std::string>& arguments,
+                                   const std::vector<std::pair<std::string, std::string>>& variables) const {
+    const fs::path out = folder_.string() + ".out";
+    Outcome outcome;
+    const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) {
+        ADD_FAILURE() << "there is no pseudo terminal";
+        return outcome;
+    }
+    // The child's side stays open here until the child has it, or the terminal would be closed before.
+    const int errFile = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    const pid_t child = fork();
+    if (child == 0) {
+        execute(arguments, variables, folder_, openForWriting(out), errFile);
+    }
+    close(errFile);
+    outcome.err = readTerminal(terminal);
+    close(terminal);
+    outcome.exit = waitFor(child);
+    outcome.out = readText(out);
+    fs::remove(out);
     return outcome;
 }
 

@@ -68,6 +68,34 @@ TEST_F(CompileCommand, JsonHasWhatIsPromised) {
     }
 }
 
+TEST_F(CompileCommand, JsonHasTheStagesOfTheManifest) {
+    const Outcome outcome =
+        run({"compile", scene(), "-o", "package", "--json", "--strategy", "all", "--tracer", "all"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json shaders = outcome.json().at("shaders");
+    const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
+    ASSERT_EQ(shaders.size(), 2U);
+    ASSERT_EQ(manifest.at("shaders").size(), shaders.size());
+    for (std::size_t i = 0; i < shaders.size(); ++i) {
+        const nlohmann::json& stages = shaders[i].at("stages");
+        const nlohmann::json& expected = manifest.at("shaders")[i].at("stages");
+        for (const char* stage : {"visibility", "visibility, ray-pipeline", "hit-shaders"}) {
+            ASSERT_TRUE(stages.contains(stage)) << stages;
+            for (const auto& [name, value] : stages.at(stage).items()) {
+                EXPECT_EQ(value, expected.at(stage).at(name)) << stage << " " << name;
+            }
+        }
+        EXPECT_EQ(stages.size(), expected.size());
+    }
+}
+
+TEST_F(CompileCommand, HitShadersAloneAreOfThePipelineTracer) {
+    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--strategy", "hit-shaders"}).exit, 0);
+    const nlohmann::json expected{"ray-pipeline"};
+    EXPECT_EQ(nlohmann::json::parse(readText(path("package/manifest.json"))).at("tracers"), expected);
+    EXPECT_EQ(run({"inspect", "package", "--json"}).json().at("tracers"), expected);
+}
+
 TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
     writeTinyScene(path(""), {.variants = true});
     ASSERT_EQ(run({"compile", scene(), "-o", "package", "--strategy", "uber", "--variant", "Day",

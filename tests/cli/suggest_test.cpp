@@ -27,5 +27,21 @@ TEST(Suggest, NearestIsNearEnough) {
     EXPECT_EQ(suggestion("xyz", words), "");
 }
 
+TEST(Suggest, PartsOfNamesFindThem) {
+    const std::vector<std::string> names{"Brick", "Marble, table", "Marble, floor"};
+    EXPECT_EQ(nearest("Marbl", names), "Marble, table");
+    EXPECT_EQ(nearest("FLOOR", names), "Marble, floor");
+    EXPECT_EQ(nearest("le", names), "");
+    EXPECT_EQ(nearest("Brock", names), "Brick");  // a slip comes first
+}
+
+TEST(Suggest, EnumerationShowsSomeAndCountsTheRest) {
+    const std::vector<std::string> few{"Brick", "", "Marble, table"};
+    EXPECT_EQ(enumeration(few), " (it has Brick, \"Marble, table\")");
+    const std::vector<std::string> many(11, "a");
+    EXPECT_EQ(enumeration(many), " (it has a, a, a, a, a, a, a, a and 3 more)");
+    EXPECT_EQ(enumeration({}), "");
+}
+
 }  // namespace
 }  // namespace glint

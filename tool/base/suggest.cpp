@@ -25,6 +25,28 @@ int editDistance(std::string_view a, std::string_view b) {
     return rows[a.size()][b.size()];
 }
 
+namespace {
+
+// ASCII only, as identifiers and options are.
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// The first candidate that has `word` within it, in whatever case; empty if there is none.
+std::string containing(std::string_view word, std::span<const std::string> candidates) {
+    // Fewer characters are within too much to be a hint.
+    constexpr std::size_t kShortestPart = 3;
+    if (word.size() < kShortestPart) {
+        return {};
+    }
+    const auto found = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+        return !std::ranges::search(candidate, word, {}, lower, lower).empty();
+    });
+    return found == candidates.end() ? std::string() : *found;
+}
+
+}  // namespace
+
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
     // Nobody mistypes a name this long by three edits; bounds the table of editDistance().
     constexpr std::size_t kLongestWord = 64;
@@ -43,7 +65,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
             found = candidate;
         }
     }
-    return found;
+    return found.empty() ? containing(word, candidates) : found;
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
@@ -57,7 +79,8 @@ std::string enumeration(std::span<const std::string> candidates) {
     std::size_t count = 0;
     for (const std::string& candidate : candidates) {
         if (!candidate.empty() && ++count <= kShown) {
-            text += (count > 1 ? ", " : "") + candidate;
+            const char* const quote = candidate.find(',') == std::string::npos ? "" : "\"";
+            text += (count > 1 ? ", " : "") + (quote + candidate) + quote;
         }
     }
     if (count == 0) {

@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/diagnostics_options.h"
+#include "cli/help_formatter.h"
 #include "cli/slips.h"
 #include "gltf/basisu.h"
 
@@ -9,6 +10,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +22,7 @@ namespace {
 using Arguments = std::span<const char* const>;
 
 void describe(CLI::App& app) {
+    app.formatter(std::make_shared<HelpFormatter>());
     app.name("glint");
     app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
     app.set_version_flag("--version",

@@ -18,7 +18,7 @@ struct ArgumentModel {
 
 struct OptionModel {
     std::vector<std::string> names;  // "-o", "--output"
-    std::string help;                // the first line
+    std::string help;                // what its text says first, in one line
     bool takesValue = false;
     ArgumentModel value;
 };

@@ -1,6 +1,7 @@
 #include "cli/completion.h"
 #include "cli/options.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace glint {
@@ -11,8 +12,14 @@ bool mentions(const std::string& text, const char* word) {
     return text.find(word) != std::string::npos;
 }
 
-std::string firstLine(const std::string& text) {
-    return text.substr(0, text.find('\n'));
+// What the text says first, in one line: details, defaults and the meanings of values follow it.
+std::string shortened(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    std::size_t end = text.size();
+    for (const char* const rest : {"; ", ": ", " (default"}) {
+        end = std::min(end, text.find(rest));
+    }
+    return text.substr(0, end);
 }
 
 ArgumentModel argumentOf(CLI::Option& option) {
@@ -33,14 +40,14 @@ OptionModel optionOf(CLI::Option& option) {
     for (const std::string& name : option.get_lnames()) {
         model.names.push_back("--" + name);
     }
-    model.help = firstLine(option.get_description());
+    model.help = shortened(option.get_description());
     model.takesValue = option.get_items_expected_max() > 0;
     model.value = argumentOf(option);
     return model;
 }
 
 CommandModel commandOf(CLI::App& command) {
-    CommandModel model{command.get_name(), firstLine(command.get_description()), {}, {}};
+    CommandModel model{command.get_name(), shortened(command.get_description()), {}, {}};
     for (CLI::Option* option : command.get_options(std::function<bool(CLI::Option*)>())) {
         if (!option->get_positional()) {
             model.options.push_back(optionOf(*option));

@@ -99,14 +99,15 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
         .group(group);
     command
         .add_flag("--werror", arguments.werror,
-                  "--werror: warnings are errors; --werror=ID: those of\nthat id are, may be repeated")
+                  "warnings are errors; --werror=ID: those of that id are,\nmay be repeated")
         ->group(group)
         ->check(CLI::Validator(
             [](const std::string& id) { return id == kAll ? std::string() : checkId(id, kWarning); }, ""));
     command
         .add_option("-W", arguments.warnings,
-                    "-Wno-ID: leave out warnings and notes of that id;\n-Werror=ID, -Werror: as --werror")
-        ->type_name("no-ID")
+                    "what becomes of warnings; -Wno-ID: those of that id are\nleft out, and notes; -Werror, "
+                    "-Werror=ID: as --werror")
+        ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)
         ->group(group)
         ->check(CLI::Validator(checkWarning, ""));

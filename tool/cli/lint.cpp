@@ -185,7 +185,7 @@ int lint(const Console& console, const LintArguments& arguments) {
 
 void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const std::string& what) {
     auto& option = addInteger(command, flag, budget.limit, 0, std::numeric_limits<std::int32_t>::max(), "");
-    option.description(fmt::format("error above N {} in a module (default: no limit)", what));
+    option.description(fmt::format("error above N {} in a module\n(default: no limit)", what));
     option.group("Budgets");
     budget.option = &option;
 }

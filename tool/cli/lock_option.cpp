@@ -194,10 +194,10 @@ void addLockOptions(CLI::App& command, LockArguments& arguments) {
                                 "keep shader IDs from build to build in this file, which is\n"
                                 "made, or changed where keys are new; commit it");
     CLI::Option& frozen = addFlag(command, "--locked", arguments.frozen,
-                                  "fail, and write nothing, if the lock file would change");
+                                  "fail, and write nothing, if the lock file would change\n(needs --lock)");
     CLI::Option& prune = addFlag(command, "--lock-prune", arguments.prune,
-                                 "drop keys from the lock file that no scene has,\n"
-                                 "which frees their IDs");
+                                 "drop keys from the lock file that no scene has, which\n"
+                                 "frees their IDs (needs --lock, excludes --locked)");
     frozen.needs(&lock);
     prune.needs(&lock)->excludes(&frozen);
     for (CLI::Option* option : {&lock, &frozen, &prune}) {

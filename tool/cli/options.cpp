@@ -35,10 +35,14 @@ std::string quoted(const std::string& text) {
 // The name of a check that checks nothing: its description holds the choices, for choicesOf().
 constexpr const char* kChoices = "choices";
 
-CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& choices) {
+void keepChoices(CLI::Option* option, const std::vector<std::string>& choices) {
     CLI::Validator known([](const std::string&) { return std::string(); },
                          fmt::format("{}", fmt::join(choices, " ")), kChoices);
     option->check(known.active(false));
+}
+
+CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& choices) {
+    keepChoices(option, choices);
     return check(option, [choices](const std::string& text) {
         if (std::find(choices.begin(), choices.end(), text) != choices.end()) {
             return std::string();
@@ -91,6 +95,14 @@ std::string furtherLobes() {
     return text;
 }
 
+// What follows the text of an option: on its last line, or on one of its own where that would be too long.
+std::string withNote(const std::string& help, const std::string& note) {
+    constexpr std::size_t kColumns = 58;
+    const std::size_t lineBreak = help.rfind('\n');
+    const std::size_t last = help.size() - (lineBreak == std::string::npos ? 0 : lineBreak + 1);
+    return help + (last + 1 + note.size() > kColumns ? "\n" : " ") + note;
+}
+
 constexpr MergePolicy kMergePolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
                                           MergePolicy::Auto, MergePolicy::Profile};
 constexpr std::string_view kProfilePrefix = "profile:";
@@ -108,6 +120,7 @@ CLI::Option& addMerge(CLI::App& command, std::string& value) {
                                     "own, the others merged (default: {})",
                                     value))
             ->type_name("none|family|all|auto|profile[:FILE]");
+    keepChoices(option, choices);
     return check(option, [choices](const std::string& text) {
         const bool isKnown = std::find(choices.begin(), choices.end(), text) != choices.end();
         const bool namesFile = text.starts_with(kProfilePrefix) && text.size() > kProfilePrefix.size();
@@ -131,7 +144,9 @@ CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& 
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
                        const std::vector<std::string>& choices, const std::string& help) {
     CLI::Option* option =
-        command.add_option(flags, value, value.empty() ? help : fmt::format("{} (default: {})", help, value))
+        command
+            .add_option(flags, value,
+                        value.empty() ? help : withNote(help, fmt::format("(default: {})", value)))
             ->type_name(fmt::format("{}", fmt::join(choices, "|")));
     return checkChoice(option, choices);
 }
@@ -139,7 +154,8 @@ CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string&
 CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                         const std::vector<std::string>& choices, const std::string& help) {
     CLI::Option* option =
-        command.add_option(flags, values, fmt::format("{} (default: {})", help, fmt::join(values, ",")))
+        command
+            .add_option(flags, values, withNote(help, fmt::format("(default: {})", fmt::join(values, ","))))
             ->type_name(fmt::format("{}", fmt::join(choices, ",")))
             ->delimiter(',')
             ->allow_extra_args(false);
@@ -164,7 +180,8 @@ std::vector<std::string> choicesOf(CLI::Option& option) {
 CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_t& value, std::int64_t min,
                         std::int64_t max, const std::string& help) {
     CLI::Option* option =
-        command.add_option(flags, value, fmt::format("{} ({} to {}, default: {})", help, min, max, value))
+        command
+            .add_option(flags, value, withNote(help, fmt::format("({} to {}, default: {})", min, max, value)))
             ->type_name("N");
     return check(option, [min, max](const std::string& text) {
         std::int64_t number = 0;

@@ -61,10 +61,13 @@ std::optional<std::string> findUnknownOption(const CLI::App& app, Arguments argu
     return std::nullopt;
 }
 
-// Nothing where the list has an item between all of its commas.
+// Nothing where the list has an item between all of its commas, and no blank.
 std::optional<std::string> checkList(const std::string& name, const std::string& value) {
     if (value.find_first_not_of(',') == std::string::npos) {
         return name + ": is empty";
+    }
+    if (value.find_first_of(" \t") != std::string::npos) {
+        return name + ": \"" + value + "\" has a blank: lists are separated by commas, without blanks";
     }
     if (value.starts_with(',') || value.ends_with(',') || value.find(",,") != std::string::npos) {
         return name + ": \"" + value + "\" lacks an item: lists are separated by commas, without blanks";

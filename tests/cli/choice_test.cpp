@@ -1,0 +1,75 @@
+// Options that contradict each other, and lists that are no lists.
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+class Choice : public CommandTest {
+protected:
+    void expectRefused(const std::vector<std::string>& arguments, const std::string& message) const {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit, 2) << message;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+        EXPECT_NE(outcome.err.find(message), std::string::npos) << message << "\n" << outcome.err;
+    }
+};
+
+TEST_F(Choice, RayQueriesCannotRunHitShaders) {
+    const std::vector<std::string> line{"render",     "a.gltf",      "-o",       "a.png",
+                                        "--strategy", "hit-shaders", "--tracer", "ray-query"};
+    expectRefused(line, "ray-query can't run --strategy hit-shaders, which is a ray tracing pipeline");
+}
+
+TEST_F(Choice, WhatThePackageDecidesIsRefusedBesideIt) {
+    const std::vector<std::vector<std::string>> decided{
+        {"--merge", "all"},        {"--max-shaders", "3"},          {"--alpha", "tested"},
+        {"--hit-lobes", "base"},   {"--energy-compensation", "on"}, {"--texture-lod", "cones"},
+        {"--shadows", "deferred"}, {"--hit-record", "full"},        {"--position-fetch"}};
+    for (const std::vector<std::string>& option : decided) {
+        std::vector<std::string> line{"render", "a.gltf", "-o", "a.png", "--package", "p"};
+        line.insert(line.end(), option.begin(), option.end());
+        expectRefused(line, option.front() + ": is decided by --package; leave out one of them");
+    }
+}
+
+TEST_F(Choice, ListsHaveItemsAndNoBlanks) {
+    const auto refused = [&](const std::vector<std::string>& option, const std::string& message) {
+        std::vector<std::string> line{"compile", "a.gltf", "-o", "x"};
+        line.insert(line.end(), option.begin(), option.end());
+        expectRefused(line, message);
+    };
+    refused({"--emit=", "--strategy", "uber"}, "--emit: is empty");
+    refused({"--emit", "", "--strategy", "uber"}, "--emit: is empty");
+    refused({"--emit", "--strategy", "uber"}, "--emit: \"--strategy\" is none of glsl, header");
+    refused({"--strategy", ","}, "--strategy: is empty");
+    refused({"--strategy=,"}, "--strategy: is empty");
+    refused({"--strategy", "uber,"}, "\"uber,\" lacks an item");
+    refused({"--strategy", "uber,", "visibility"}, "\"uber,\" lacks an item");
+    refused({"--strategy", "uber,,visibility"}, "lacks an item");
+    refused({"--strategy", ",uber"}, "lacks an item");
+    refused({"--strategy", "uber, visibility"}, "has a blank: lists are separated by commas");
+    refused({"--tracer=all, ray-query"}, "has a blank");
+    refused({"--hit-lobes", " base"}, "has a blank");
+}
+
+TEST_F(Choice, EmptyValuesNeverTakeTheNextArgument) {
+    expectRefused({"compile", "a.gltf", "--output=", "b.gltf"}, "--output: is empty");
+    expectRefused({"render", "a.gltf", "-o", "a.png", "--camera=", "b.gltf"}, "--camera: is empty");
+    expectRefused({"lint", "a.spv", "--core=", "b.spv"}, "--core: is empty");
+    expectRefused({"compile", "a.gltf", "-o"}, "--output");
+}
+
+TEST_F(Choice, MaterialsAreListedAndSuggested) {
+    writeTinyScene(path(""));
+    const Outcome outcome = run({"explain", "scene.gltf", "--material", "Flor"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_NE(outcome.err.find("(it has Floor, Wall, Spare); did you mean Floor?"), std::string::npos)
+        << outcome.err;
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,161 @@
+// The table of diagnostics against the sources that make them, and against its document.
+#include "cli/diagnostic_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string readText(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+// Without comments, in which ids are only named.
+std::string withoutComments(const std::string& source) {
+    std::string text;
+    std::istringstream lines(source);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t comment = line.find("// ");
+        // A // within a literal is that of an address, which no blank follows.
+        text += line.substr(0, comment) + "\n";
+    }
+    return text;
+}
+
+// Of all sources that make diagnostics, but for the table itself.
+const std::vector<std::string>& sources() {
+    static const std::vector<std::string> kSources = [] {
+        std::vector<std::string> texts;
+        for (const char* folder : {"tool", "runtime"}) {
+            for (const auto& entry : fs::recursive_directory_iterator(fs::path(GLINT_SOURCE_DIR) / folder)) {
+                const std::string extension = entry.path().extension().string();
+                const bool isTable = entry.path().stem() == "diagnostic_table";
+                if (!isTable && (extension == ".cpp" || extension == ".h")) {
+                    texts.push_back(withoutComments(readText(entry.path())));
+                }
+            }
+        }
+        return texts;
+    }();
+    return kSources;
+}
+
+// What makes a diagnostic, up to the opening quote of its id, and the severity that it gives it.
+struct Maker {
+    const char* pattern;
+    std::uint8_t severity;
+};
+
+constexpr Maker kMakers[] = {
+    {R"(\b(?:makeError|error|errorAt)\(\s*)", kError},
+    {R"(\bSchemaError\{\s*)", kError},
+    {R"(\bcheckBudget\([^"]*)", kError},
+    {R"(\b(?:makeWarning|warn)\(\s*)", kWarning},
+    {R"(Severity::Error,\s*)", kError},
+    {R"(Severity::Warning,\s*)", kWarning},
+    {R"(Severity::Note,\s*)", kNote},
+};
+
+// The ids of literals at the places above, with the severities that they are made with.
+const std::map<std::string, std::uint8_t>& madeIds() {
+    static const std::map<std::string, std::uint8_t> kIds = [] {
+        std::map<std::string, std::uint8_t> ids;
+        for (const Maker& maker : kMakers) {
+            const std::regex pattern(std::string(maker.pattern) + R"("([a-z][a-z0-9-]*)\")");
+            for (const std::string& text : sources()) {
+                for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it) {
+                    ids[(*it)[1].str()] |= maker.severity;
+                }
+            }
+        }
+        return ids;
+    }();
+    return kIds;
+}
+
+TEST(DiagnosticTable, IsSortedAndWithoutRepetition) {
+    for (std::size_t i = 1; i < diagnosticTable().size(); ++i) {
+        EXPECT_LT(diagnosticTable()[i - 1].id, diagnosticTable()[i].id);
+    }
+    EXPECT_EQ(findDiagnostic("gltf")->id, "gltf");
+    EXPECT_EQ(findDiagnostic("no-such-id"), nullptr);
+    EXPECT_EQ(findDiagnostic(""), nullptr);
+}
+
+TEST(DiagnosticTable, MeaningsAreSentences) {
+    for (const DiagnosticInfo& info : diagnosticTable()) {
+        EXPECT_NE(info.severities & (kNote | kWarning | kError), 0) << info.id;
+        EXPECT_TRUE(info.meaning.ends_with('.')) << info.id;
+        EXPECT_EQ(info.meaning.find('|'), std::string_view::npos)
+            << info.id << " would end a cell of a table";
+    }
+}
+
+TEST(DiagnosticTable, HasEveryIdThatTheSourcesMake) {
+    // Fewer would mean that the patterns no longer find them.
+    EXPECT_GT(madeIds().size(), 150U);
+    for (const auto& [id, severities] : madeIds()) {
+        const DiagnosticInfo* const info = findDiagnostic(id);
+        if (info == nullptr) {
+            ADD_FAILURE() << id << " is made, and not in the table";
+            continue;
+        }
+        EXPECT_EQ(severities & ~info->severities, 0)
+            << id << " is made with a severity that the table does not have";
+    }
+}
+
+// An id that goes a longer way to its diagnostic is at least a literal of its own somewhere; only one with a
+// hyphen says by itself what it is.
+TEST(DiagnosticTable, HasNoIdThatNothingMakes) {
+    for (const DiagnosticInfo& info : diagnosticTable()) {
+        const std::string id(info.id);
+        const bool isLiteral =
+            id.find('-') != std::string::npos && std::ranges::any_of(sources(), [&](const std::string& text) {
+                return text.find('"' + id + '"') != std::string::npos;
+            });
+        EXPECT_TRUE(isLiteral || madeIds().contains(id)) << id;
+    }
+}
+
+std::string severityNames(std::uint8_t severities) {
+    std::string text;
+    for (const auto& [bit, name] : {std::pair(kError, "error"), {kWarning, "warning"}, {kNote, "note"}}) {
+        if ((severities & bit) != 0) {
+            text += (text.empty() ? "" : ", ") + std::string(name);
+        }
+    }
+    return text;
+}
+
+TEST(DiagnosticTable, IsThatOfItsDocument) {
+    std::string expected;
+    for (const DiagnosticInfo& info : diagnosticTable()) {
+        expected += "| `" + std::string(info.id) + "` | " + severityNames(info.severities) + " | " +
+                    std::string(info.meaning) + " |\n";
+    }
+    const std::string document = readText(fs::path(GLINT_SOURCE_DIR) / "docs" / "diagnostics.md");
+    const std::string head = "| id | severity | meaning |\n|---|---|---|\n";
+    const std::size_t begin = document.find(head);
+    ASSERT_NE(begin, std::string::npos);
+    EXPECT_EQ(document.substr(begin + head.size()), expected)
+        << "the table ends docs/diagnostics.md; it should be:\n"
+        << expected;
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,86 @@
+// glint inspect --disassemble
+#include "cli/command.h"
+#include "cli/shell.h"
+#include "cli/tiny_scene.h"
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+class Disassembly : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        writeTinyScene(path(""));
+        const Outcome made = run({"compile", "scene.gltf", "-o", "package", "--strategy",
+                                  "uber,visibility,hit-shaders", "--tracer", "all"});
+        ASSERT_EQ(made.exit, 0) << made.err;
+    }
+    nlohmann::json disassemble(const std::string& what) const {
+        const Outcome outcome = run({"inspect", "package", "--disassemble", what, "--json"});
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return outcome.json().at("disassembly");
+    }
+};
+
+TEST_F(Disassembly, OfAShaderIsAllOfItsModules) {
+    const nlohmann::json shader = run({"inspect", "package", "--json"}).json().at("shaders")[1];
+    const nlohmann::json modules = disassemble("1");
+    std::set<std::string> files;
+    for (const nlohmann::json& module : modules) {
+        EXPECT_EQ(module.at("shaderId"), 1);
+        EXPECT_NE(module.at("text").get<std::string>().find("OpFunctionEnd"), std::string::npos);
+        files.insert(module.at("file").get<std::string>());
+    }
+    std::set<std::string> expected;
+    for (const nlohmann::json& stage : shader.at("stages")) {
+        expected.insert(stage.at("file").get<std::string>());
+    }
+    EXPECT_EQ(files.size(), 3U);
+    EXPECT_EQ(files, expected);
+    EXPECT_EQ(disassemble(shader.at("name").get<std::string>()), modules);
+}
+
+TEST_F(Disassembly, OfARoleOrAFile) {
+    const nlohmann::json role = disassemble("UberShade");
+    ASSERT_EQ(role.size(), 2U) << "one for each tracer";
+    EXPECT_TRUE(role[0].at("shaderId").is_null());
+    const std::string file = role[0].at("file").get<std::string>();
+    const nlohmann::json module = disassemble(file);
+    ASSERT_EQ(module.size(), 1U);
+    EXPECT_EQ(module[0], role[0]);
+}
+
+TEST_F(Disassembly, AsTextIsAssemblyOfTheSameModule) {
+    const Outcome text = run({"inspect", "package", "--disassemble", "gbuffer.frag.spv"});
+    ASSERT_EQ(text.exit, 0) << text.err;
+    EXPECT_TRUE(text.out.starts_with("; gbuffer.frag.spv: GBufferFragment\n")) << text.out.substr(0, 80);
+    if (!hasProgram("spirv-as")) {
+        GTEST_SKIP() << "spirv-as is not installed";
+    }
+    writeText(path("text.spvasm"), text.out);
+    const Outcome assembled =
+        runShell(path(""), "spirv-as --preserve-numeric-ids --target-env vulkan1.2 text.spvasm -o again.spv");
+    ASSERT_EQ(assembled.exit, 0) << assembled.out;
+    // All but the first five words, which name the assembler.
+    constexpr std::size_t kHeaderBytes = 20;
+    EXPECT_EQ(readText(path("again.spv")).substr(kHeaderBytes),
+              readText(path("package/gbuffer.frag.spv")).substr(kHeaderBytes));
+}
+
+TEST_F(Disassembly, OfNothingIsAnError) {
+    for (const char* what : {"99", "UberShad", "-1"}) {
+        const Outcome outcome = run({"inspect", "package", "--disassemble", what});
+        EXPECT_EQ(outcome.exit, 1) << what;
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_NE(outcome.err.find("[module-unknown]"), std::string::npos) << outcome.err;
+    }
+    EXPECT_NE(run({"inspect", "package", "--disassemble", "UberShad"}).err.find("did you mean UberShade?"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,77 @@
+// What --help says of options whose words have misled before.
+#include "cli/command.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+class Help : public CommandTest {
+protected:
+    // With one blank in place of every run of blanks and line breaks, so that lines may break anywhere.
+    std::string help(const std::string& command) const {
+        std::istringstream words(run({command, "--help"}).out);
+        std::string text;
+        for (std::string word; words >> word;) {
+            text += word + " ";
+        }
+        return text;
+    }
+};
+
+struct Words {
+    std::string command;
+    std::string text;
+};
+
+TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
+    const std::vector<Words> expected{
+        {"compile", "--strategy all|LIST how hits can be shaded, separated by commas;"},
+        {"compile",
+         "--tracer all|LIST what traces rays, separated by commas; ray-pipeline: for devices without ray "
+         "queries; hit-shaders always has its own"},
+        {"compile", "what is kept of a hit between passes (visibility, sorted-uber);"},
+        {"compile",
+         "most shaders: --merge auto and profile keep to it, others fail above it; 0: no limit, 32 for those "
+         "two"},
+        {"compile", "if the lock file would change (needs --lock)"},
+        {"compile", "(needs --lock, excludes --locked)"},
+        {"compile", "-Wno-ID"},
+        {"render", "how visibility and sorted-uber sort hits by shader; auto: by the device and the number"},
+        {"render", "any message is an error; also checks the order of hits"},
+        {"render", "1 to 16384 each way, 67108864 in all"},
+        {"render", "(-360 to 360, default: 0; needs --environment)"},
+        {"render", "(0 to 1e9, default: 1; needs --environment)"},
+    };
+    for (const Words& words : expected) {
+        EXPECT_NE(help(words.command).find(words.text), std::string::npos) << words.text << "\n"
+                                                                           << help(words.command);
+    }
+}
+
+TEST_F(Help, HasNoTraceOfTheParserInItsOptions) {
+    for (const char* command :
+         {"compile", "explain", "inspect", "diff", "lint", "render", "compare", "completion"}) {
+        const std::string text = help(command);
+        EXPECT_EQ(text.find("Needs:"), std::string::npos) << command;
+        EXPECT_EQ(text.find("Excludes:"), std::string::npos) << command;
+        EXPECT_EQ(text.find(" ... "), std::string::npos) << command;
+    }
+}
+
+// Continuation lines start at column 32; texts are written for terminals of 92 columns.
+TEST_F(Help, LinesFitATerminal) {
+    constexpr std::size_t kColumns = 92;
+    for (const char* command :
+         {"compile", "explain", "inspect", "diff", "lint", "render", "compare", "completion"}) {
+        std::istringstream lines(run({command, "--help"}).out);
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_LE(line.size(), kColumns) << command << ": " << line;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

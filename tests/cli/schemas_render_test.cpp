@@ -1,0 +1,61 @@
+// What needs a device to be made, held to docs/schemas.
+#include "cli/render_command.h"
+#include "cli/schemas.h"
+#include "support/hdr_writer.h"
+
+#include <string>
+
+namespace glint::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class RenderSchemas : public RenderCommand {};
+
+TEST_F(RenderSchemas, HoldRenderAndItsStatistics) {
+    const Outcome outcome = render("a.exr", {"--json", "--stats", "stats.json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    expectFits("render", outcome.json());
+    EXPECT_GT(outcome.json().size(), 1U);
+    Json statistics = Json::parse(readText(path("stats.json")));
+    EXPECT_FALSE(statistics.contains("diagnostics"));
+    statistics["diagnostics"] = Json::array();
+    expectFits("render", statistics);
+}
+
+TEST_F(RenderSchemas, HoldPackagesAndStrategiesWithoutOrder) {
+    ASSERT_EQ(run({"compile", scene_, "-o", "package", "--strategy", "uber"}).exit, 0);
+    const Outcome outcome = render("a.exr", {"--json", "--package", "package", "--strategy", "uber"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    expectFits("render", outcome.json());
+}
+
+TEST_F(RenderSchemas, HoldEnvironments) {
+    const std::vector<std::array<float, 3>> pixels(64 * 32, {0.5F, 2.0F, 0.25F});
+    const std::vector<std::uint8_t> bytes = encodeHdr(64, 32, pixels, HdrEncoding::Flat);
+    writeText(path("sky.hdr"), std::string(bytes.begin(), bytes.end()));
+    const Outcome outcome = render("a.exr", {"--json", "--environment", "sky.hdr"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    expectFits("render", outcome.json());
+    EXPECT_TRUE(outcome.json().at("environment").is_object());
+}
+
+TEST_F(RenderSchemas, HoldProfiles) {
+    ASSERT_EQ(render("a.exr", {"--profile", "profile.json"}).exit, 0);
+    expectFits("profile", Json::parse(readText(path("profile.json"))));
+}
+
+TEST_F(RenderSchemas, HoldComparisons) {
+    ASSERT_EQ(render("a.exr").exit, 0);
+    ASSERT_EQ(render("b.exr", {"--seed", "1", "--sun", "off"}).exit, 0);
+    const Outcome equal = run({"compare", "a.exr", "a.exr", "--json"});
+    expectFits("compare", equal.json());
+    EXPECT_TRUE(equal.json().at("psnr").is_null());
+    const Outcome different = run({"compare", "a.exr", "b.exr", "--json", "--max-error", "0"});
+    EXPECT_EQ(different.exit, 1);
+    expectFits("compare", different.json());
+    EXPECT_EQ(different.json().at("diagnostics").at(0).at("id"), "max-error");
+}
+
+}  // namespace
+}  // namespace glint::testing

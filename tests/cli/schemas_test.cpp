@@ -1,0 +1,151 @@
+// What every command prints with --json, and the files of a package, held to docs/schemas.
+#include "cli/schemas.h"
+
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class Schemas : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        writeTinyScene(path(""), {.unknownExtension = true, .variants = true});
+    }
+    Json json(std::vector<std::string> arguments, int exit = 0) const {
+        arguments.emplace_back("--json");
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit, exit) << outcome.err;
+        return outcome.json();
+    }
+    // A result, which has more than its diagnostics.
+    void expectResult(const std::string& schema, const Json& result) const {
+        expectFits(schema, result);
+        EXPECT_GT(result.size(), 1U) << result;
+    }
+    Json compile(const std::string& package, const std::vector<std::string>& options) const {
+        std::vector<std::string> line{"compile", "scene.gltf", "-o", package, "--cache", "cache"};
+        line.insert(line.end(), options.begin(), options.end());
+        return json(line);
+    }
+};
+
+TEST_F(Schemas, HoldCompileAndInspect) {
+    const std::vector<std::string> options{"--strategy", "all", "--tracer", "all", "--emit", "glsl,header"};
+    const Json made = compile("package", options);
+    expectResult("compile", made);
+    EXPECT_EQ(made.at("upToDate"), false);
+    const Json repeated = compile("package", options);
+    expectResult("compile", repeated);
+    EXPECT_EQ(repeated.at("upToDate"), true);
+    expectFits("manifest", Json::parse(readText(path("package/manifest.json"))));
+    expectResult("inspect", json({"inspect", "package"}));
+    expectResult("inspect", json({"inspect", "package", "--disassemble", "0"}));
+    expectResult("compile", json({"compile", "scene.gltf", "--dry-run", "--variant", "Day"}));
+    expectResult("compile", json({"compile", "scene.gltf", "--embed", "scene.cpp", "--cache", "none"}));
+}
+
+TEST_F(Schemas, HoldTheManifest) {
+    compile("small", {"--strategy", "uber", "--merge", "auto", "--max-shaders", "1", "--variant", "Night",
+                      "--environment-map", "--hit-lobes", "base"});
+    expectFits("manifest", Json::parse(readText(path("small/manifest.json"))));
+}
+
+TEST_F(Schemas, HoldExplain) {
+    expectResult("explain", json({"explain", "scene.gltf"}));
+    expectResult("explain", json({"explain", "scene.gltf", "--material", "Spare", "--merge", "auto"}));
+    expectResult("explain", json({"explain", "scene.gltf", "--variant", "Day", "--hit-lobes", "base"}));
+}
+
+TEST_F(Schemas, HoldDiff) {
+    compile("a", {"--merge", "none"});
+    compile("b", {"--merge", "all", "--variant", "Day", "--strategy", "sorted-uber"});
+    const Json different = json({"diff", "a", "b", "--exit-code"}, 1);
+    expectResult("diff", different);
+    EXPECT_EQ(different.at("differ"), true);
+    expectResult("diff", json({"diff", "b", "a"}));
+    expectResult("diff", json({"diff", "a", "a"}));
+}
+
+TEST_F(Schemas, HoldLint) {
+    compile("package", {"--strategy", "uber,hit-shaders", "--merge", "all", "--alpha", "tested"});
+    writeText(path("package/broken.spv"), "this is no SPIR-V");
+    const Json found = json({"lint", "package", "package/broken.spv", "--max-instructions", "10"}, 1);
+    expectResult("lint", found);
+    EXPECT_GT(found.at("errors").get<int>(), 1);
+}
+
+TEST_F(Schemas, HoldFailures) {
+    const std::vector<std::vector<std::string>> lines{{"compile", "none.gltf", "-o", "x"},
+                                                      {"explain", "none.gltf"},
+                                                      {"inspect", "none"},
+                                                      {"diff", "none", "none"},
+                                                      {"lint", "none.spv"},
+                                                      {"render", "none.gltf", "-o", "a.png"},
+                                                      {"compare", "a.png", "b.png"}};
+    for (const std::vector<std::string>& line : lines) {
+        const Json failed = json(line, 1);
+        expectFits(line[0], failed);
+        ASSERT_EQ(failed.size(), 1U) << failed;
+        EXPECT_EQ(failed.at("diagnostics").back().at("severity"), "error");
+    }
+}
+
+TEST_F(Schemas, RefuseWhatTheyDoNotKnow) {
+    const Json good = json({"explain", "scene.gltf"});
+    ASSERT_TRUE(fits("explain", good));
+    Json more = good;
+    more["materials"][0]["keys"][0]["case"]["colour"] = "red";
+    EXPECT_FALSE(fits("explain", more));
+    Json less = good;
+    less["materials"][0].erase("name");
+    EXPECT_FALSE(fits("explain", less));
+    Json other = good;
+    other["diagnostics"][0]["severity"] = "fatal";  // behind a reference to another file
+    EXPECT_FALSE(fits("explain", other));
+    EXPECT_FALSE(fits("explain", Json::object()));
+}
+
+// Every member says what it is, and none beside those is let through.
+void expectDescribed(const Json& schema, const std::string& where) {
+    if (schema.is_array()) {
+        for (const Json& element : schema) {
+            expectDescribed(element, where);
+        }
+    }
+    if (!schema.is_object()) {
+        return;
+    }
+    if (schema.contains("properties")) {
+        EXPECT_EQ(schema.value("additionalProperties", Json()), Json(false)) << where;
+        for (const auto& [name, member] : schema.at("properties").items()) {
+            EXPECT_TRUE(member.contains("description") || member.contains("$ref")) << where << "/" << name;
+        }
+    }
+    for (const auto& [name, value] : schema.items()) {
+        expectDescribed(value, where + "/" + name);
+    }
+}
+
+TEST(SchemaFiles, DescribeEveryMember) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(GLINT_SOURCE_DIR "/docs/schemas")) {
+        const std::string name = entry.path().stem().string();
+        expectDescribed(readSchema(name), name);
+        names.insert(name);
+    }
+    for (const char* command : {"compile", "explain", "inspect", "diff", "lint", "render", "compare"}) {
+        EXPECT_TRUE(names.contains(command)) << command;
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

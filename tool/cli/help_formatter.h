@@ -1,0 +1,17 @@
+// The layout of --help.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace glint {
+
+// CLI11's, less what the texts of options say in words: which options they need and exclude, and that lists
+// may be repeated.
+class HelpFormatter : public CLI::Formatter {
+public:
+    std::string make_option_opts(const CLI::Option* option) const override;
+};
+
+}  // namespace glint
