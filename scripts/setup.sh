@@ -46,6 +46,7 @@ kNeeds=(
     "file /usr/include/stb/stb_image.h|libstb-dev"
     "file /usr/include/OpenEXR/ImfHeader.h|libopenexr-dev"
     "file /usr/include/gtest/gtest.h|libgtest-dev"
+    "file /usr/lib/python3/dist-packages/numpy/__init__.py|python3-numpy"
 )
 # clang-format 14 is what the sources are formatted with.
 kLintNeeds=(
