@@ -135,7 +135,7 @@ std::string whyText(const Case& shader) {
 }
 
 std::string sharesText(const Planned& planned, const Key& key, const Case& shader) {
-    const bool counted = planned.options.merge == MergePolicy::Profile;
+    const bool counted = countsHits(planned.options);
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
     return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
