@@ -272,9 +272,9 @@ std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& argum
 }
 
 void addProfileInput(CLI::App& command, PlanArguments& arguments) {
-    addText(command, "--profile", arguments.profile, "FILE",
-            "hits that `glint render --profile FILE` counted,\nfor --merge profile, and for --merge auto "
-            "where there is one")
+    addText(
+        command, "--profile", arguments.profile, "FILE",
+        "hits that `glint render --profile FILE` counted,\nfor --merge profile; --merge auto takes them too")
         .group("Shaders");
 }
 
