@@ -1,91 +1,54 @@
 #!/usr/bin/env python3
 """Fits what the merge planner's cost model knows of code, and writes tool/plan/cost_constants.h. Needs NumPy.
 
-Measurements: synthetic scenes (scripts/merge_scenes.py), compiled by `glint compile --strategy visibility` with --merge
-none (a shader a key), family and all (shaders that branch); instructions and texture fetches of each case's SPIR-V from
-the package's manifest. The fit is linear, least squares of relative errors, in two steps:
+The measurements are scripts/merge_model.csv, which scripts/measure_merge_model.py makes and describes. The fit is linear,
+least squares of relative errors, in two steps:
 
     1. shaders of one key:     instructions = those of the plain shader, lit or unlit, + sum of the key's features
     2. shaders that branch:    what they have beyond step 1 = inputs * kInputBranch + lobes * kLobeBranch
 
 Constants below zero are dropped from the fit, as no code makes a hit faster. Keys of few features weigh more
 (SIMPLE_WEIGHT), as scenes have more of them. A quarter of the random combinations is held out; the errors on them are
-printed and stand in the header. The same `glint` gives the same header.
+printed and stand in the header. The same measurements give the same header, byte for byte.
 
-    scripts/fit_merge_model.py [--glint PATH] [--check]     default: build/release/bin/glint
+    scripts/fit_merge_model.py [--check]
 
---check writes nothing and exits 1 where a constant of the header is off by more than TOLERANCE. Takes about two minutes.
+--check writes nothing and exits 1 where the header is not what the measurements give.
 """
 import argparse
-import json
+import csv
 import pathlib
-import random
-import re
-import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
-from merge_scenes import FEATURES, INPUTS, LOBES, TEXTURES, complete, make_scene
+from merge_scenes import LOBES
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+MEASUREMENTS = ROOT / "scripts/merge_model.csv"
 HEADER = ROOT / "tool/plan/cost_constants.h"
-SEED = 20250321
 SIMPLE_WEIGHT = 2
-TOLERANCE = 0.05, 5  # of a constant's value, or in instructions, whichever is more
-
-# ---- Measurements
 
 
 class Shader:
     """What a case's features are, and its code."""
 
-    def __init__(self, entry):
-        self.always, self.sometimes = frozenset(entry["always"]), frozenset(entry["sometimes"])
-        code = entry["stages"]["visibility"]
-        self.instructions, self.fetches = code["instructions"], code["textureFetches"]
+    def __init__(self, row):
+        self.kind = row["set"]
+        self.always, self.sometimes = frozenset(row["always"].split()), frozenset(row["sometimes"].split())
+        self.instructions, self.fetches = int(row["instructions"]), int(row["fetches"])
 
     def features(self):
         return self.always | self.sometimes
 
 
-def compile_scene(glint, folder, wishes, merge):
-    scene, package = folder / "scene.gltf", folder / "scene.glint"
-    scene.write_text(make_scene(list(dict.fromkeys(wishes))))
-    command = [glint, "compile", scene, "-o", package, "--merge", merge, "--strategy", "visibility"]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"fit_merge_model.py: {' '.join(map(str, command))}\n{done.stderr}")
-    return [Shader(entry) for entry in json.loads((package / "manifest.json").read_text())["shaders"]]
-
-
-def measure(glint):
+def read_measurements():
     """(shaders of one key each feature alone, of random keys, shaders that branch)"""
-    rng = random.Random(SEED)
-    # Not alphaMask: rays test alpha before a case is reached.
-    mixable = [f for f in FEATURES if f not in ("unlit", "specularGlossiness")]
-
-    def random_key(most):
-        return complete(rng.sample(mixable, 1 + rng.randrange(most)))
-
-    single = [complete({f}) for f in FEATURES] + [complete({f, "normals", "baseColorTexture"}) for f in FEATURES]
-    single += [frozenset(), complete({"unlit", "vertexColor"}), complete({"unlit", "baseColorTexture", "vertexColor"})]
-    combined = [random_key(9) for _ in range(120)]
-    families = []
-    inputs = TEXTURES[:5] + [f for f in INPUTS if f != "clearcoatSharesNormal"]
-    for lobes in (0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 3, 3):
-        family = set(rng.sample([f for f in LOBES if f not in ("unlit", "specularGlossiness")], lobes))
-        families += [complete(family | set(rng.sample(inputs, rng.randrange(7)))) for _ in range(4)]
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        alone = compile_scene(glint, folder, single, "none")
-        # Both kinds in one package: each keeps its place, so that what is held out is the same every time.
-        together = compile_scene(glint, folder, combined, "none")
-        branching = compile_scene(glint, folder, families, "family")
-        for _ in range(28):
-            branching += compile_scene(glint, folder, [random_key(6) for _ in range(rng.randint(2, 7))], "all")
-    return alone, together, [shader for shader in branching if shader.sometimes]
+    with MEASUREMENTS.open(newline="", encoding="ascii") as file:
+        shaders = [Shader(row) for row in csv.DictReader(file)]
+    alone = [s for s in shaders if s.kind == "alone"]
+    together = [s for s in shaders if s.kind == "together"]
+    return alone, together, [s for s in shaders if s.kind in ("family", "all") and s.sometimes]
 
 
 # ---- The fit
@@ -135,23 +98,24 @@ class Model:
         return self.plain(shader) + self.code @ self.row(shader) + self.branch @ branch_row(shader)
 
     def errors(self, shaders):
-        """Median and largest relative error, percent, and how far fetches are off at most."""
-        relative = [abs(self.instructions(s) - s.instructions) / s.instructions * 100 for s in shaders]
-        fetches = [abs(self.fetches @ self.row(s) - s.fetches) for s in shaders]
-        return float(np.median(relative)), max(relative), max(fetches)
+        """How far the model is off on these shaders."""
+        measured = np.array([s.instructions for s in shaders], float)
+        wrong = np.array([self.instructions(s) for s in shaders]) - measured
+        relative = np.abs(wrong) / measured * 100
+        fetches = np.array([self.fetches @ self.row(s) - s.fetches for s in shaders])
+        return {
+            "count": len(shaders),
+            "mean": float(relative.mean()),
+            "most": float(relative.max()),
+            "r2": float(1 - (wrong @ wrong) / ((measured - measured.mean()) @ (measured - measured.mean()))),
+            "fetches": float(np.abs(fetches).max()),
+        }
 
 
-def fit(glint):
-    alone, together, branching = measure(glint)
-    trained = [[s for i, s in enumerate(shaders) if i % 4] for shaders in (together, branching)]
-    model = Model(alone, *trained)
-    held = {"keys": together[::4], "branching": branching[::4]}
-    errors = {}
-    for kind, shaders in held.items():
-        errors[kind] = model.errors(shaders)
-        median, most, fetches = errors[kind]
-        off = f"instructions off by {median:.1f} % in the median, {most:.1f} % at most; fetches by {fetches:.1f} at most"
-        print(f"held out, {kind}: {len(shaders)} shaders: {off}")
+def fit():
+    alone, together, branching = read_measurements()
+    model = Model(alone, *([s for i, s in enumerate(shaders) if i % 4] for shaders in (together, branching)))
+    errors = {"one key": model.errors(together[::4]), "branches": model.errors(branching[::4])}
     return model, errors, (len(alone) + len(together), len(branching))
 
 
@@ -182,12 +146,18 @@ def header_text(model, errors, counts):
         for name in values
         if not name.startswith("k") and not name.endswith(" fetches")
     )
-    keys, branching = errors["keys"], errors["branching"]
-    return f"""// Made by scripts/fit_merge_model.py from measurements; run it again rather than edit this.
+    held = "".join(
+        f"//     {kind:<10} {e['count']:7} {e['mean']:10.1f} %{e['most']:9.1f} %{e['r2']:8.3f}{e['fetches']:14.1f}\n"
+        for kind, e in errors.items()
+    )
+    return f"""// Made by scripts/fit_merge_model.py from scripts/merge_model.csv; run it again rather than edit this.
 //
 // Fitted to {counts[0]} shaders of one key and {counts[1]} that branch, less a quarter of the random ones. On that quarter
-// instructions are off by {keys[0]:.0f} % in the median and {keys[1]:.0f} % at most without branches, by {branching[0]:.0f} % and
-// {branching[1]:.0f} % with them.
+// the model is off, in instructions, and in texture fetches:
+//
+//                shaders  mean error  largest      R2  fetches, most
+{held}//
+// The mean and the largest error are relative; R2 is that of the instructions.
 #pragma once
 
 #include "plan/features.h"
@@ -216,37 +186,22 @@ inline constexpr FeatureCode kFeatureCode[] = {{
 """
 
 
-def read_header():
-    """The constants of the header as it is, by the names of constants_of()."""
-    text = HEADER.read_text() if HEADER.exists() else ""
-    values = {name: float(value) for name, value in re.findall(r"double (k\w+) = ([\d.]+);", text)}
-    for name, instructions, fetches in re.findall(r"\{Feature::(\w+), ([\d.]+), ([\d.]+)\}", text):
-        values[name], values[name + " fetches"] = float(instructions), float(fetches)
-    return values
-
-
-def differences(wanted, found):
-    for name in sorted(wanted.keys() | found.keys()):
-        if name not in wanted or name not in found:
-            yield f"{name}: {'is measured no more' if name not in wanted else 'is missing'}"
-            continue
-        allowed = 0.05 if name.endswith(" fetches") else max(TOLERANCE[0] * abs(wanted[name]), TOLERANCE[1])
-        if abs(wanted[name] - found[name]) > allowed:
-            yield f"{name}: {found[name]:g}, measured {wanted[name]:g}"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", help="the command that compiles")
     parser.add_argument("--check", action="store_true", help="compare with the header instead of writing it")
     arguments = parser.parse_args()
-    model, errors, counts = fit(arguments.glint)
-    if arguments.check:
-        off = list(differences(constants_of(model), read_header()))
-        print("\n".join(off) if off else f"{HEADER.relative_to(ROOT)} is what was measured")
-        sys.exit(bool(off))
-    HEADER.write_text(header_text(model, errors, counts))
-    print(f"wrote {HEADER.relative_to(ROOT)}")
+    model, errors, counts = fit()
+    for kind, error in errors.items():
+        off = f"off by {error['mean']:.1f} % in the mean, {error['most']:.1f} % at most, R2 {error['r2']:.3f}"
+        print(f"held out, {kind}: {error['count']} shaders: {off}; fetches by {error['fetches']:.1f} at most")
+    text, name = header_text(model, errors, counts), HEADER.relative_to(ROOT)
+    if not arguments.check:
+        HEADER.write_text(text, encoding="ascii")
+        print(f"wrote {name}")
+    elif HEADER.read_text(encoding="utf-8") != text:
+        sys.exit(f"{name} is not what the measurements give: run scripts/fit_merge_model.py")
+    else:
+        print(f"{name} is what the measurements give")
 
 
 if __name__ == "__main__":

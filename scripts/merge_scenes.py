@@ -1,4 +1,5 @@
-"""Synthetic scenes that ask for given features: what scripts/fit_merge_model.py compiles and renders.
+"""Synthetic scenes that ask for given features, which scripts/measure_merge_model.py and scripts/measure_merge.sh
+compile.
 
 A wish is a set of features by their names in the feature table, "clearcoat" or "normalTexture". What a feature needs to
 be in a key comes with it: see complete().

@@ -2,8 +2,10 @@
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
+#include <algorithm>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint::testing {
@@ -38,7 +40,10 @@ protected:
     }
     Outcome planWith(const Json& profile, const std::vector<std::string>& more = {}) const {
         writeText(path("hits.json"), profile.dump());
-        std::vector<std::string> arguments{"--merge", "profile", "--profile", "hits.json"};
+        std::vector<std::string> arguments{"--profile", "hits.json"};
+        if (std::ranges::find(more, "--merge") == more.end()) {
+            arguments.insert(arguments.end(), {"--merge", "profile"});
+        }
         arguments.insert(arguments.end(), more.begin(), more.end());
         return plan(arguments);
     }
@@ -72,6 +77,32 @@ TEST_F(Merge, ProfileTellsHotFromNeverHit) {
     EXPECT_NE(explained.out.find("never-hit: no hit of the profile has its key"), std::string::npos)
         << explained.out;
     EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
+}
+
+// The floor has the larger area, and the wall what hits the profile counts.
+TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
+    const auto sharesOf = [](const Outcome& outcome) {
+        const Json shaders = outcome.json().at("shaders");
+        return std::pair(shaders[0].at("share").get<double>(), shaders[1].at("share").get<double>());
+    };
+    const Outcome counted = planWith(makeProfileJson(30, 10), {"--merge", "auto"});
+    ASSERT_EQ(counted.exit, 0) << counted.err;
+    EXPECT_EQ(sharesOf(counted), std::pair(0.75, 0.25));
+    const Outcome named = plan({"--merge", "auto:hits.json"});
+    ASSERT_EQ(named.exit, 0) << named.err;
+    EXPECT_EQ(sharesOf(named), std::pair(0.75, 0.25));
+    EXPECT_NE(sharesOf(plan({"--merge", "auto"})), std::pair(0.75, 0.25));
+    const Outcome explained = run({"explain", scene_, "--merge", "auto:hits.json"});
+    EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
+    EXPECT_EQ(plan({"--merge", "auto:missing.json"}).exit, 1);
+}
+
+// Without a hit, what areas let expect is better than nothing.
+TEST_F(Merge, AutoDoesWithoutAProfileThatHasNoHits) {
+    const Outcome outcome = planWith(makeProfileJson(0, 0), {"--merge", "auto"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("hits are expected from areas"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.json().at("shaders"), plan({"--merge", "auto"}).json().at("shaders"));
 }
 
 TEST_F(Merge, ProfilesOfOtherKeysAreWarnedOf) {
@@ -179,9 +210,12 @@ TEST_F(Merge, OptionsThatDisagreeAreRefused) {
         {{"compile", "a.gltf", "-o", "x", "--merge", "profile:"}, "is none of"},
         {{"compile", "a.gltf", "-o", "x", "--merge", "profle"}, "did you mean profile?"},
         {{"compile", "a.gltf", "-o", "x", "--profile", "p"},
-         "is for --merge profile, not for --merge family"},
+         "is for --merge profile and auto, not for --merge family"},
         {{"compile", "a.gltf", "-o", "x", "--merge", "profile:p", "--profile", "q"}, "give one of them"},
-        {{"explain", "a.gltf", "--merge", "auto", "--profile", "p"}, "is for --merge profile"},
+        {{"explain", "a.gltf", "--merge", "none", "--profile", "p"}, "is for --merge profile"},
+        {{"explain", "a.gltf", "--merge", "family:p"}, "is none of"},
+        {{"explain", "a.gltf", "--merge", "auto:"}, "is none of"},
+        {{"explain", "a.gltf", "--merge", "auto:p", "--profile", "q"}, "give one of them"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "profile"}, "profile:FILE"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "profile:p", "--profile", "q"}, "leave out --merge"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "all", "--profile", "q"}, "leave out --merge all"},

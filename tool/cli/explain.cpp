@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/explain_plan.h"
 #include "cli/lock_option.h"
 #include "cli/plan_choice.h"
 #include "cli/report.h"
@@ -26,6 +27,7 @@ struct ExplainArguments {
     std::string scene;
     std::string material;
     std::string variant;
+    bool wholePlan = false;
     PlanArguments plan;
     LockArguments lock;
 };
@@ -135,7 +137,7 @@ std::string whyText(const Case& shader) {
 }
 
 std::string sharesText(const Planned& planned, const Key& key, const Case& shader) {
-    const bool counted = planned.options.merge == MergePolicy::Profile;
+    const bool counted = countsHits(planned.options);
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
     return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
@@ -243,18 +245,27 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(makeWarning("max-shaders", scene->path, *excess));
     }
 
+    const PlannedScenes whole{scenes, planned.options, planned.plan};
+    if (arguments.wholePlan && !console.isJson()) {
+        console.print(planText(whole));
+        return kExitDone;
+    }
     if (console.isJson()) {
-        Json list = Json::array();
-        for (const int material : *materials) {
-            list.push_back(toJson(planned, material));
+        Json result{{"scene", arguments.scene},
+                    {"merge", arguments.plan.merge},
+                    {"alpha", arguments.plan.alpha},
+                    {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
+                    {"variant", textOrNull(scene->variant)},
+                    {"variants", scene->variants}};
+        if (arguments.wholePlan) {
+            result["plan"] = planToJson(whole);
+        } else {
+            result["materials"] = Json::array();
+            for (const int material : *materials) {
+                result["materials"].push_back(toJson(planned, material));
+            }
         }
-        console.result(Json{{"scene", arguments.scene},
-                            {"merge", arguments.plan.merge},
-                            {"alpha", arguments.plan.alpha},
-                            {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
-                            {"variant", textOrNull(scene->variant)},
-                            {"variants", scene->variants},
-                            {"materials", list}});
+        console.result(result);
         return kExitDone;
     }
     console.print(variantsText(*scene));
@@ -275,8 +286,12 @@ void addExplain(CLI::App& app, Action& chosen) {
         addCommand(app, "explain", "Say which key and which shader each material gets, and what was dropped",
                    "glint explain scene.gltf --material Leaves --alpha tested");
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
-    addText(command, "--material", arguments->material, "NAME|INDEX",
-            "only this one; a number counts from 0 (default: all)");
+    CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
+                                    "only this one; a number counts from 0 (default: all)");
+    addFlag(command, "--plan", arguments->wholePlan,
+            "what each shader costs by the cost model of --merge auto,\n"
+            "what shares it and why, instead of materials")
+        .excludes(&material);
     addVariant(command, arguments->variant);
     addPlanOptions(command, arguments->plan);
     addProfileInput(command, arguments->plan);

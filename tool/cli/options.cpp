@@ -8,7 +8,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 namespace glint {
 
@@ -105,9 +108,21 @@ std::string withNote(const std::string& help, const std::string& note) {
 
 constexpr MergePolicy kMergePolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
                                           MergePolicy::Auto, MergePolicy::Profile};
-constexpr std::string_view kProfilePrefix = "profile:";
+// Policies that take hits.
+constexpr std::string_view kTakesHits[] = {"auto", "profile"};
 
-// A choice, or profile:FILE.
+// What stands before and behind the colon of POLICY:FILE; nothing where `text` is nothing of that kind.
+std::optional<std::pair<std::string, std::string>> splitPolicy(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string policy = text.substr(0, colon);
+    const bool takesHits = std::ranges::find(kTakesHits, policy) != std::end(kTakesHits);
+    if (colon == std::string::npos || colon + 1 == text.size() || !takesHits) {
+        return std::nullopt;
+    }
+    return std::pair(policy, text.substr(colon + 1));
+}
+
+// A choice, or one with the file of its hits.
 CLI::Option& addMerge(CLI::App& command, std::string& value) {
     const std::vector<std::string> choices{"none", "family", "all", "auto", "profile"};
     CLI::Option* option =
@@ -117,16 +132,17 @@ CLI::Option& addMerge(CLI::App& command, std::string& value) {
                                     "none: every permutation its own; family: those with the\n"
                                     "same lobes; all: one shader; auto: by a cost model, within\n"
                                     "--max-shaders; profile: those with many counted hits their\n"
-                                    "own, the others merged (default: {})",
+                                    "own, the others merged; FILE: counted hits\n"
+                                    "(default: {})",
                                     value))
-            ->type_name("none|family|all|auto|profile[:FILE]");
+            ->type_name("none|family|all|auto[:FILE]|profile[:FILE]");
     keepChoices(option, choices);
     return check(option, [choices](const std::string& text) {
         const bool isKnown = std::find(choices.begin(), choices.end(), text) != choices.end();
-        const bool namesFile = text.starts_with(kProfilePrefix) && text.size() > kProfilePrefix.size();
-        return isKnown || namesFile ? std::string()
-                                    : fmt::format("{} is none of {} or profile:FILE{}", quoted(text),
-                                                  fmt::join(choices, ", "), suggestion(text, choices));
+        return isKnown || splitPolicy(text)
+                   ? std::string()
+                   : fmt::format("{} is none of {}, auto:FILE or profile:FILE{}", quoted(text),
+                                 fmt::join(choices, ", "), suggestion(text, choices));
     });
 }
 
@@ -273,25 +289,27 @@ std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& argum
 }
 
 void addProfileInput(CLI::App& command, PlanArguments& arguments) {
-    addText(command, "--profile", arguments.profile, "FILE",
-            "hits that `glint render --profile FILE` counted,\nfor --merge profile")
+    addText(
+        command, "--profile", arguments.profile, "FILE",
+        "hits that `glint render --profile FILE` counted,\nfor --merge profile; --merge auto takes them too")
         .group("Shaders");
 }
 
 void settleProfile(PlanArguments& arguments) {
-    if (arguments.merge.starts_with(kProfilePrefix)) {
+    if (const auto split = splitPolicy(arguments.merge)) {
         if (!arguments.profile.empty()) {
             throw CLI::ValidationError("--merge", "names a profile, and --profile another: give one of them");
         }
-        arguments.profile = arguments.merge.substr(kProfilePrefix.size());
-        arguments.merge = "profile";
+        std::tie(arguments.merge, arguments.profile) = *split;
     }
     if (arguments.merge == "profile" && arguments.profile.empty()) {
         throw CLI::ValidationError(
             "--merge", "profile needs the hits that `glint render --profile FILE` counted: profile:FILE");
     }
-    if (arguments.merge != "profile" && !arguments.profile.empty()) {
-        throw CLI::ValidationError("--profile", "is for --merge profile, not for --merge " + arguments.merge);
+    const bool takesHits = std::ranges::find(kTakesHits, arguments.merge) != std::end(kTakesHits);
+    if (!takesHits && !arguments.profile.empty()) {
+        throw CLI::ValidationError("--profile",
+                                   "is for --merge profile and auto, not for --merge " + arguments.merge);
     }
 }
 

@@ -53,7 +53,7 @@ struct PlanArguments {
     std::string alpha = "opaque";
     std::vector<std::string> hitLobes{"all"};
     std::int64_t maxShaders = 0;
-    std::string profile;  // file of hit counts that --merge profile reads
+    std::string profile;  // file of hit counts, for --merge profile and auto
     // Everything but the hits of a profile, which choosePlan() reads.
     PlanOptions options() const;
 };
@@ -61,8 +61,8 @@ struct PlanArguments {
 std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments);
 // --profile FILE, for commands that read profiles.
 void addProfileInput(CLI::App& command, PlanArguments& arguments);
-// Takes FILE out of `--merge profile:FILE`. Throws a CLI::ParseError where the policy and the profile
-// disagree.
+// Takes FILE out of `--merge profile:FILE` and `auto:FILE`. Throws a CLI::ParseError where the policy and the
+// profile disagree.
 void settleProfile(PlanArguments& arguments);
 
 // How exact shaders are: the same options for every command that compiles.

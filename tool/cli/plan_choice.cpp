@@ -97,9 +97,14 @@ void takeHits(const Profile& profile, const Profile& expected, const std::string
              fmt::format("counts {} keys that the scene does not have: {}", gone.size(), someOf(gone)), ""});
     }
     if (hits == 0 && !expected.keys.empty()) {
-        choice.warnings.push_back(makeWarning("profile-empty", file, "has no hit of the scene's keys",
-                                              "all of them share one case: use --merge auto, or count hits "
-                                              "where rays reach something"));
+        // Auto knows a better guess than that nothing is hit.
+        const bool isAuto = choice.options.merge == MergePolicy::Auto;
+        choice.options.hits.clear();
+        choice.warnings.push_back(
+            makeWarning("profile-empty", file, "has no hit of the scene's keys",
+                        isAuto ? "hits are expected from areas: count them where rays reach something"
+                               : "all of them share one case: use --merge auto, or count hits "
+                                 "where rays reach something"));
     }
 }
 
@@ -108,7 +113,7 @@ void takeHits(const Profile& profile, const Profile& expected, const std::string
 Result<PlanChoice> choosePlan(const PlanArguments& arguments, const SceneList& scenes) {
     PlanChoice choice;
     choice.options = arguments.options();
-    if (choice.options.merge != MergePolicy::Profile) {
+    if (arguments.profile.empty()) {
         return choice;
     }
     const Result<Profile> profile = readProfile(arguments.profile);

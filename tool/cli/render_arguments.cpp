@@ -60,9 +60,9 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
                    "ray; black: no surface")
         .group("Report");
     addText(command, "--profile", arguments.profileOutput, "FILE.json",
-            "count the hits of every permutation, for the option\n"
-            "--merge profile of compile; needs --merge none (here\n"
-            "the default then) and --strategy visibility")
+            "count the hits of every permutation, for --merge profile\n"
+            "and auto; needs --merge none (here the default then) and\n"
+            "--strategy visibility")
         .group("Report");
 }
 

@@ -16,7 +16,7 @@ namespace glint {
 using FeatureMask = std::uint64_t;
 
 // Bit numbers. To add a feature: add it here and a row to the table in features.cpp; nothing else changes,
-// but scripts/fit_merge_model.py measures what it costs.
+// but scripts/measure_merge_model.py measures what it costs.
 //
 //   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
 //   bits 32..63  inputs: what the surface's parameters are read from

@@ -14,7 +14,7 @@ enum class MergePolicy : std::uint8_t {
     None,     // every key its own case
     Family,   // keys with the same lobes
     All,      // one case
-    Auto,     // by the cost model of plan/cost.h, within a budget of cases
+    Auto,     // by the cost model of plan/cost.h and hits, within a budget of cases
     Profile,  // by hits that were counted: frequent keys their own case, the others merged
 };
 

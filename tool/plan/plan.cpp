@@ -86,7 +86,7 @@ bool normalizeShares(std::vector<Key>& keys) {
 
 void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& options,
                std::vector<Key>& keys) {
-    const bool counted = options.merge == MergePolicy::Profile;
+    const bool counted = countsHits(options);
     for (Key& key : keys) {
         const auto found = options.hits.find(key.mask);
         if (counted && found != options.hits.end()) {
@@ -181,6 +181,11 @@ void makeCases(const PlanOptions& options, Plan& plan) {
 }
 
 }  // namespace
+
+bool countsHits(const PlanOptions& options) {
+    return options.merge == MergePolicy::Profile ||
+           (options.merge == MergePolicy::Auto && !options.hits.empty());
+}
 
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options) {

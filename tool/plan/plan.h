@@ -21,7 +21,8 @@ struct PlanOptions {
     // Auto and Profile make no more cases, the other policies are told by describeExcess(); 0: no limit, but
     // kDefaultMaxCases for Auto and Profile.
     int maxShaders = 0;
-    // Profile: hits that were counted, by key. A key that is not there was never hit.
+    // Hits that were counted, by key, for Profile and, if there are any, for Auto. A key that is not there
+    // was never hit.
     std::map<FeatureMask, std::uint64_t> hits{};
     // Shader IDs that keys had before: their cases keep them.
     LockedIds lockedIds{};
@@ -40,7 +41,7 @@ struct Key {
     std::vector<int> materials;   // ascending
     std::vector<int> primitives;  // indices into the plan's primitives, ascending
     int shaderId = 0;
-    double share = 0.0;  // of all hits, as counted (Profile) or expected; 1 over all keys, or 0 each
+    double share = 0.0;  // of all hits, as counted or expected; 1 over all keys, or 0 each
 };
 
 // Keys that share one piece of code. always & sometimes is 0.
@@ -83,8 +84,10 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
 // The same options for primary surfaces.
 KeyOptions keepAllLobes(KeyOptions options);
 
-// Clusters the keys of `primitives`. Hits are those that PlanOptions::hits counts (Profile), else those that
-// the primitives expect. Requires every PrimitiveInputs::material to index `materials`.
+// Whether shares of hits are as counted, rather than as the primitives expect them.
+bool countsHits(const PlanOptions& options);
+
+// Clusters the keys of `primitives`. Requires every PrimitiveInputs::material to index `materials`.
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options);
 

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -244,10 +243,12 @@ std::size_t companyOf(const std::vector<CaseKeys>& cases, int key) {
     return 0;
 }
 
-TEST(Planner, MoreHitsOfAKeyNeverMergeItWithMoreKeys) {
+// Greedy merging does not promise it, but what breaks it is an exception.
+TEST(Planner, MoreHitsOfAKeyRarelyMergeItWithMoreKeys) {
     std::mt19937 random(20250326);
     int parted = 0;
-    int viol = 0, total = 0;
+    int joined = 0;
+    int steps = 0;
     for (int i = 0; i < 12; ++i) {
         const std::vector<WeightedKey> start = distinctKeys(random, 20);
         for (int key = 0; key < 20; ++key) {
@@ -260,25 +261,29 @@ TEST(Planner, MoreHitsOfAKeyNeverMergeItWithMoreKeys) {
                     each.share /= sum;
                 }
                 const std::size_t company = companyOf(mergeKeys(keys, MergePolicy::Auto, 32), key);
-                viol += company > last;
-                ++total;
+                joined += company > last ? 1 : 0;
+                ++steps;
                 parted += company < last ? 1 : 0;
                 last = company;
             }
             EXPECT_EQ(last, 1U);
         }
     }
-    printf("violations %d of %d, parted %d\n", viol, total, parted);
+    RecordProperty("joined", joined);
+    EXPECT_LT(joined, steps / 100);
+    EXPECT_GT(parted, 20 * joined);
 }
 
-TEST(Planner, FiveHundredKeysTakeLittleTime) {
+TEST(Planner, FiveHundredKeysKeepToTheBudget) {
     std::mt19937 random(20250327);
     const std::vector<WeightedKey> keys = wildKeys(random, 512);
+    double last = std::numeric_limits<double>::infinity();
     for (const int budget : {1, 32, 512}) {
-        const auto begin = std::chrono::steady_clock::now();
-        mergeKeys(keys, MergePolicy::Auto, budget);
-        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-        printf("%d: %.1f ms\n", budget, took.count());
+        const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, budget);
+        EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
+        const double cost = totalCost(clustersOf(cases), keys);
+        EXPECT_LT(cost, last);
+        last = cost;
     }
 }
 

@@ -139,6 +139,24 @@ TEST(Plan, SharesTheExpectedHits) {
     EXPECT_DOUBLE_EQ(ofCases, 1.0);
 }
 
+// A key that was counted as hot has a case of its own; the same keys expect nothing of the kind.
+TEST(Plan, AutoMergesByCountedHits) {
+    SmallScene scene;
+    PlanOptions options{{}, MergePolicy::Auto};
+    options.hits = {{kNormals, 1}, {kTextured | kNormals, 999'999}};
+    const Plan plan = makePlan(scene.materials, scene.primitives, options);
+    EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.999999);
+    EXPECT_EQ(plan.keys[0].share, 0.0);
+    ASSERT_EQ(plan.cases.size(), 2U);
+    EXPECT_EQ(plan.cases[0].reason, CaseReason::Rest);
+    EXPECT_EQ(plan.cases[0].keys.size(), 4U);
+    EXPECT_EQ(plan.cases[1].reason, CaseReason::Own);
+    EXPECT_GT(scene.plan(MergePolicy::Auto).cases.size(), 2U);
+    options.merge = MergePolicy::None;
+    EXPECT_FALSE(countsHits(options));
+    EXPECT_DOUBLE_EQ(makePlan(scene.materials, scene.primitives, options).keys[4].share, 0.2);
+}
+
 TEST(Plan, TakesTheSharesOfAProfile) {
     const SmallScene scene;
     PlanOptions options{{}, MergePolicy::Profile};

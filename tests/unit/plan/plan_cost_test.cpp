@@ -1,0 +1,167 @@
+// What a plan is said to cost, against the clusters' own sums and against plans in which keys did move.
+#include "plan/plan_cost.h"
+
+#include "plan/cluster.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+
+struct Scene {
+    std::vector<Material> materials;
+    std::vector<PrimitiveInputs> primitives;
+
+    // Materials of random lobes and textures, each on one primitive.
+    explicit Scene(std::mt19937& random, int count = 24) {
+        for (int i = 0; i < count; ++i) {
+            Material material;
+            material.doubleSided = random() % 2 == 0;
+            material.clearcoat.given = true;
+            material.clearcoat.factor = random() % 3 == 0 ? 1.0F : 0.0F;
+            material.unlit = random() % 5 == 0;
+            material.hasEmissiveStrength = true;
+            material.emissiveStrength = random() % 4 == 0 ? 2.0F : 1.0F;
+            material.emissiveFactor = {1.0F, 1.0F, 1.0F};
+            materials.push_back(material);
+            PrimitiveInputs primitive;
+            primitive.material = i;
+            primitive.hasNormals = random() % 2 == 0;
+            primitive.colors = random() % 3 == 0 ? ColorContent::Varying : ColorContent::None;
+            primitive.expectedHits = 1.0 + static_cast<double>(random() % 200);
+            primitives.push_back(primitive);
+        }
+    }
+    Plan plan(const PlanOptions& options) const {
+        return makePlan(materials, primitives, options);
+    }
+};
+
+std::vector<WeightedKey> weightedKeys(const Plan& plan) {
+    std::vector<WeightedKey> keys;
+    for (const Key& key : plan.keys) {
+        keys.push_back({key.mask, key.share});
+    }
+    return keys;
+}
+
+std::vector<Cluster> clustersOf(const Plan& plan) {
+    std::vector<Cluster> clusters;
+    for (const Case& shaderCase : plan.cases) {
+        clusters.push_back({shaderCase.keys});
+    }
+    return clusters;
+}
+
+constexpr MergePolicy kPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                     MergePolicy::Auto};
+
+TEST(PlanCost, IsThatOfItsClusters) {
+    std::mt19937 random(20250401);
+    const Scene scene(random);
+    for (const MergePolicy merge : kPolicies) {
+        const PlanOptions options{{}, merge, 6};
+        const Plan plan = scene.plan(options);
+        const PlanCost cost = costPlan(plan, options);
+        ASSERT_EQ(cost.cases.size(), plan.cases.size());
+        const double expected = totalCost(clustersOf(plan), weightedKeys(plan));
+        EXPECT_NEAR(totalCost(cost.inVain, cost.cases.size()), expected, 1e-9);
+        // The comparison knows this plan.
+        const auto* const same = &*std::ranges::find(cost.policies, merge, &PolicyCost::merge);
+        EXPECT_EQ(same->cases, plan.cases.size());
+        EXPECT_NEAR(same->inVain, cost.inVain, 1e-9);
+        for (const CaseCost& entry : cost.cases) {
+            double branches = 0.0;
+            double last = entry.inVain;
+            for (const BranchCost& branch : entry.branches) {
+                branches += branch.cost;
+                EXPECT_LE(branch.cost, last);
+                EXPECT_GT(branch.share, 0.0);
+                EXPECT_LT(branch.share, 1.0);
+                last = branch.cost;
+            }
+            EXPECT_NEAR(branches, entry.inVain, 1e-9);
+            EXPECT_EQ(entry.saved, kCaseCost * static_cast<double>(entry.keys.size() - 1));
+            EXPECT_LE(entry.ownInstructions, entry.code.instructions + 1e-9);
+        }
+    }
+}
+
+// Keys that leave, and cases that merge, cost what is said.
+TEST(PlanCost, OfWhatWouldChangeIsTrue) {
+    std::mt19937 random(20250402);
+    const Scene scene(random);
+    const PlanOptions options{{}, MergePolicy::Family};
+    const Plan plan = scene.plan(options);
+    const std::vector<WeightedKey> keys = weightedKeys(plan);
+    const std::vector<Cluster> clusters = clustersOf(plan);
+    const double now = totalCost(clusters, keys);
+    int left = 0;
+    for (const CaseCost& entry : costPlan(plan, options).cases) {
+        const auto place = static_cast<std::size_t>(entry.shaderId);
+        for (const KeyCost& key : entry.keys) {
+            if (entry.keys.size() == 1) {
+                EXPECT_EQ(key.leavingAdds, 0.0);
+                continue;
+            }
+            std::vector<Cluster> changed = clusters;
+            std::erase(changed[place].keys, key.key);
+            changed.push_back({{key.key}});
+            EXPECT_NEAR(totalCost(changed, keys) - now, key.leavingAdds, 1e-9);
+            ++left;
+        }
+        ASSERT_TRUE(entry.nearest);
+        double least = 1e300;
+        for (std::size_t other = 0; other < clusters.size(); ++other) {
+            if (other == place) {
+                continue;
+            }
+            std::vector<Cluster> changed = clusters;
+            changed[place].keys.insert(changed[place].keys.end(), clusters[other].keys.begin(),
+                                       clusters[other].keys.end());
+            changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(other));
+            least = std::min(least, totalCost(changed, keys) - now + kCaseCost);
+        }
+        EXPECT_NEAR(entry.nearest->adds, least, 1e-9);
+    }
+    EXPECT_GT(left, 10);
+}
+
+// No single key does better apart, unless the budget forbids it, and no two cases together.
+TEST(PlanCost, AutoStopsWhereNothingIsSpared) {
+    std::mt19937 random(20250403);
+    for (int i = 0; i < 10; ++i) {
+        const Scene scene(random);
+        const PlanOptions options{{}, MergePolicy::Auto};
+        const Plan plan = scene.plan(options);
+        ASSERT_LT(plan.cases.size(), static_cast<std::size_t>(kDefaultMaxCases));
+        for (const CaseCost& entry : costPlan(plan, options).cases) {
+            for (const KeyCost& key : entry.keys) {
+                EXPECT_GE(key.leavingAdds, -1e-6);
+            }
+        }
+    }
+}
+
+TEST(PlanCost, OfRetiredCasesAndOfNothing) {
+    const PlanCost nothing = costPlan({}, {});
+    EXPECT_TRUE(nothing.cases.empty());
+    EXPECT_EQ(totalCost(nothing.inVain, 0), 0.0);
+    std::mt19937 random(20250404);
+    const Scene scene(random, 1);
+    PlanOptions options{{}, MergePolicy::None};
+    options.lockedIds[scene.plan(options).keys.front().mask] = 2;
+    const Plan plan = scene.plan(options);
+    ASSERT_EQ(plan.cases.size(), 3U);
+    const PlanCost cost = costPlan(plan, options);
+    ASSERT_EQ(cost.cases.size(), 1U);
+    EXPECT_EQ(cost.cases[0].shaderId, 2);
+    EXPECT_FALSE(cost.cases[0].nearest);
+}
+
+}  // namespace

@@ -1,0 +1,112 @@
+#include "plan/plan_cost.h"
+
+#include "plan/cluster.h"
+
+#include <algorithm>
+
+namespace glint {
+
+namespace {
+
+using Keys = std::span<const WeightedKey>;
+
+std::vector<BranchCost> branchesOf(const KeySet& set) {
+    std::vector<BranchCost> branches;
+    for (const FeatureInfo& info : featureTable()) {
+        if ((set.any & ~set.always & bit(info.feature)) != 0) {
+            const double with = set.shareWith[static_cast<std::size_t>(info.feature)];
+            branches.push_back(
+                {info.feature, set.share > 0.0 ? with / set.share : 0.0, branchCost(set, info.feature)});
+        }
+    }
+    std::ranges::stable_sort(branches, std::ranges::greater(), &BranchCost::cost);
+    return branches;
+}
+
+std::vector<KeyCost> keysOf(const Case& shaderCase, Keys keys, double inVain) {
+    std::vector<KeyCost> costs;
+    for (const int key : shaderCase.keys) {
+        KeyCost cost{key, estimateCode(keys[static_cast<std::size_t>(key)].mask, 0)};
+        std::vector<int> others = shaderCase.keys;
+        std::erase(others, key);
+        if (!others.empty()) {
+            cost.leavingAdds = mergingCost(toSet(others, keys)) + kCaseCost - inVain;
+        }
+        costs.push_back(cost);
+    }
+    return costs;
+}
+
+// Every key counts the same where nothing hits the case.
+double averageOf(const std::vector<KeyCost>& costs, Keys keys, double share) {
+    double sum = 0.0;
+    for (const KeyCost& cost : costs) {
+        const double part = share > 0.0 ? keys[static_cast<std::size_t>(cost.key)].share / share
+                                        : 1.0 / static_cast<double>(costs.size());
+        sum += part * cost.own.instructions;
+    }
+    return sum;
+}
+
+void findNearest(const std::vector<KeySet>& sets, std::vector<CaseCost>& cases) {
+    for (std::size_t a = 0; a < cases.size(); ++a) {
+        for (std::size_t b = 0; b < cases.size(); ++b) {
+            if (a == b) {
+                continue;
+            }
+            const double adds = mergingCost(sets[a], sets[b]) - cases[a].inVain - cases[b].inVain;
+            if (!cases[a].nearest || adds < cases[a].nearest->adds) {
+                cases[a].nearest = NearestCase{cases[b].shaderId, adds};
+            }
+        }
+    }
+}
+
+PolicyCost costPolicy(Keys keys, MergePolicy merge, int maxCases) {
+    PolicyCost cost{merge};
+    for (const CaseKeys& shaderCase : mergeKeys(keys, merge, maxCases)) {
+        ++cost.cases;
+        cost.inVain += mergingCost(toSet(shaderCase.keys, keys));
+    }
+    return cost;
+}
+
+}  // namespace
+
+PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
+    std::vector<WeightedKey> keys;
+    keys.reserve(plan.keys.size());
+    for (const Key& key : plan.keys) {
+        keys.push_back({key.mask, key.share});
+    }
+    PlanCost cost;
+    std::vector<KeySet> sets;
+    for (const Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired()) {
+            continue;
+        }
+        const KeySet& set = sets.emplace_back(toSet(shaderCase.keys, keys));
+        CaseCost& entry = cost.cases.emplace_back();
+        entry.shaderId = shaderCase.shaderId;
+        entry.code = estimateCode(shaderCase.always, shaderCase.sometimes);
+        entry.inVain = mergingCost(set);
+        entry.saved = kCaseCost * static_cast<double>(shaderCase.keys.size() - 1);
+        entry.branches = branchesOf(set);
+        entry.keys = keysOf(shaderCase, keys, entry.inVain);
+        entry.ownInstructions = averageOf(entry.keys, keys, set.share);
+        cost.inVain += entry.inVain;
+    }
+    findNearest(sets, cost.cases);
+    const int budget = options.maxShaders > 0 ? options.maxShaders : kDefaultMaxCases;
+    for (const MergePolicy merge :
+         {MergePolicy::None, MergePolicy::Family, MergePolicy::All, MergePolicy::Auto}) {
+        cost.policies.push_back(costPolicy(keys, merge, budget));
+    }
+    return cost;
+}
+
+double totalCost(double inVain, std::size_t cases) {
+    return inVain + kCaseCost * static_cast<double>(cases);
+}
+
+}  // namespace glint
