@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <sstream>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,13 +18,18 @@ namespace {
 // In the child process: only calls that are safe between fork and exec of a single-threaded parent.
 [[noreturn]] void execute(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& variables,
-                          const fs::path& folder, const fs::path& out, const fs::path& err) {
+                          const fs::path& folder, std::uint64_t memoryLimit, const fs::path& out,
+                          const fs::path& err) {
     constexpr int kCantRun = 127;
     constexpr int kMode = 0600;
     const int outFile = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
     const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
     if (outFile < 0 || errFile < 0 || dup2(outFile, STDOUT_FILENO) < 0 || dup2(errFile, STDERR_FILENO) < 0 ||
         chdir(folder.c_str()) != 0) {
+        _exit(kCantRun);
+    }
+    const rlimit limit{memoryLimit, memoryLimit};
+    if (memoryLimit != 0 && setrlimit(RLIMIT_AS, &limit) != 0) {
         _exit(kCantRun);
     }
     for (const auto& [name, value] : variables) {
@@ -81,7 +87,7 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments,
     const fs::path err = folder_.string() + ".err";
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, out, err);
+        execute(arguments, variables, folder_, memoryLimit_, out, err);
     }
     int status = 0;
     Outcome outcome;
