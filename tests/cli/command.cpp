@@ -10,6 +10,7 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,10 +23,14 @@ namespace {
 // In the child process: only calls that are safe between fork and exec of a single-threaded parent.
 [[noreturn]] void execute(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& variables,
-                          const fs::path& folder, int outFile, int errFile) {
+                          const fs::path& folder, std::uint64_t memoryLimit, int outFile, int errFile) {
     constexpr int kCantRun = 127;
     if (outFile < 0 || errFile < 0 || dup2(outFile, STDOUT_FILENO) < 0 || dup2(errFile, STDERR_FILENO) < 0 ||
         chdir(folder.c_str()) != 0) {
+        _exit(kCantRun);
+    }
+    const rlimit limit{memoryLimit, memoryLimit};
+    if (memoryLimit != 0 && setrlimit(RLIMIT_AS, &limit) != 0) {
         _exit(kCantRun);
     }
     for (const auto& [name, value] : variables) {
@@ -124,7 +129,7 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments,
     const fs::path err = folder_.string() + ".err";
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, openForWriting(out), openForWriting(err));
+        execute(arguments, variables, folder_, memoryLimit_, openForWriting(out), openForWriting(err));
     }
     Outcome outcome;
     outcome.exit = waitFor(child);
@@ -152,7 +157,7 @@ Outcome CommandTest::runOnTerminal(const std::vector<std::string>& arguments,
     const int errFile = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, openForWriting(out), errFile);
+        execute(arguments, variables, folder_, memoryLimit_, openForWriting(out), errFile);
     }
     close(errFile);
     outcome.err = readTerminal(terminal);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -38,6 +39,9 @@ protected:
                           const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
     // Paths of all files below `folder`, relative and sorted.
     static std::vector<std::string> filesBelow(const std::filesystem::path& folder);
+
+    // Of the command's address space, in bytes; 0: none.
+    std::uint64_t memoryLimit_ = 0;
 
 private:
     std::filesystem::path folder_;

@@ -1,5 +1,7 @@
 #include "base/files.h"
 
+#include "base/staged_file.h"
+
 #include <xxhash.h>
 
 #include <cerrno>
@@ -7,7 +9,6 @@
 #include <cstring>
 #include <memory>
 #include <system_error>
-#include <unistd.h>
 
 namespace glint {
 
@@ -21,19 +22,6 @@ struct FileCloser {
     }
 };
 using File = std::unique_ptr<std::FILE, FileCloser>;
-
-std::span<const std::uint8_t> asBytes(std::string_view text) {
-    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
-    std::error_code error;
-    if (fs::file_size(path, error) != bytes.size() || error) {
-        return false;
-    }
-    const Result<Bytes> present = readFile(path);
-    return present && std::memcmp(present->data(), bytes.data(), bytes.size()) == 0;
-}
 
 }  // namespace
 
@@ -79,30 +67,8 @@ Result<Bytes> readFile(const fs::path& path, std::uint64_t maxBytes) {
 }
 
 Status writeFile(const fs::path& path, std::span<const std::uint8_t> bytes) {
-    if (holds(path, bytes)) {
-        return okStatus();
-    }
-    const fs::path temporary = path.string() + ".tmp" + std::to_string(getpid());
-    const auto fail = [&](const std::string& why) -> Status {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        return makeError("file-write", path.string(), "can't be written: " + why,
-                         "check the folder, its permissions and the free space");
-    };
-    File file(std::fopen(temporary.c_str(), "wb"));
-    if (!file) {
-        return fail(std::strerror(errno));
-    }
-    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-        return fail(std::strerror(errno));
-    }
-    // Close by hand: a full disk may show only when the buffers are flushed.
-    if (std::fclose(file.release()) != 0) {
-        return fail(std::strerror(errno));
-    }
-    std::error_code error;
-    fs::rename(temporary, path, error);
-    return error ? fail(error.message()) : okStatus();
+    removeAbandoned(path);
+    return writeStaged(path, bytes);
 }
 
 Status writeFile(const fs::path& path, std::string_view text) {

@@ -4,9 +4,9 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile_cache.h"
+#include "cli/compile_outputs.h"
 #include "cli/compile_summary.h"
 #include "cli/depfile.h"
-#include "cli/held_signals.h"
 #include "cli/lock_option.h"
 #include "cli/module_report.h"
 #include "cli/plan_choice.h"
@@ -169,17 +169,6 @@ int planOnly(const Console& console, Outcome outcome, const PlanOptions& options
     return kExitDone;
 }
 
-// An interruption waits, so that it leaves no staging folder behind.
-Status writeOutputs(const SceneList& scenes, const CompiledPackage& package,
-                    const CompileArguments& arguments) {
-    const HeldSignals held;
-    Status written = arguments.output.empty() ? okStatus() : writePackage(package, arguments.output);
-    if (written && !arguments.embed.empty()) {
-        written = writeEmbeddedSource(scenes, package, arguments.embed);
-    }
-    return written;
-}
-
 // What a run that did the same said, if there is nothing to do.
 std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
                                  CompileCache& cache, Clock::time_point start) {
@@ -283,14 +272,10 @@ int compile(const Console& console, const CompileArguments& arguments) {
         return fail(console, package.error());
     }
     console.progress("writing " + outputsOf(arguments));
-    if (Status written = writeOutputs(list, *package, arguments); !written) {
+    const CompileOutputs outputs{arguments.output,  arguments.embed, arguments.lock, *lock,
+                                 arguments.depfile, dependencies};
+    if (Status written = writeOutputs(list, *package, outputs); !written) {
         return fail(console, written.error());
-    }
-    if (Status kept = writeLock(arguments.lock, *lock); !kept) {
-        return fail(console, kept.error());
-    }
-    if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
-        return fail(console, listed.error());
     }
     CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});
     // A run that changes its own input may find other things to say next time.

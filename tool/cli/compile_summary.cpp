@@ -1,5 +1,7 @@
 #include "cli/compile_summary.h"
 
+#include "base/json_depth.h"
+#include "base/staged_file.h"
 #include "cache/packing.h"
 #include "cli/table.h"
 
@@ -53,8 +55,7 @@ std::string pack(const CompileSummary& summary) {
         packer.add(std::string_view(field[0])).add(std::string_view(field[1]));
     }
     packer.add(std::string_view(summary.dropped)).add(static_cast<std::uint64_t>(summary.modules));
-    std::string json;
-    Json::to_cbor(summary.json, json);
+    const std::string json = summary.json.dump(-1, ' ', false, Json::error_handler_t::replace);
     return packer.add(std::string_view(json)).take();
 }
 
@@ -71,7 +72,10 @@ std::optional<CompileSummary> unpackSummary(std::string_view bytes) {
     if (!json || !unpacker.atEnd() || summary.fields.empty()) {
         return std::nullopt;
     }
-    summary.json = Json::from_cbor(*json, true, false);
+    if (nestsTooDeep(asBytes(*json))) {
+        return std::nullopt;
+    }
+    summary.json = Json::parse(*json, nullptr, false);
     return summary.json.is_object() ? std::optional(std::move(summary)) : std::nullopt;
 }
 

@@ -81,7 +81,8 @@ Result<std::string> makeDepfile(std::span<const std::string> targets,
     text += ':';
     // Make takes what follows the colon for an assignment if the first name has a '='.
     std::vector<std::string_view> names(dependencies.begin(), dependencies.end());
-    std::ranges::stable_partition(names, [](std::string_view name) { return !isAmong('=', name); });
+    std::stable_partition(names.begin(), names.end(),
+                          [](std::string_view name) { return !isAmong('=', name); });
     std::set<std::string_view> known;
     for (const std::string_view name : names) {
         if (!known.insert(name).second) {

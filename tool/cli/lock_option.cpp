@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "base/suggest.h"
-#include "cli/held_signals.h"
 #include "cli/options.h"
 #include "cli/report.h"
 #include "plan/lock.h"
@@ -226,11 +225,6 @@ Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& sc
         choice.text = formatLock(update.ids);
     }
     return choice;
-}
-
-Status writeLock(const LockArguments& arguments, const LockChoice& choice) {
-    const HeldSignals held;
-    return choice.text ? writeFile(arguments.file, *choice.text) : okStatus();
 }
 
 }  // namespace glint

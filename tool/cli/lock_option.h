@@ -38,7 +38,4 @@ struct LockChoice {
 // where --locked and something would change.
 Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& scenes, PlanOptions& options);
 
-// Errors of writeFile().
-Status writeLock(const LockArguments& arguments, const LockChoice& choice);
-
 }  // namespace glint

@@ -2,10 +2,17 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 
 int main(int argc, char** argv) {
     try {
         return glint::runCommandLine(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::fputs(
+            "error: the work does not fit into memory; use smaller inputs, or a machine with more"
+            " [out-of-memory]\n",
+            stderr);
+        return glint::kExitFailed;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "glint: error: %s\n", error.what());
         return glint::kExitFailed;

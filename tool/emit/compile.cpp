@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -171,9 +172,12 @@ Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const Comp
             }
         }
         return compile(SceneList(scenes), withOwnTracers(settings), cache);
+    } catch (const std::bad_alloc&) {
+        return makeError("out-of-memory", where, "compiling the scene does not fit into memory",
+                         "simplify the scene, use fewer --jobs, or a machine with more memory");
     } catch (const std::exception& error) {
         return makeError("internal", where, fmt::format("compiling failed: {}", error.what()),
-                         "this is a defect of Glint, or memory ran out");
+                         "this is a defect of Glint");
     }
 }
 

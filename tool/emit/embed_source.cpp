@@ -64,6 +64,11 @@ std::string makeHeaderText(const SceneList& scenes, const std::string& scope) {
                                    scope, scope);
 }
 
+Diagnostic writeError(const fs::path& path, const Diagnostic& cause) {
+    return makeError("output-write", path.string(), cause.message,
+                     "check the folder, its permissions and the free space");
+}
+
 }  // namespace
 
 EmbeddedSource makeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
@@ -102,17 +107,34 @@ fs::path embeddedHeader(const fs::path& source) {
     return header.replace_extension(".h");
 }
 
-Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package, const fs::path& source) {
+Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
+                                                    const fs::path& source) {
     const fs::path header = embeddedHeader(source);
     const EmbeddedSource made = makeEmbeddedSource(scenes, package, header.filename().string());
     // A failure shows when the files are written.
     std::error_code ignored;
     fs::create_directories(source.parent_path(), ignored);
+    std::vector<StagedFile> staged;
     for (const auto& [path, text] : {std::pair(header, std::string_view(made.header)),
                                      std::pair(source, std::string_view(made.source))}) {
-        if (Status written = writeFile(path, text); !written) {
-            return makeError("output-write", path.string(), written.error().message,
-                             "check the folder, its permissions and the free space");
+        removeAbandoned(path);
+        Result<StagedFile> file = StagedFile::create(path, asBytes(text));
+        if (!file) {
+            return writeError(path, file.error());
+        }
+        staged.push_back(std::move(*file));
+    }
+    return staged;
+}
+
+Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package, const fs::path& source) {
+    Result<std::vector<StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
+    if (!staged) {
+        return staged.error();
+    }
+    for (StagedFile& file : *staged) {
+        if (Status written = file.commit(); !written) {
+            return writeError(source, written.error());
         }
     }
     return okStatus();

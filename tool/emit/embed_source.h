@@ -1,11 +1,13 @@
 // A package as C++ source, for programs that ship no files.
 #pragma once
 
+#include "base/staged_file.h"
 #include "emit/compile.h"
 #include "gltf/scene_list.h"
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glint {
 
@@ -21,6 +23,10 @@ EmbeddedSource makeEmbeddedSource(const SceneList& scenes, const CompiledPackage
 // The header beside a source: "room_package.h" for "room_package.cpp".
 std::filesystem::path embeddedHeader(const std::filesystem::path& source);
 
+// Both, ready to be put in their place; those that killed runs left are removed, the folder is made. Error
+// "output-write".
+Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
+                                                    const std::filesystem::path& source);
 // Writes both, each as a whole and only if it changed; makes the folder. Error "output-write".
 Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
                            const std::filesystem::path& source);

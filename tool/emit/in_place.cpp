@@ -1,5 +1,6 @@
 #include "emit/in_place.h"
 
+#include "base/staged_file.h"
 #include "emit/swap.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
         std::error_code error;
         fs::create_directories((fresh / file->name).parent_path(), error);
         Status written = error ? Status(placeError(folder, error.message())) : okStatus();
-        written = written ? writeFile(fresh / file->name, file->bytes) : written;
+        written = written ? writeStaged(fresh / file->name, file->bytes) : written;
         if (!written) {
             return placeError(folder / file->name, written.error().message);
         }

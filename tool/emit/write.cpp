@@ -1,3 +1,4 @@
+#include "base/staged_file.h"
 #include "emit/compile.h"
 #include "emit/in_place.h"
 #include "emit/manifest.h"
@@ -116,7 +117,7 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
         if (holds(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
             continue;
         }
-        if (Status status = writeFile(target, file.bytes); !status) {
+        if (Status status = writeStaged(target, file.bytes); !status) {
             return writeError(folder / file.name, status.error().message);
         }
     }

@@ -1,11 +1,11 @@
 // PNG and JPEG images.
+#include "base/png_bounds.h"
 #include "gltf/codecs.h"
 
 #include <fmt/format.h>
 
 #include <limits>
 #include <memory>
-#include <string_view>
 
 #ifndef __clang_analyzer__  // not ours to lint
 #define STB_IMAGE_IMPLEMENTATION
@@ -20,8 +20,6 @@ namespace glint::gltf {
 
 namespace {
 
-// Deflate reaches 1032 : 1 at best, and a pixel of a PNG has one bit at least.
-constexpr std::uint64_t kMaxPixelsPerPngByte = 1032ULL * 8;
 // A block of 8 x 8 values takes one bit of its scan at least. Pixels may share them: of three components with
 // 4 x 1, 1 x 4 and 1 x 1 values for each 4 x 4 pixels, 9 blocks make 32 x 32 pixels (ITU-T T.81, A.1.1 and
 // F.1.2.1).
@@ -49,48 +47,25 @@ bool readHeader(ByteView bytes, Image& image, std::string& problem) {
     return true;
 }
 
-// Whether the data can be long enough for its pixels: what is allocated depends on them alone.
-bool holdsPixels(ByteView bytes, const Image& image, std::uint64_t maxPixelsPerByte, std::string& problem) {
+bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
+    if (!readHeader(bytes, image, problem)) {
+        return false;
+    }
+    problem = findPngExcess(bytes, image.width, image.height);
+    return problem.empty();
+}
+
+bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
+    if (!readHeader(bytes, image, problem)) {
+        return false;
+    }
     const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-    if (pixels / maxPixelsPerByte > bytes.size()) {
+    if (pixels / kMaxPixelsPerJpegByte > bytes.size()) {
         problem = fmt::format("it says it has {} x {} pixels, but has only {} bytes", image.width,
                               image.height, bytes.size());
         return false;
     }
     return true;
-}
-
-// Whether every chunk up to the last one lies in the data: the decoder allocates what a chunk says it has.
-bool holdsChunks(ByteView bytes, std::string& problem) {
-    constexpr std::size_t kSignatureBytes = 8;
-    constexpr std::size_t kFrameBytes = 12;  // length, type, checksum
-    const auto text = [&](std::size_t at) {
-        return std::string_view(reinterpret_cast<const char*>(bytes.data()) + at, 4);
-    };
-    for (std::size_t at = kSignatureBytes; at + kFrameBytes <= bytes.size();) {
-        if (text(at + 4) == "IEND") {
-            break;
-        }
-        std::size_t length = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            length = length << 8U | bytes[at + i];
-        }
-        if (length > bytes.size() - at - kFrameBytes) {
-            problem = fmt::format("a chunk of {} bytes goes beyond its end", length);
-            return false;
-        }
-        at += kFrameBytes + length;
-    }
-    return true;
-}
-
-bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
-    return readHeader(bytes, image, problem) && holdsPixels(bytes, image, kMaxPixelsPerPngByte, problem) &&
-           holdsChunks(bytes, problem);
-}
-
-bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
-    return readHeader(bytes, image, problem) && holdsPixels(bytes, image, kMaxPixelsPerJpegByte, problem);
 }
 
 bool decode(ByteView bytes, Image& image, std::string& problem) {

@@ -1,5 +1,6 @@
 #include "image/exr.h"
 
+#include "image/exr_bounds.h"
 #include "image/image_file.h"
 
 #include <ImathBox.h>
@@ -22,6 +23,12 @@ namespace {
 
 constexpr std::array<const char*, 4> kChannelNames{"R", "G", "B", "A"};
 constexpr std::size_t kPixelBytes = sizeof(std::array<float, 4>);
+// As in checkImageSize(): while it reads the header, OpenEXR allocates for all lines, and for a block of
+// them.
+constexpr int kMaxHeaderSize = 16384;
+// Deflate at its best makes 516 pixels of 2 bytes out of one; compression with losses more of a single
+// colour, but nothing sensible comes near this.
+constexpr std::int64_t kMaxPixelsPerByte = 1LL << 14;
 
 class MemoryOutput : public Imf::OStream {
 public:
@@ -70,6 +77,10 @@ public:
         position_ = pos;
     }
 
+    std::int64_t size() const {
+        return static_cast<std::int64_t>(bytes_.size());
+    }
+
 private:
     std::span<const std::uint8_t> bytes_;
     std::size_t position_ = 0;
@@ -111,6 +122,10 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
     if (Status checked = checkImageSize(width, height, where); !checked) {
         return checked.error();
     }
+    if (width * height / kMaxPixelsPerByte > stream.size()) {
+        return formatError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
+                                      " pixels, but has only " + std::to_string(stream.size()) + " bytes");
+    }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.pixels.resize(static_cast<std::size_t>(width * height));
     file.setFrameBuffer(frameBuffer(image.pixels.data(), image.width, window.min.x, window.min.y));
@@ -143,7 +158,12 @@ Result<Bytes> encodeExr(const LinearImage& image, const std::string& where) {
 }
 
 Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::string& where) {
+    if (const std::string excess = findExrExcess(bytes); !excess.empty()) {
+        return formatError(where, "is no OpenEXR file that can be read: " + excess);
+    }
     try {
+        // Holds for the whole process; always the same.
+        Imf::Header::setMaxImageSize(kMaxHeaderSize, kMaxHeaderSize);
         MemoryInput stream(bytes, where);
         return decode(stream, where);
     } catch (const std::exception& error) {

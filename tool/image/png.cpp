@@ -1,5 +1,6 @@
 #include "image/png.h"
 
+#include "base/png_bounds.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 
@@ -28,6 +29,7 @@ namespace glint {
 namespace {
 
 constexpr int kChannels = 4;
+constexpr const char* kRewrite = "write it again from the program that made it";
 
 struct StbDeleter {
     void operator()(void* memory) const {
@@ -63,7 +65,7 @@ Diagnostic unreadable(const std::string& where) {
     const char* reason = stbi_failure_reason();
     return makeError("image-format", where,
                      std::string("is no PNG file that can be read: ") + (reason ? reason : "no reason given"),
-                     "write it again from the program that made it");
+                     kRewrite);
 }
 
 }  // namespace
@@ -92,6 +94,9 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     }
     if (Status checked = checkImageSize(width, height, where); !checked) {
         return checked.error();
+    }
+    if (const std::string excess = findPngExcess(bytes, width, height); !excess.empty()) {
+        return makeError("image-format", where, "is no PNG file that can be read: " + excess, kRewrite);
     }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.pixels.resize(std::size_t{image.width} * image.height);

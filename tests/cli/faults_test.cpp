@@ -1,0 +1,326 @@
+// Full disks, failing calls and interruptions, at every call by which the command changes a file: what was
+// there stays whole, or the new is there.
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+#include "image/image_file.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files below a folder, by their names; folders have no contents.
+using Contents = std::map<std::string, std::string>;
+
+// Paths that differ between two states of a folder: easier to read than all that is the same.
+std::string difference(const Contents& a, const Contents& b) {
+    std::string names;
+    for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+        for (const auto& [name, text] : *one) {
+            const auto found = other->find(name);
+            if (found == other->end() || (one == &a && found->second != text)) {
+                names += " " + name;
+            }
+        }
+    }
+    return names;
+}
+
+// What a command does under a fault. Its files lie in "work"; what it reads and the cache lie elsewhere.
+class Faults : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        fs::create_directories(path("work"));
+    }
+    // Runs with the call number `at` below `folder` struck; 0: none.
+    Outcome runWithFault(const std::vector<std::string>& arguments, const std::string& kind, int at,
+                         const std::string& folder = "work") const {
+        // The libraries of sanitized tests stay.
+        const char* preloaded = std::getenv("LD_PRELOAD");
+        return run(arguments, {{"LD_PRELOAD",
+                                std::string(preloaded == nullptr ? "" : preloaded) + ":" GLINT_WRITE_FAULTS},
+                               {"GLINT_FAULT_FOLDER", path(folder).string()},
+                               {"GLINT_FAULT_KIND", kind},
+                               {"GLINT_FAULT_AT", std::to_string(at)},
+                               {"GLINT_FAULT_COUNT", path("count").string()}});
+    }
+    // How many calls a fault can strike; the command must do all its work.
+    int countCalls(const std::vector<std::string>& arguments, const std::string& kind,
+                   const std::string& folder = "work") const {
+        const Outcome outcome = runWithFault(arguments, kind, 0, folder);
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return std::atoi(readText(path("count")).c_str());
+    }
+    Contents contents() const {
+        Contents found;
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path("work"))) {
+            found[fs::relative(entry.path(), path("work")).string()] =
+                entry.is_regular_file() ? readText(entry.path()) : "";
+        }
+        return found;
+    }
+    void keep(const std::string& name) const {
+        fs::remove_all(path(name));
+        fs::copy(path("work"), path(name), fs::copy_options::recursive);
+    }
+    void restore(const std::string& name) const {
+        fs::remove_all(path("work"));
+        fs::copy(path(name), path("work"), fs::copy_options::recursive);
+    }
+};
+
+bool saysWhy(const Outcome& outcome) {
+    return outcome.err.find("error: ") != std::string::npos &&
+           (outcome.err.find("No space left on device") != std::string::npos ||
+            outcome.err.find("Input/output error") != std::string::npos);
+}
+
+// glint compile with everything that it can write, over what an earlier run wrote of another scene.
+class CompileFaults : public Faults {
+protected:
+    void SetUp() override {
+        Faults::SetUp();
+        fs::create_directories(path("scenes"));
+        writeTinyScene(path("scenes"));
+        const Outcome first = run(command("first.o"));
+        ASSERT_EQ(first.exit, 0) << first.err;
+        old_ = contents();
+        keep("old");
+        // A clearcoat: another shader, another key for the lock file.
+        writeTinyScene(path("scenes"), {.variants = true});
+        const Outcome second = run(command("second.o"));
+        ASSERT_EQ(second.exit, 0) << second.err;
+        new_ = contents();
+        for (const char* name : {"ids.lock", "list.d", "embedded.cpp", "package/tables.bin"}) {
+            ASSERT_NE(old_.at(name), new_.at(name)) << name;
+        }
+        restore("old");
+    }
+    std::vector<std::string> command(const std::string& target) const {
+        return {"compile",
+                path("scenes/scene.gltf").string(),
+                "-o",
+                "work/package",
+                "--embed",
+                "work/embedded.cpp",
+                "--lock",
+                "work/ids.lock",
+                "--depfile",
+                "work/list.d",
+                "--strategy",
+                "visibility",
+                "--merge",
+                "none",
+                "--cache",
+                path("cache").string(),
+                "--jobs",
+                "1",
+                "--depfile-target",
+                target};
+    }
+    std::vector<std::string> command() const {
+        return command("second.o");
+    }
+    bool isOld() const {
+        return contents() == old_;
+    }
+    bool isNew() const {
+        return contents() == new_;
+    }
+    // Each file is the old or the new one, and those of the package are of one kind; folders of runs that
+    // were killed, and files that they left, do not count.
+    void expectWhole() const {
+        bool isOldPackage = true;
+        bool isNewPackage = true;
+        const Contents now = contents();
+        const auto matches = [&](const Contents& state, const std::string& name) {
+            return now.contains(name) == state.contains(name) &&
+                   (!state.contains(name) || now.at(name) == state.at(name));
+        };
+        Contents names = old_;
+        names.insert(new_.begin(), new_.end());
+        for (const auto& [name, ignored] : names) {
+            const bool asBefore = matches(old_, name);
+            const bool asAfter = matches(new_, name);
+            EXPECT_TRUE(asBefore || asAfter) << name;
+            if (name.starts_with("package/")) {
+                isOldPackage = isOldPackage && asBefore;
+                isNewPackage = isNewPackage && asAfter;
+            }
+        }
+        EXPECT_TRUE(isOldPackage || isNewPackage);
+    }
+    void expectLoadable() const {
+        const Outcome inspected = run({"inspect", "work/package"});
+        EXPECT_EQ(inspected.exit, 0) << inspected.err;
+    }
+
+    Contents old_;
+    Contents new_;
+};
+
+TEST_F(CompileFaults, FullDiskLeavesEverythingAsItWas) {
+    const int calls = countCalls(command(), "full");
+    ASSERT_GT(calls, 40);
+    int failed = 0;
+    for (int at = 1; at <= calls; ++at) {
+        restore("old");
+        const Outcome outcome = runWithFault(command(), "full", at);
+        // Linking files that did not change may fail: they are copied, or written anew.
+        ASSERT_TRUE(outcome.exit == 0 ? isNew() : isOld())
+            << at << ": " << outcome.exit << outcome.err << difference(old_, contents());
+        if (outcome.exit != 0) {
+            ++failed;
+            ASSERT_EQ(outcome.exit, 1) << at;
+            ASSERT_TRUE(saysWhy(outcome)) << at << ": " << outcome.err;
+        }
+    }
+    // No call that takes space may go unnoticed, or the fault does not bite.
+    EXPECT_EQ(failed, calls);
+    expectLoadable();
+}
+
+TEST_F(CompileFaults, FailingCallLeavesFilesWhole) {
+    const int calls = countCalls(command(), "error");
+    ASSERT_GT(calls, 40);
+    int failed = 0;
+    for (int at = 1; at <= calls; ++at) {
+        restore("old");
+        const Outcome outcome = runWithFault(command(), "error", at);
+        expectWhole();
+        if (outcome.exit == 0) {
+            EXPECT_TRUE(isNew()) << at << difference(new_, contents());
+        } else {
+            ++failed;
+            EXPECT_EQ(outcome.exit, 1) << at;
+            EXPECT_TRUE(saysWhy(outcome)) << at << ": " << outcome.err;
+            // Nothing is left that is in neither state.
+            Contents known = old_;
+            known.insert(new_.begin(), new_.end());
+            for (const auto& [name, ignored] : contents()) {
+                EXPECT_TRUE(known.contains(name)) << at << ": " << name;
+            }
+        }
+        ASSERT_FALSE(HasFailure()) << at << outcome.err;
+    }
+    EXPECT_GT(failed, calls / 2);
+    expectLoadable();
+}
+
+TEST_F(CompileFaults, InterruptionWaitsForTheEnd) {
+    const int calls = countCalls(command(), "term");
+    ASSERT_GT(calls, 40);
+    for (int at = 1; at <= calls; ++at) {
+        restore("old");
+        const Outcome outcome = runWithFault(command(), "term", at);
+        ASSERT_EQ(outcome.exit, -1) << at;
+        ASSERT_TRUE(isNew()) << at << difference(new_, contents());
+    }
+    expectLoadable();
+}
+
+TEST_F(CompileFaults, KilledRunLeavesFilesWholeAndTheNextOneCleansUp) {
+    const int calls = countCalls(command(), "kill");
+    ASSERT_GT(calls, 40);
+    for (int at = 1; at <= calls; ++at) {
+        restore("old");
+        ASSERT_EQ(runWithFault(command(), "kill", at).exit, -1) << at;
+        expectWhole();
+        expectLoadable();
+        const Outcome next = run(command());
+        EXPECT_EQ(next.exit, 0) << next.err;
+        EXPECT_TRUE(isNew()) << difference(new_, contents());
+        ASSERT_FALSE(HasFailure()) << at;
+    }
+}
+
+TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
+    fs::copy(path("cache"), path("warm"), fs::copy_options::recursive);
+    writeText(path("new.lock"), new_.at("ids.lock"));
+    for (const std::string kind : {"full", "error"}) {
+        const auto forget = [&] {
+            restore("old");
+            // A run that changes its own input is not kept.
+            fs::copy_file(path("new.lock"), path("work/ids.lock"), fs::copy_options::overwrite_existing);
+            // One module is compiled again, and the run is no repetition of an earlier one.
+            fs::remove_all(path("cache"));
+            fs::copy(path("warm"), path("cache"), fs::copy_options::recursive);
+            fs::path smallest;
+            for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path("cache"))) {
+                const bool isModule = entry.path().extension() == ".module";
+                if (isModule && (smallest.empty() || entry.file_size() < fs::file_size(smallest))) {
+                    smallest = entry.path();
+                }
+            }
+            ASSERT_TRUE(fs::remove_all(smallest.parent_path()) > 0);
+        };
+        forget();
+        const int calls = countCalls(command(), kind, "cache");
+        ASSERT_GE(calls, 7);
+        int noted = 0;
+        for (int at = 1; at <= calls; ++at) {
+            forget();
+            const Outcome outcome = runWithFault(command(), kind, at, "cache");
+            ASSERT_EQ(outcome.exit, 0) << kind << at << outcome.err;
+            ASSERT_TRUE(isNew()) << kind << at << difference(new_, contents());
+            if (outcome.err.find("[cache-write]") == std::string::npos) {
+                continue;
+            }
+            ++noted;
+            // What is in the cache by now gives the same package.
+            restore("old");
+            ASSERT_EQ(run(command()).exit, 0) << kind << at;
+            ASSERT_TRUE(isNew()) << kind << at;
+        }
+        EXPECT_GE(noted, 6) << kind;
+    }
+}
+
+// compare --diff stands for every command that writes an image, or a file of measurements.
+TEST_F(Faults, ImageIsWholeOrTheEarlierOne) {
+    LinearImage image{64, 64, {}};
+    image.pixels.assign(std::size_t{64} * 64, {0.5F, 0.5F, 0.5F, 1.0F});
+    ASSERT_TRUE(writeImage(path("a.exr"), image, 0.0));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i][0] = static_cast<float>(i % 97);
+    }
+    ASSERT_TRUE(writeImage(path("b.exr"), image, 0.0));
+    const std::vector<std::string> command{"compare", "b.exr", "a.exr", "--diff", "work/map.png"};
+    ASSERT_EQ(run({"compare", "a.exr", "a.exr", "--diff", "work/map.png"}).exit, 0);
+    const Contents before = contents();
+    keep("old");
+    ASSERT_EQ(run(command).exit, 0);
+    const Contents after = contents();
+    ASSERT_NE(before, after);
+    for (const std::string kind : {"full", "error", "term", "kill"}) {
+        restore("old");
+        const int calls = countCalls(command, kind);
+        ASSERT_GE(calls, 3) << kind;
+        for (int at = 1; at <= calls; ++at) {
+            restore("old");
+            const Outcome outcome = runWithFault(command, kind, at);
+            if (kind == "full" || kind == "error") {
+                EXPECT_EQ(outcome.exit, 1) << kind << at;
+                EXPECT_TRUE(saysWhy(outcome)) << kind << at << outcome.err;
+                EXPECT_EQ(contents(), before) << kind << at << difference(contents(), before);
+            } else {
+                EXPECT_EQ(outcome.exit, -1) << kind << at;
+                const std::string map = contents().at("map.png");
+                EXPECT_TRUE(map == before.at("map.png") || map == after.at("map.png")) << kind << at;
+            }
+        }
+        // What killed runs left goes with the next.
+        ASSERT_EQ(run(command).exit, 0);
+        EXPECT_EQ(contents(), after) << kind << difference(contents(), after);
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

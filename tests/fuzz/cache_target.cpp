@@ -1,0 +1,75 @@
+// What a folder of the cache holds: an entry's file as a crash or another program left it, and the values in
+// it as other versions may have packed them. Nothing of it may do more than to be no entry.
+#include "base/files.h"
+#include "cache/action.h"
+#include "cache/module_cache.h"
+#include "cache/packing.h"
+#include "cache/store.h"
+#include "cli/compile_summary.h"
+#include "fuzz/fuzz_target.h"
+#include "support/temporary_folder.h"
+
+#include <optional>
+#include <string>
+
+namespace {
+
+using glint::fuzz::require;
+
+constexpr std::string_view kCompiler = "compiler";
+constexpr std::string_view kSource = "source";
+
+// All keys have one file a kind, so that its name is known: the hash 0.
+glint::CacheStore& store() {
+    static const glint::test::TemporaryFolder folder;
+    static glint::CacheStore store(
+        {folder.path(), 1ULL << 20, [](std::string_view) { return std::uint64_t{0}; }});
+    return store;
+}
+
+std::filesystem::path fileOf(const std::string& kind) {
+    return store().folder() / "v1" / "00" / ("00000000000000." + kind);
+}
+
+void readEntry(std::span<const std::uint8_t> bytes, std::string_view text) {
+    require(glint::writeFile(fileOf("entry"), bytes).ok(), "the temporary folder can be written");
+    const std::optional<std::string> found = store().find("entry", kSource);
+    require(!found || text.find(*found) != std::string_view::npos, "a value is part of its entry");
+}
+
+void readAction(std::string_view text) {
+    const std::optional<glint::ActionRecord> record = glint::unpackAction(text);
+    if (record) {
+        const std::string packed = glint::pack(*record);
+        const std::optional<glint::ActionRecord> again = glint::unpackAction(packed);
+        require(again && glint::pack(*again) == packed, "a record reads back as it was packed");
+    }
+}
+
+void readSummary(std::string_view text) {
+    const std::optional<glint::CompileSummary> summary = glint::unpackSummary(text);
+    if (summary) {
+        const std::string packed = glint::pack(*summary);
+        const std::optional<glint::CompileSummary> again = glint::unpackSummary(packed);
+        require(again && glint::pack(*again) == packed, "a summary reads back as it was packed");
+    }
+}
+
+void readModule(std::string_view text) {
+    store().put("module", glint::Packer().add(kCompiler).add(kSource).take(), text);
+    const std::optional<glint::CachedModule> module =
+        glint::ModuleCache(store(), std::string(kCompiler)).find(kSource);
+    require(!module || !module->spirv.empty(), "a cached module has words");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text = glint::fuzz::asText(data, size);
+    // Makes the folder, too.
+    readModule(text);
+    readEntry({data, size}, text);
+    readAction(text);
+    readSummary(text);
+    return 0;
+}

@@ -1,0 +1,39 @@
+#include "base/png_bounds.h"
+
+#include <cstddef>
+#include <string_view>
+
+namespace glint {
+
+namespace {
+
+// Deflate reaches 1032 : 1 at best, and a pixel has one bit at least.
+constexpr std::uint64_t kMaxPixelsPerByte = 1032ULL * 8;
+
+}  // namespace
+
+std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t width, std::int64_t height) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (pixels / kMaxPixelsPerByte > bytes.size()) {
+        return "it says it has " + std::to_string(width) + " x " + std::to_string(height) +
+               " pixels, but has only " + std::to_string(bytes.size()) + " bytes";
+    }
+    constexpr std::size_t kSignatureBytes = 8;
+    constexpr std::size_t kFrameBytes = 12;  // length, type, checksum
+    for (std::size_t at = kSignatureBytes; at + kFrameBytes <= bytes.size();) {
+        if (std::string_view(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4) == "IEND") {
+            break;
+        }
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            length = length << 8U | bytes[at + i];
+        }
+        if (length > bytes.size() - at - kFrameBytes) {
+            return "a chunk of " + std::to_string(length) + " bytes goes beyond its end";
+        }
+        at += kFrameBytes + length;
+    }
+    return {};
+}
+
+}  // namespace glint

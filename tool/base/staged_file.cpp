@@ -1,0 +1,132 @@
+#include "base/staged_file.h"
+
+#include "base/files.h"
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// "scene.lock.glint-tmp-1234", by the number of the process.
+constexpr std::string_view kTag = ".glint-tmp-";
+
+struct FileCloser {
+    void operator()(std::FILE* file) const {
+        std::fclose(file);
+    }
+};
+using File = std::unique_ptr<std::FILE, FileCloser>;
+
+Diagnostic writeError(const fs::path& path, const std::string& why) {
+    return makeError("file-write", path.string(), "can't be written: " + why,
+                     "check the folder, its permissions and the free space");
+}
+
+bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    std::error_code error;
+    if (fs::file_size(path, error) != bytes.size() || error) {
+        return false;
+    }
+    const Result<Bytes> present = readFile(path);
+    return present && std::memcmp(present->data(), bytes.data(), bytes.size()) == 0;
+}
+
+// 0, or errno.
+int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    File file(std::fopen(path.c_str(), "wb"));
+    if (!file) {
+        return errno;
+    }
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+        return errno;
+    }
+    // Close by hand: a full disk may show only when the buffers are flushed.
+    return std::fclose(file.release()) != 0 ? errno : 0;
+}
+
+bool isOfDeadProcess(std::string_view number) {
+    long process = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), process);
+    return error == std::errc() && end == number.data() + number.size() && process > 0 &&
+           kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+std::span<const std::uint8_t> asBytes(std::string_view text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+Result<StagedFile> StagedFile::create(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    if (holds(path, bytes)) {
+        return StagedFile(path, {});
+    }
+    StagedFile staged(path, path.string() + std::string(kTag) + std::to_string(getpid()));
+    if (const int failure = writeNew(staged.temporary_, bytes); failure != 0) {
+        return writeError(path, std::strerror(failure));
+    }
+    return staged;
+}
+
+StagedFile::StagedFile(fs::path path, fs::path temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {}
+
+StagedFile::StagedFile(StagedFile&& other) noexcept
+    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, fs::path())) {}
+
+StagedFile::~StagedFile() {
+    if (!temporary_.empty()) {
+        std::error_code ignored;
+        fs::remove(temporary_, ignored);
+    }
+}
+
+Status StagedFile::commit() {
+    if (temporary_.empty()) {
+        return okStatus();
+    }
+    std::error_code error;
+    fs::rename(temporary_, path_, error);
+    if (error) {
+        return writeError(path_, error.message());
+    }
+    temporary_.clear();
+    return okStatus();
+}
+
+Status writeStaged(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    Result<StagedFile> staged = StagedFile::create(path, bytes);
+    return staged ? staged->commit() : Status(staged.error());
+}
+
+void removeAbandoned(const fs::path& path) {
+    const std::string prefix = path.filename().string() + std::string(kTag);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(prefix) && isOfDeadProcess(std::string_view(name).substr(prefix.size()))) {
+            found.push_back(entry->path());
+        }
+    }
+    for (const fs::path& file : found) {
+        fs::remove(file, error);
+    }
+}
+
+}  // namespace glint
