@@ -111,16 +111,20 @@ def make_material(wish, name, roughness=0.4):
     return material
 
 
-def png(pixel):
-    """One RGB pixel as a data URI."""
+def png_bytes(pixel):
+    """One RGB pixel as a file."""
 
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
 
     data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
-    data += chunk(b"IDAT", zlib.compress(bytes([0, *pixel]))) + chunk(b"IEND", b"")
-    return "data:image/png;base64," + base64.b64encode(data).decode()
+    return data + chunk(b"IDAT", zlib.compress(bytes([0, *pixel]))) + chunk(b"IEND", b"")
+
+
+def png(pixel):
+    """One RGB pixel as a data URI."""
+    return "data:image/png;base64," + base64.b64encode(png_bytes(pixel)).decode()
 
 
 # One unit square in z = 0 that faces +z; attributes of four vertices each, then the indices.

@@ -1,6 +1,7 @@
 #include "render/order_kernel.h"
 
 #include "context_state.h"
+#include "emit/compile_modules.h"
 #include "emit/modules.h"
 #include "shader_modules.h"
 #include "vulkan_error.h"

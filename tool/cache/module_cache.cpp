@@ -14,7 +14,9 @@ constexpr std::string_view kKind = "module";
 // Whoever adds a count packs it, too.
 static_assert(sizeof(SpirvStatistics) == sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t));
 
-std::string packed(const CachedModule& module) {
+}  // namespace
+
+std::string packModule(const CachedModule& module) {
     const SpirvStatistics& counts = module.statistics;
     Packer packer;
     for (const std::uint64_t count :
@@ -28,7 +30,7 @@ std::string packed(const CachedModule& module) {
     return packer.take();
 }
 
-std::optional<CachedModule> unpacked(std::string_view bytes) {
+std::optional<CachedModule> unpackModule(std::string_view bytes) {
     CachedModule module;
     SpirvStatistics& counts = module.statistics;
     Unpacker unpacker(bytes);
@@ -46,8 +48,6 @@ std::optional<CachedModule> unpacked(std::string_view bytes) {
     return module;
 }
 
-}  // namespace
-
 ModuleCache::ModuleCache(CacheStore& store, std::string compiler)
     : store_(store), compiler_(std::move(compiler)) {}
 
@@ -57,11 +57,11 @@ std::string ModuleCache::keyOf(std::string_view source) const {
 
 std::optional<CachedModule> ModuleCache::find(std::string_view source) const {
     const std::optional<std::string> found = store_.find(kKind, keyOf(source));
-    return found ? unpacked(*found) : std::nullopt;
+    return found ? unpackModule(*found) : std::nullopt;
 }
 
 void ModuleCache::put(std::string_view source, const CachedModule& module) const {
-    store_.put(kKind, keyOf(source), packed(module));
+    store_.put(kKind, keyOf(source), packModule(module));
 }
 
 }  // namespace glint

@@ -17,6 +17,10 @@ struct CachedModule {
     SpirvStatistics statistics;
 };
 
+std::string packModule(const CachedModule& module);
+// Nothing where `bytes` is no module.
+std::optional<CachedModule> unpackModule(std::string_view bytes);
+
 // Thread-safe, as the store is.
 class ModuleCache {
 public:

@@ -14,8 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kNone = "none";
-
 // Whatever the values of these, a command writes the same; and diagnostics are judged when they are reported.
 constexpr std::array<std::string_view, 11> kWithoutEffect = {
     "--cache", "--cache-size", "--color",  "--depfile", "--depfile-target", "--jobs", "--json",
@@ -42,7 +40,7 @@ void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
 
 std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {
     std::string folder = arguments.folder.empty() ? variable("GLINT_CACHE") : arguments.folder;
-    if (folder == kNone) {
+    if (folder == kNoCache) {
         return std::nullopt;
     }
     if (!folder.empty()) {
@@ -57,12 +55,16 @@ std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {
     return home.is_absolute() ? std::optional(home / ".cache" / "glint") : std::nullopt;
 }
 
+bool hasEffect(const CLI::Option& option) {
+    return std::ranges::find(kWithoutEffect, option.get_name()) == kWithoutEffect.end();
+}
+
 std::string describeOptions(const CLI::App& command) {
     Packer packer;
     packer.add(std::string_view(command.get_name()));
     for (const CLI::Option* const option : command.get_options()) {
         const std::string name = option->get_name();
-        if (option->count() == 0 || std::ranges::find(kWithoutEffect, name) != kWithoutEffect.end()) {
+        if (option->count() == 0 || !hasEffect(*option)) {
             continue;
         }
         packer.add(std::string_view(name)).add(option->results().size());

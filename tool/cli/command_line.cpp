@@ -71,6 +71,7 @@ int runCommandLine(int argc, const char* const* argv) {
     Action chosen;
     describe(app);
     addCompile(app, chosen);
+    addCompileModule(app, chosen);
     addExplain(app, chosen);
     addInspect(app, chosen);
     addDiff(app, chosen);

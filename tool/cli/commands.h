@@ -8,6 +8,7 @@
 namespace glint {
 
 void addCompile(CLI::App& app, Action& chosen);
+void addCompileModule(CLI::App& app, Action& chosen);
 void addExplain(CLI::App& app, Action& chosen);
 void addInspect(CLI::App& app, Action& chosen);
 void addDiff(CLI::App& app, Action& chosen);

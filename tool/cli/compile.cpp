@@ -1,19 +1,22 @@
 // glint compile: a scene's materials into a package.
 #include "emit/compile.h"
 
+#include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/compile_arguments.h"
 #include "cli/compile_cache.h"
 #include "cli/compile_outputs.h"
+#include "cli/compile_plan.h"
 #include "cli/compile_summary.h"
 #include "cli/depfile.h"
 #include "cli/lock_option.h"
 #include "cli/module_report.h"
+#include "cli/ninja_file.h"
 #include "cli/plan_choice.h"
 #include "cli/read_scenes.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "cli/tracing_options.h"
 #include "emit/embed_source.h"
 #include "emit/json.h"
 
@@ -32,31 +35,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct CompileArguments {
-    std::vector<std::string> scenes;
-    std::string output;
-    std::string embed;  // a C++ source; empty: none
-    TracingArguments tracing;
-    std::string variant;
-    PlanArguments plan;
-    LockArguments lock;
-    AccuracyArguments accuracy;
-    std::vector<std::string> emit{"header"};
-    std::int64_t jobs = 0;
-    CacheArguments cache;
-    DepfileArguments depfile;
-    std::string options;  // all that are given, see describeOptions()
-    bool environmentMap = false;
-    bool debugInfo = false;
-    bool dryRun = false;
-};
-
-// What there is to tell at the end. The package is absent after a dry run.
+// What there is to tell at the end. The package is absent after a dry run, and after planning.
 struct Outcome {
     const CompileArguments& arguments;
     const SceneList& scenes;
     const Plan& plan;
     const CompiledPackage* package = nullptr;
+    std::optional<std::size_t> planned{};  // distinct modules, after --plan-only
 
     std::uint64_t packageBytes() const {
         std::uint64_t bytes = 0;
@@ -66,22 +51,6 @@ struct Outcome {
         return bytes;
     }
 };
-
-CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) {
-    const auto emits = [&](const char* what) {
-        return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
-    };
-    CompileSettings settings;
-    arguments.tracing.apply(settings);
-    settings.plan = std::move(plan);
-    arguments.accuracy.apply(settings);
-    settings.jobs = static_cast<int>(arguments.jobs);
-    settings.emitHeader = emits("header");
-    settings.emitGlsl = emits("glsl");
-    settings.environmentMap = arguments.environmentMap;
-    settings.debugInfo = arguments.debugInfo;
-    return settings;
-}
 
 Json shadersToJson(const Outcome& outcome) {
     Json list = Json::array();
@@ -100,6 +69,13 @@ Json shadersToJson(const Outcome& outcome) {
                             {"stages", stagesToJson(outcome.package, shader.shaderId)}});
     }
     return list;
+}
+
+Json planToJson(const Outcome& outcome) {
+    return outcome.planned ? Json{{"folder", outcome.arguments.planOnly},
+                                  {"ninja", planFile(outcome.arguments)},
+                                  {"modules", *outcome.planned}}
+                           : Json(nullptr);
 }
 
 Json toJson(const Outcome& outcome) {
@@ -121,7 +97,8 @@ Json toJson(const Outcome& outcome) {
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return textOrNull(outcome.arguments.output); })},
-            {"embedded", orNull([&] { return textOrNull(outcome.arguments.embed); })}};
+            {"embedded", orNull([&] { return textOrNull(outcome.arguments.embed); })},
+            {"plan", planToJson(outcome)}};
 }
 
 // The package's folder and the source, those that are written.
@@ -142,6 +119,11 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
         rows.push_back({"package bytes", formatBytes(outcome.packageBytes())});
     }
+    if (outcome.planned) {
+        rows.push_back({"to compile", fmt::format("{} modules", *outcome.planned)});
+        rows.push_back({"next", "ninja -f " + shellWord(planFile(outcome.arguments))});
+        return rows;
+    }
     const bool written = outcome.package != nullptr;
     rows.push_back({"output", written ? outputsOf(outcome.arguments) : "none (dry run)"});
     return rows;
@@ -161,7 +143,33 @@ int fail(const Console& console, const Diagnostic& error) {
     return kExitFailed;
 }
 
-int planOnly(const Console& console, Outcome outcome, const PlanOptions& options, Clock::time_point start) {
+// Writes the plan of what would be compiled. The plan settles shader IDs, so that the lock file is of now.
+int planOnly(const Console& console, const CompileArguments& arguments, std::span<const Scene> scenes,
+             const PlanOptions& options, const LockChoice& lock, std::span<const std::string> dependencies,
+             Clock::time_point start) {
+    const Result<PackagePlan> planned = planPackage(scenes, settingsOf(arguments, options));
+    if (!planned) {
+        return fail(console, planned.error());
+    }
+    console.progress("writing " + planFile(arguments));
+    if (Status written = writePlan(arguments, *planned, dependencies); !written) {
+        return fail(console, written.error());
+    }
+    if (lock.text) {
+        if (Status kept = writeFile(arguments.lock.file, *lock.text); !kept) {
+            return fail(console, kept.error());
+        }
+    }
+    if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
+        return fail(console, listed.error());
+    }
+    const SceneList list(scenes);
+    const Outcome outcome{arguments, list, planned->plan, nullptr, planned->modules.size()};
+    tell(console, summaryOf(outcome), std::nullopt, false, millisecondsSince(start));
+    return kExitDone;
+}
+
+int dryRun(const Console& console, Outcome outcome, const PlanOptions& options, Clock::time_point start) {
     if (const std::optional<std::string> excess = describeExcess(outcome.plan, options)) {
         return fail(console, makeError("max-shaders", outcome.scenes.path(), *excess));
     }
@@ -188,17 +196,6 @@ std::optional<int> repeatEarlier(const Console& console, const CompileArguments&
     return kExitDone;
 }
 
-// What is read besides scenes.
-std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
-    std::vector<std::filesystem::path> files;
-    for (const std::string& file : {arguments.plan.profile, arguments.lock.file}) {
-        if (!file.empty()) {
-            files.emplace_back(file);
-        }
-    }
-    return files;
-}
-
 // The files that a run has written.
 bool addOutputs(const CompiledPackage& package, const CompileArguments& arguments, ActionRecord& run) {
     if (!arguments.output.empty()) {
@@ -214,8 +211,9 @@ bool addOutputs(const CompiledPackage& package, const CompileArguments& argument
 int compile(const Console& console, const CompileArguments& arguments) {
     const Clock::time_point start = Clock::now();
     CompileCache cache(arguments.cache, arguments.options);
-    const std::optional<int> done =
-        arguments.dryRun ? std::nullopt : repeatEarlier(console, arguments, cache, start);
+    const std::optional<int> done = arguments.dryRun || !arguments.planOnly.empty()
+                                        ? std::nullopt
+                                        : repeatEarlier(console, arguments, cache, start);
     if (done) {
         return *done;
     }
@@ -252,7 +250,7 @@ int compile(const Console& console, const CompileArguments& arguments) {
     }
     if (arguments.dryRun) {
         const Plan made = makePlan(list.materials(), list.primitives(), plan->options);
-        return planOnly(console, Outcome{arguments, list, made}, plan->options, start);
+        return dryRun(console, Outcome{arguments, list, made}, plan->options, start);
     }
     // The files of scenes come first, each as it was when it was read.
     const std::vector<FileState> sceneFiles = filesOf(*scenes);
@@ -264,6 +262,9 @@ int compile(const Console& console, const CompileArguments& arguments) {
     if (const Result<std::string> listed = makeDepfile(arguments.depfile.targets, dependencies);
         !arguments.depfile.file.empty() && !listed) {
         return fail(console, listed.error());
+    }
+    if (!arguments.planOnly.empty()) {
+        return planOnly(console, arguments, *scenes, plan->options, *lock, dependencies, start);
     }
     console.progress("compiling " + join(arguments.scenes));
     const Result<CompiledPackage> package =
@@ -288,63 +289,15 @@ int compile(const Console& console, const CompileArguments& arguments) {
     return kExitDone;
 }
 
-void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
-    addTracingLists(command, arguments.tracing);
-    addPlanOptions(command, arguments.plan);
-    addProfileInput(command, arguments.plan);
-    addLockOptions(command, arguments.lock);
-    addAccuracyOptions(command, arguments.accuracy);
-    addFlag(command, "--environment-map", arguments.environmentMap,
-            "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
-        .group("Shaders");
-    addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
-        .group("Shaders");
-}
-
-void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
-    addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the package; one that is there is replaced\n(required without --embed or --dry-run)")
-        .group("Output");
-    addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
-                   "the package as a C++ source, with a header beside it, for\n"
-                   "programs that ship no files; -o may then be left out")
-        .group("Output")
-        ->type_name("FILE.cpp");
-    addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
-               "what else the package holds, separated by commas:\n"
-               "glsl: the shaders' sources; header: C++ tables")
-        .group("Output");
-    addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile and write nothing").group("Output");
-    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one a core")
-        .group("Output");
-    addCacheOptions(command, arguments.cache);
-    addDepfileOptions(command, arguments.depfile);
-}
-
 }  // namespace
 
 void addCompile(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CompileArguments>();
     CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
                                    "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
-    addTexts(command, "SCENE", arguments->scenes, "FILE",
-             "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
-        .required();
-    addVariant(command, arguments->variant);
-    addOutputOptions(command, *arguments);
-    addShaderOptions(command, *arguments);
+    addCompileOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {
-        if (arguments->output.empty() && arguments->embed.empty() && !arguments->dryRun) {
-            throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
-        }
-        settleProfile(arguments->plan);
-        if (arguments->depfile.targets.empty()) {
-            arguments->depfile.targets = {
-                arguments->output.empty()
-                    ? arguments->embed
-                    : (std::filesystem::path(arguments->output) / package::kManifestFile).string()};
-        }
-        arguments->options = describeOptions(command);
+        settleCompile(command, *arguments);
         chosen = [arguments](const Console& console) { return compile(console, *arguments); };
     });
 }

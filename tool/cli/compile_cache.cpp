@@ -2,8 +2,7 @@
 
 #include "cache/packing.h"
 #include "cache/program.h"
-#include "emit/context.h"
-#include "spirv/compiler.h"
+#include "emit/compile_modules.h"
 
 #include <fmt/format.h>
 
@@ -29,8 +28,7 @@ CompileCache::CompileCache(const CacheArguments& arguments, const std::string& o
     constexpr std::uint64_t kMebibyte = 1ULL << 20;
     store_ = std::make_unique<CacheStore>(
         StoreOptions{*folder, static_cast<std::uint64_t>(arguments.mebibytes) * kMebibyte, {}});
-    modules_ = std::make_unique<ModuleCache>(*store_,
-                                             fmt::format("glint {}; {}", toolVersion(), compilerIdentity()));
+    modules_ = std::make_unique<ModuleCache>(*store_, moduleCompiler());
     std::error_code error;
     action_ = Packer()
                   .add(programIdentity())

@@ -1,8 +1,10 @@
 #include "emit/compile.h"
 
+#include "emit/compile_modules.h"
 #include "emit/context.h"
 #include "emit/header.h"
 #include "emit/manifest.h"
+#include "emit/module_files.h"
 #include "emit/modules.h"
 #include "emit/readable.h"
 #include "emit/sources.h"
@@ -69,43 +71,59 @@ Status checkPositionFetch(const CompileSettings& settings, const std::string& wh
     return okStatus();
 }
 
-Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
-                                ModuleCache* cache) {
+Status checkSettings(const CompileSettings& settings, const std::string& where) {
     if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
-        return makeError("strategy", scenes.path(),
-                         fmt::format("{:#x} is no set of strategies", settings.strategies),
+        return makeError("strategy", where, fmt::format("{:#x} is no set of strategies", settings.strategies),
                          "choose among uber, visibility, sorted-uber and hit-shaders");
     }
     if (settings.tracers == 0 || settings.tracers > package::kAllTracers) {
-        return makeError("tracer", scenes.path(), fmt::format("{:#x} is no set of tracers", settings.tracers),
+        return makeError("tracer", where, fmt::format("{:#x} is no set of tracers", settings.tracers),
                          "choose ray-query, ray-pipeline or both");
     }
-    if (settings.positionFetch) {
-        if (Status possible = checkPositionFetch(settings, scenes.path()); !possible) {
-            return possible.error();
-        }
+    return settings.positionFetch ? checkPositionFetch(settings, where) : okStatus();
+}
+
+// All that comes before SPIR-V.
+struct Prepared {
+    Plan plan;
+    SourceSet sources;
+    std::vector<ModuleSource> modules;
+};
+
+Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& settings) {
+    if (Status valid = checkSettings(settings, scenes.path()); !valid) {
+        return valid.error();
     }
-    CompiledPackage package;
-    package.plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
-    if (const auto excess = describeExcess(package.plan, settings.plan)) {
+    Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);
     }
-
-    // Plan to GLSL to SPIR-V.
-    Result<SourceSet> made = makeSourceSet(scenes, package.plan, settings);
-    if (!made) {
-        return made.error();
+    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
+    if (!sources) {
+        return sources.error();
     }
-    const SourceSet& sources = *made;
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, package.plan, sources, settings);
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
     if (!modules) {
         return modules.error();
     }
+    return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
+}
+
+Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
+                                ModuleCache* cache) {
+    Result<Prepared> prepared = prepare(scenes, settings);
+    if (!prepared) {
+        return prepared.error();
+    }
     Result<std::vector<CompiledModule>> compiled =
-        compileModules(std::move(*modules), settings.jobs, settings.debugInfo, cache);
+        settings.modules.empty()
+            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache)
+            : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
     if (!compiled) {
         return compiled.error();
     }
+    CompiledPackage package;
+    package.plan = std::move(prepared->plan);
     package.modules = std::move(*compiled);
 
     // Files; the manifest last, as it lists the others.
@@ -113,7 +131,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     package.files.push_back(
         {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
-        Result<std::string> header = makeHeader(scenes, package.plan, sources, settings.plan);
+        Result<std::string> header = makeHeader(scenes, package.plan, prepared->sources, settings.plan);
         if (!header) {
             return header.error();
         }
@@ -131,6 +149,29 @@ CompileSettings withOwnTracers(CompileSettings settings) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
     return settings;
+}
+
+// The result of `work` on scenes that are sound; an exception becomes an error.
+template <typename Value, typename Work>
+Result<Value> guarded(std::span<const Scene> scenes, const Work& work) {
+    if (scenes.empty()) {
+        return makeError("scene-missing", "", "there is no scene to compile", "name at least one");
+    }
+    const std::string where = scenes.front().path;
+    try {
+        for (const Scene& scene : scenes) {
+            if (Status valid = checkScene(scene); !valid) {
+                return valid.error();
+            }
+        }
+        return work();
+    } catch (const std::bad_alloc&) {
+        return makeError("out-of-memory", where, "compiling the scene does not fit into memory",
+                         "simplify the scene, use fewer --jobs, or a machine with more memory");
+    } catch (const std::exception& error) {
+        return makeError("internal", where, fmt::format("compiling failed: {}", error.what()),
+                         "this is a defect of Glint");
+    }
 }
 
 }  // namespace
@@ -159,26 +200,21 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
     return names;
 }
 
+Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings) {
+    return guarded<PackagePlan>(scenes, [&]() -> Result<PackagePlan> {
+        Result<Prepared> prepared = prepare(SceneList(scenes), withOwnTracers(settings));
+        if (!prepared) {
+            return prepared.error();
+        }
+        std::vector<PlannedModule> modules = planModules(prepared->modules, settings.debugInfo);
+        return PackagePlan{std::move(prepared->plan), std::move(modules)};
+    });
+}
+
 Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache) {
-    if (scenes.empty()) {
-        return makeError("scene-missing", "", "there is no scene to compile", "name at least one");
-    }
-    const std::string where = scenes.front().path;
-    try {
-        for (const Scene& scene : scenes) {
-            if (Status valid = checkScene(scene); !valid) {
-                return valid.error();
-            }
-        }
-        return compile(SceneList(scenes), withOwnTracers(settings), cache);
-    } catch (const std::bad_alloc&) {
-        return makeError("out-of-memory", where, "compiling the scene does not fit into memory",
-                         "simplify the scene, use fewer --jobs, or a machine with more memory");
-    } catch (const std::exception& error) {
-        return makeError("internal", where, fmt::format("compiling failed: {}", error.what()),
-                         "this is a defect of Glint");
-    }
+    return guarded<CompiledPackage>(
+        scenes, [&] { return compile(SceneList(scenes), withOwnTracers(settings), cache); });
 }
 
 }  // namespace glint

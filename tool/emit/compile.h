@@ -42,6 +42,8 @@ struct CompileSettings {
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // the flattened sources, in glsl/
     bool debugInfo = false;  // keep names in the SPIR-V
+    // Where `glint compile-module` left the modules; empty: they are compiled.
+    std::filesystem::path modules{};
 };
 
 std::string_view toString(TextureLod lod);
@@ -74,9 +76,25 @@ struct CompiledPackage {
     std::uint64_t spirvBytes = 0;  // of the unique modules
 };
 
+// A text to compile, which several modules of a package may have.
+struct PlannedModule {
+    std::string file;  // without a suffix: a name that no other text of the package has
+    std::string name;  // of the first module that has it, for people
+    std::string text;  // see makeModuleText()
+};
+
+// What a package will be of, before anything is compiled.
+struct PackagePlan {
+    Plan plan;
+    std::vector<PlannedModule> modules;
+};
+// Errors as compilePackage(), but for those of compiling.
+Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings);
+
 // `scenes`: at least one; they share the cases, and each has its own tables. Errors: too many cases
 // ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and line (a defect of Glint
-// itself). Modules that `cache` has are not compiled, others are added to it; null: there is none.
+// itself); those of takeModules() with settings.modules. Modules that `cache` has are not compiled, others
+// are added to it; null: there is none.
 Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache = nullptr);
 inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings,

@@ -1,18 +1,12 @@
 #include "emit/modules.h"
 
-#include "cache/module_cache.h"
-#include "cache/packing.h"
 #include "emit/context.h"
 #include "emit/prune.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <map>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 namespace glint {
@@ -128,15 +122,6 @@ void insertDefines(std::string& text, const std::string& defines) {
     }
 }
 
-// "uber.comp" is compiled to uber.spv; other stages keep theirs in the name: gbuffer.vert.spv.
-std::string spirvFileName(const ModuleSource& source) {
-    std::string_view stem = source.name;
-    if (stem.ends_with(kComputeSuffix)) {
-        stem.remove_suffix(kComputeSuffix.size());
-    }
-    return std::string(stem) + ".spv";
-}
-
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
                                 std::string_view caseName, const SourceSet& sources,
                                 const kainjow::mustache::data& context) {
@@ -163,105 +148,6 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
     }
     module.glsl = dropUnused(*flattened);
     return module;
-}
-
-// All that decides about the words of a module, apart from the compiler.
-std::string compiledSource(const ModuleSource& source, bool debugInfo) {
-    Packer packer;
-    packer.add(static_cast<std::uint64_t>(source.stage)).add(source.functionsApart.size());
-    for (const std::string& function : source.functionsApart) {
-        packer.add(std::string_view(function));
-    }
-    if (debugInfo) {
-        packer.add(std::string_view(source.name)).add(std::string_view(source.glsl));
-    } else {
-        packer.add(essentialText(source.glsl));
-    }
-    return packer.take();
-}
-
-// Of one text, which several modules may have.
-struct CompiledText {
-    CachedModule module;
-    bool compiled = false;
-};
-
-Result<CompiledText> compileText(const ModuleSource& source, const std::string& key, bool debugInfo,
-                                 ModuleCache* cache) {
-    if (cache != nullptr) {
-        if (std::optional<CachedModule> found = cache->find(key)) {
-            return CompiledText{std::move(*found), false};
-        }
-    }
-    Result<std::vector<std::uint32_t>> spirv =
-        compileShader({source.name, source.stage, source.glsl, source.functionsApart}, {debugInfo});
-    if (!spirv) {
-        return spirv.error();
-    }
-    Result<SpirvStatistics> statistics = measureSpirv(*spirv);
-    if (!statistics) {
-        return statistics.error();
-    }
-    CompiledText text{{std::move(*spirv), *statistics}, true};
-    if (cache != nullptr) {
-        cache->put(key, text.module);
-    }
-    return text;
-}
-
-CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool isFirst) {
-    CompiledModule module;
-    module.key = source.key;
-    module.file = spirvFileName(source);
-    module.name = std::move(source.name);
-    module.glsl = std::move(source.glsl);
-    module.spirv = text.module.spirv;
-    module.statistics = text.module.statistics;
-    module.hash = hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
-                             module.spirv.size() * sizeof(std::uint32_t)});
-    module.compiled = text.compiled && isFirst;
-    return module;
-}
-
-// Runs work(0) … work(count - 1), handed out in order; stops handing out after a false.
-template <typename Work>
-void runParallel(std::size_t count, int jobs, const Work& work) {
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> failed{false};
-    const auto loop = [&] {
-        for (std::size_t i = next++; i < count && !failed; i = next++) {
-            if (!work(i)) {
-                failed = true;
-            }
-        }
-    };
-    const std::size_t wanted =
-        jobs > 0 ? static_cast<std::size_t>(jobs) : std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> threads;
-    try {
-        // This thread works too.
-        for (std::size_t i = 1; i < std::min(wanted, count); ++i) {
-            threads.emplace_back(loop);
-        }
-    } catch (const std::system_error&) {
-        // No more threads to be had: those that there are do the work.
-    }
-    loop();
-}
-
-// Equal hashes only hint at equal modules; equal words prove it.
-void shareFiles(std::vector<CompiledModule>& modules) {
-    std::multimap<std::uint64_t, std::size_t> firsts;
-    for (std::size_t i = 0; i < modules.size(); ++i) {
-        const auto [begin, end] = firsts.equal_range(modules[i].hash);
-        const auto twin = std::find_if(
-            begin, end, [&](const auto& entry) { return modules[entry.second].spirv == modules[i].spirv; });
-        if (twin != end) {
-            modules[i].file = modules[twin->second].file;
-        } else {
-            firsts.emplace(modules[i].hash, i);
-        }
-    }
 }
 
 std::vector<std::uint32_t> retiredIds(const Plan& plan) {
@@ -311,40 +197,6 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
         }
         modules.push_back(std::move(*module));
     }
-    return modules;
-}
-
-Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache) {
-    // Each text once, in the order of the modules.
-    std::map<std::string, std::size_t> places;
-    std::vector<std::map<std::string, std::size_t>::const_iterator> textOf;
-    std::vector<std::size_t> firsts;
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        const auto [place, added] = places.emplace(compiledSource(sources[i], debugInfo), firsts.size());
-        textOf.emplace_back(place);
-        if (added) {
-            firsts.push_back(i);
-        }
-    }
-    std::vector<std::optional<Result<CompiledText>>> results(firsts.size());
-    runParallel(firsts.size(), jobs, [&](std::size_t i) {
-        results[i] = compileText(sources[firsts[i]], textOf[firsts[i]]->first, debugInfo, cache);
-        return results[i]->ok();
-    });
-    // Texts are handed out in order, so that every one before the first error has a result.
-    for (const std::optional<Result<CompiledText>>& result : results) {
-        if (!result->ok()) {
-            return result->error();
-        }
-    }
-    std::vector<CompiledModule> modules;
-    modules.reserve(sources.size());
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        const std::size_t text = textOf[i]->second;
-        modules.push_back(makeCompiled(sources[i], **results[text], firsts[text] == i));
-    }
-    shareFiles(modules);
     return modules;
 }
 

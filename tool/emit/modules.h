@@ -1,4 +1,4 @@
-// The shader modules of a package: which there are, and compiling them in parallel.
+// The shader modules of a package: which there are, and their GLSL.
 #pragma once
 
 #include "emit/compile.h"
@@ -26,11 +26,5 @@ package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings)
 Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings);
-
-// Compiles on `jobs` threads (0: one a core), equal texts once, and nothing that `cache` has (null: there is
-// none). The result, and which error is reported, do not depend on `jobs`: of several, that of the first
-// module. Modules of equal SPIR-V get the same `file`, that of the first.
-Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache = nullptr);
 
 }  // namespace glint

@@ -1,6 +1,6 @@
 #include "cache/module_cache.h"
 
-#include "emit/modules.h"
+#include "emit/compile_modules.h"
 #include "spirv/compiler.h"
 #include "support/temporary_folder.h"
 

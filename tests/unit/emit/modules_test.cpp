@@ -1,4 +1,4 @@
-#include "emit/modules.h"
+#include "emit/compile_modules.h"
 
 #include "emit/context.h"
 #include "unit/emit/sample_scene.h"

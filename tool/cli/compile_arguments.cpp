@@ -1,0 +1,177 @@
+#include "cli/compile_arguments.h"
+
+#include "emit/embed_source.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kPlanOnly = "--plan-only";
+constexpr const char* kLauncher = "--launcher";
+constexpr const char* kModules = "--modules";
+
+void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
+    addTracingLists(command, arguments.tracing);
+    addPlanOptions(command, arguments.plan);
+    addProfileInput(command, arguments.plan);
+    addLockOptions(command, arguments.lock);
+    addAccuracyOptions(command, arguments.accuracy);
+    addFlag(command, "--environment-map", arguments.environmentMap,
+            "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
+        .group("Shaders");
+    addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
+        .group("Shaders");
+}
+
+// Compilation by other processes.
+void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option& dry) {
+    CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly, "DIR",
+                                "compile nothing: write each module's source into this\n"
+                                "folder, and a build.ninja that compiles them one by one\n"
+                                "and makes the package");
+    CLI::Option& launcher = addText(command, kLauncher, arguments.launcher, "COMMAND",
+                                    "with --plan-only: what runs each of these compilations,\n"
+                                    "such as the client of a farm");
+    CLI::Option& modules =
+        addText(command, kModules, arguments.modules, "DIR",
+                "take modules that glint compile-module made instead of\ncompiling: what build.ninja does");
+    launcher.needs(&plan);
+    plan.excludes(&dry)->excludes(&modules);
+    modules.excludes(&dry);
+    for (CLI::Option* const option : {&plan, &launcher, &modules}) {
+        option->group("Farm");
+    }
+}
+
+void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
+    addText(command, "-o,--output", arguments.output, "DIR",
+            "folder of the package; one that is there is replaced\n(required without --embed or --dry-run)")
+        .group("Output");
+    addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
+                   "the package as a C++ source, with a header beside it, for\n"
+                   "programs that ship no files; -o may then be left out")
+        .group("Output")
+        ->type_name("FILE.cpp");
+    addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
+               "what else the package holds, separated by commas:\n"
+               "glsl: the shaders' sources; header: C++ tables")
+        .group("Output");
+    CLI::Option& dry = addFlag(command, "--dry-run", arguments.dryRun, "compile and write nothing");
+    dry.group("Output");
+    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one a core")
+        .group("Output");
+    addCacheOptions(command, arguments.cache);
+    addDepfileOptions(command, arguments.depfile);
+    addFarmOptions(command, arguments, dry);
+}
+
+// The option as it would be given again.
+void addWords(const CLI::Option& option, std::vector<std::string>& words) {
+    const std::string name = option.get_name();
+    if (option.get_items_expected_max() == 0) {
+        words.push_back(name);
+        return;
+    }
+    const std::string join = name.starts_with("--") ? name + "=" : name;
+    if (option.get_delimiter() == ',') {
+        words.push_back(join + fmt::format("{}", fmt::join(option.results(), ",")));
+        return;
+    }
+    for (const std::string& value : option.results()) {
+        words.push_back(join + value);
+    }
+}
+
+}  // namespace
+
+void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
+    addTexts(command, "SCENE", arguments.scenes, "FILE",
+             "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
+        .required();
+    addVariant(command, arguments.variant);
+    addOutputOptions(command, arguments);
+    addShaderOptions(command, arguments);
+}
+
+void settleCompile(const CLI::App& command, CompileArguments& arguments) {
+    if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
+        throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
+    }
+    settleProfile(arguments.plan);
+    if (arguments.depfile.targets.empty()) {
+        arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
+                                                                : planFile(arguments)};
+    }
+    arguments.options = describeOptions(command);
+    constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules};
+    constexpr std::string_view kReport[] = {"--werror", "-W"};
+    for (const CLI::Option* const option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || option->get_positional()) {
+            continue;
+        }
+        if (std::ranges::find(kReport, name) != std::end(kReport)) {
+            addWords(*option, arguments.reportWords);
+        } else if (hasEffect(*option) && std::ranges::find(kOwn, name) == std::end(kOwn)) {
+            addWords(*option, arguments.words);
+        }
+    }
+    if (!arguments.modules.empty()) {
+        // Nothing is compiled, and Ninja knows what is up to date.
+        arguments.cache.folder = kNoCache;
+    }
+}
+
+std::string planFile(const CompileArguments& arguments) {
+    return (std::filesystem::path(arguments.planOnly) / "build.ninja").string();
+}
+
+std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
+    std::vector<std::string> files;
+    if (!arguments.output.empty() || arguments.embed.empty()) {
+        files.push_back((std::filesystem::path(arguments.output) / package::kManifestFile).string());
+    }
+    if (!arguments.embed.empty()) {
+        files.push_back(arguments.embed);
+        files.push_back(embeddedHeader(arguments.embed).string());
+    }
+    return files;
+}
+
+CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) {
+    const auto emits = [&](const char* what) {
+        return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
+    };
+    CompileSettings settings;
+    arguments.tracing.apply(settings);
+    settings.plan = std::move(plan);
+    arguments.accuracy.apply(settings);
+    settings.jobs = static_cast<int>(arguments.jobs);
+    settings.emitHeader = emits("header");
+    settings.emitGlsl = emits("glsl");
+    settings.environmentMap = arguments.environmentMap;
+    settings.debugInfo = arguments.debugInfo;
+    settings.modules = arguments.modules;
+    return settings;
+}
+
+std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& file : {arguments.plan.profile, arguments.lock.file}) {
+        if (!file.empty()) {
+            files.emplace_back(file);
+        }
+    }
+    return files;
+}
+
+}  // namespace glint

@@ -1,0 +1,57 @@
+// The command line of `glint compile`.
+#pragma once
+
+#include "cli/cache_options.h"
+#include "cli/depfile.h"
+#include "cli/lock_option.h"
+#include "cli/options.h"
+#include "cli/tracing_options.h"
+#include "emit/compile.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct CompileArguments {
+    std::vector<std::string> scenes;
+    std::string output;
+    std::string embed;  // a C++ source; empty: none
+    TracingArguments tracing;
+    std::string variant;
+    PlanArguments plan;
+    LockArguments lock;
+    AccuracyArguments accuracy;
+    std::vector<std::string> emit{"header"};
+    std::int64_t jobs = 0;
+    CacheArguments cache;
+    DepfileArguments depfile;
+    std::string options;                   // all that are given, see describeOptions()
+    std::vector<std::string> words;        // those that decide about the package, one a word
+    std::vector<std::string> reportWords;  // those that decide which diagnostics are errors
+    std::string planOnly;                  // folder of the plan; empty: none
+    std::string launcher;                  // of the plan's compilations
+    std::string modules;                   // folder of compiled modules; empty: they are compiled
+    bool environmentMap = false;
+    bool debugInfo = false;
+    bool dryRun = false;
+};
+
+void addCompileOptions(CLI::App& command, CompileArguments& arguments);
+// Fills in what follows from the parsed `command`. Throws a CLI::ParseError where options disagree.
+void settleCompile(const CLI::App& command, CompileArguments& arguments);
+
+CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan);
+
+// The build file of --plan-only.
+std::string planFile(const CompileArguments& arguments);
+// The files that stand for the whole output: the manifest, and those of --embed.
+std::vector<std::string> mainOutputs(const CompileArguments& arguments);
+// What is read besides scenes.
+std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments);
+
+}  // namespace glint

@@ -1,0 +1,152 @@
+#include "cli/compile_plan.h"
+
+#include "base/files.h"
+#include "cli/ninja_file.h"
+#include "emit/module_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kModuleFolder = "modules";
+constexpr std::size_t kHashDigits = 16;
+
+fs::path moduleFolder(const CompileArguments& arguments) {
+    return fs::path(arguments.planOnly) / kModuleFolder;
+}
+
+// Whether nameModuleTexts() may have made the name, whatever the suffix.
+bool isModuleName(const std::string& stem) {
+    return stem.size() >= kHashDigits && stem.find_first_not_of("0123456789abcdef") >= kHashDigits &&
+           (stem.size() == kHashDigits || stem[kHashDigits] == '-');
+}
+
+Status checkFolder(const CompileArguments& arguments) {
+    const fs::path file = planFile(arguments);
+    std::error_code error;
+    if (!fs::exists(file, error)) {
+        return okStatus();
+    }
+    const Result<Bytes> bytes = readFile(file);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    return text.starts_with(kNinjaFirstWords)
+               ? okStatus()
+               : makeError("output-not-a-plan", file.string(), "was not made by glint and stays as it is",
+                           "choose another folder for --plan-only");
+}
+
+// What Ninja would not know any more.
+void removeOthers(const fs::path& folder, const std::set<std::string>& kept) {
+    std::error_code error;
+    std::vector<fs::path> gone;
+    for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
+        const fs::path& path = file->path();
+        const std::string suffix = path.extension().string();
+        if ((suffix == kModuleTextSuffix || suffix == kCompiledModuleSuffix) &&
+            isModuleName(path.stem().string()) && !kept.contains(path.stem().string())) {
+            gone.push_back(path);
+        }
+    }
+    for (const fs::path& path : gone) {
+        // One that stays is in nobody's way.
+        fs::remove(path, error);
+    }
+}
+
+std::vector<std::string> commandWords(std::vector<std::string> options, std::span<const std::string> further,
+                                      const std::vector<std::string>& scenes) {
+    options.insert(options.begin(), "compile");
+    options.insert(options.end(), further.begin(), further.end());
+    options.emplace_back("--");
+    options.insert(options.end(), scenes.begin(), scenes.end());
+    return options;
+}
+
+NinjaPlan describe(const CompileArguments& arguments, const PackagePlan& plan) {
+    NinjaPlan ninja;
+    std::error_code error;
+    ninja.tool = fs::read_symlink("/proc/self/exe", error).string();
+    if (error) {
+        ninja.tool = "glint";
+    }
+    ninja.launcher = arguments.launcher;
+    ninja.folder = arguments.planOnly;
+    ninja.file = planFile(arguments);
+    for (const PlannedModule& module : plan.modules) {
+        const std::string stem = (moduleFolder(arguments) / module.file).string();
+        ninja.modules.push_back(
+            {module.name, stem + std::string(kModuleTextSuffix), stem + std::string(kCompiledModuleSuffix)});
+    }
+    ninja.outputs = mainOutputs(arguments);
+    const fs::path folder = arguments.planOnly;
+    ninja.planDepfile = (folder / "plan.d").string();
+    ninja.packageDepfile = (folder / "package.d").string();
+
+    std::vector<std::string> again = arguments.reportWords;
+    again.push_back("--plan-only=" + arguments.planOnly);
+    if (!arguments.launcher.empty()) {
+        again.push_back("--launcher=" + arguments.launcher);
+    }
+    ninja.plan = commandWords(arguments.words, again, arguments.scenes);
+    // Planning has said what there is to say.
+    const std::vector<std::string> take{"--modules=" + moduleFolder(arguments).string(),
+                                        "--depfile=" + ninja.packageDepfile, "--quiet"};
+    ninja.package = commandWords(arguments.words, take, arguments.scenes);
+    return ninja;
+}
+
+}  // namespace
+
+Status writePlan(const CompileArguments& arguments, const PackagePlan& plan,
+                 std::span<const std::string> dependencies) {
+    const NinjaPlan ninja = describe(arguments, plan);
+    const Result<std::string> text = makeNinjaFile(ninja);
+    if (!text) {
+        return text.error();
+    }
+    const std::string target[] = {ninja.file};
+    const Result<std::string> depfile = makeDepfile(target, dependencies);
+    if (!depfile) {
+        return depfile.error();
+    }
+    if (Status free = checkFolder(arguments); !free) {
+        return free;
+    }
+    std::error_code error;
+    fs::create_directories(moduleFolder(arguments), error);
+    if (error) {
+        return makeError("file-write", moduleFolder(arguments).string(), "can't be made: " + error.message(),
+                         "check the folder and its permissions");
+    }
+    std::set<std::string> kept;
+    for (const PlannedModule& module : plan.modules) {
+        kept.insert(module.file);
+        const fs::path file = moduleFolder(arguments) / (module.file + std::string(kModuleTextSuffix));
+        if (Status written = writeFile(file, module.text); !written) {
+            return written;
+        }
+    }
+    if (Status listed = writeFile(ninja.planDepfile, *depfile); !listed) {
+        return listed;
+    }
+    if (Status written = writeFile(ninja.file, *text); !written) {
+        return written;
+    }
+    removeOthers(moduleFolder(arguments), kept);
+    return okStatus();
+}
+
+}  // namespace glint

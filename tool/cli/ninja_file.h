@@ -1,0 +1,42 @@
+// A build file for Ninja that compiles the modules of a package one by one.
+#pragma once
+
+#include <glint/result.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+struct NinjaModule {
+    std::string name;    // for people
+    std::string input;   // path of the module's text
+    std::string output;  // path of the compiled module
+};
+
+struct NinjaPlan {
+    std::string tool;                  // path of glint
+    std::string launcher;              // words of a shell before each compilation; may be empty
+    std::string folder;                // of the build file and what Ninja keeps
+    std::string file;                  // the build file itself
+    std::vector<NinjaModule> modules;  // at least one
+    std::vector<std::string> outputs;  // of the package, at least one
+    std::vector<std::string> plan;     // words after the tool's that make the plan again
+    std::string planDepfile;           // what the plan was made of
+    std::vector<std::string> package;  // words after the tool's that make the package of the modules
+    std::string packageDepfile;        // what that run lists as read
+};
+
+// Paths and words may have any character but a line break, and paths no '|', which Ninja can't take: error
+// "ninja-name".
+Result<std::string> makeNinjaFile(const NinjaPlan& plan);
+
+// What a file of makeNinjaFile() begins with.
+inline constexpr std::string_view kNinjaFirstWords = "# Made by glint compile --plan-only";
+
+// A word of a POSIX shell that stands for `text`.
+std::string shellWord(const std::string& text);
+
+}  // namespace glint
