@@ -153,7 +153,7 @@ void expectDescribed(const Json& schema, const std::string& where) {
         }
     }
     for (const auto& [name, value] : schema.items()) {
-        expectDescribed(value, where + "/" + name);
+        expectDescribed(value, std::string(where).append("/").append(name));
     }
 }
 
