@@ -33,6 +33,8 @@ namespace {
     if (memoryLimit != 0 && setrlimit(RLIMIT_AS, &limit) != 0) {
         _exit(kCantRun);
     }
+    // Not the user's, so that tests depend on nothing outside of the build.
+    setenv("GLINT_CACHE", GLINT_BINARY_DIR "/tests/cache", 1);
     for (const auto& [name, value] : variables) {
         setenv(name.c_str(), value.c_str(), 1);
     }

@@ -30,8 +30,8 @@ protected:
     std::filesystem::path path(const std::string& name) const {
         return folder_ / name;
     }
-    // Runs `glint` in the test's folder, with these variables added to the environment. Fails the test where
-    // a diagnostic has an id or a severity that the table does not have.
+    // Runs `glint` in the test's folder, with these variables added to the environment and a cache of the
+    // build's own. Fails the test where a diagnostic has an id or a severity that the table does not have.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
     // Likewise, with a terminal as its standard error; Outcome::err is what that was sent, with "\r\n".

@@ -5,7 +5,9 @@
 #include "cli/tiny_scene.h"
 
 #include <filesystem>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -57,6 +59,26 @@ TEST_F(Schemas, HoldTheManifest) {
     compile("small", {"--strategy", "uber", "--merge", "auto", "--max-shaders", "1", "--variant", "Night",
                       "--environment-map", "--hit-lobes", "base"});
     expectFits("manifest", Json::parse(readText(path("small/manifest.json"))));
+}
+
+// The lock file is text: a line a key, as docs/cli.md says.
+TEST_F(Schemas, LockFilesHaveTheFormOfTheDocument) {
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "package", "--lock", "glint.lock", "--merge", "none",
+                   "--strategy", "uber"})
+                  .exit,
+              0);
+    std::istringstream lines(readText(path("glint.lock")));
+    const std::regex key(R"((0|[1-9]\d*) (-|[A-Za-z0-9]+( [A-Za-z0-9]+)*))");
+    std::vector<std::string> text;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with('#')) {
+            text.push_back(line);
+        }
+    }
+    ASSERT_EQ(text.size(), 3U);
+    EXPECT_EQ(text[0], "version 1");
+    EXPECT_TRUE(std::regex_match(text[1], key)) << text[1];
+    EXPECT_TRUE(std::regex_match(text[2], key)) << text[2];
 }
 
 TEST_F(Schemas, HoldExplain) {
@@ -131,7 +153,7 @@ void expectDescribed(const Json& schema, const std::string& where) {
         }
     }
     for (const auto& [name, value] : schema.items()) {
-        expectDescribed(value, where + "/" + name);
+        expectDescribed(value, std::string(where).append("/").append(name));
     }
 }
 
@@ -145,6 +167,21 @@ TEST(SchemaFiles, DescribeEveryMember) {
     for (const char* command : {"compile", "explain", "inspect", "diff", "lint", "render", "compare"}) {
         EXPECT_TRUE(names.contains(command)) << command;
     }
+}
+
+// The first JSON block of a document below a heading.
+Json exampleIn(const std::string& document, const std::string& heading) {
+    const std::string text = readText(GLINT_SOURCE_DIR "/docs/" + document);
+    const std::string fence = "```json\n";
+    const std::size_t begin = text.find(fence, text.find("\n" + heading + "\n")) + fence.size();
+    return Json::parse(text.substr(begin, text.find("\n```", begin) - begin), nullptr, false);
+}
+
+TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
+    expectFits("compile", exampleIn("cli.md", "## glint compile"));
+    expectFits("lint", exampleIn("lint.md", "## JSON"));
+    const Json diagnostic = exampleIn("cli.md", "## What is reported");
+    expectFits("compare", Json{{"diagnostics", {diagnostic}}});
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ void describe(CLI::App& app) {
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"
         "Results go to stdout, diagnostics and progress to stderr.\n"
-        "Environment: NO_COLOR turns colour off; TMPDIR holds temporary files.\n"
+        "Environment: NO_COLOR turns colour off; TMPDIR holds temporary files; GLINT_CACHE\n"
+        "keeps compiled shaders (see glint compile --help).\n"
         "Run glint COMMAND --help for the options of a command.");
     app.get_formatter()->label("SUBCOMMAND", "COMMAND");
     app.get_formatter()->label("REQUIRED", "(required)");
