@@ -4,6 +4,7 @@
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -56,7 +57,9 @@ protected:
                    const std::string& folder = "work") const {
         const Outcome outcome = runWithFault(arguments, kind, 0, folder);
         EXPECT_EQ(outcome.exit, 0) << outcome.err;
-        return std::atoi(readText(path("count")).c_str());
+        const int calls = std::atoi(readText(path("count")).c_str());
+        std::printf("%s, %s: %d calls\n", kind.c_str(), folder.c_str(), calls);
+        return calls;
     }
     Contents contents() const {
         Contents found;

@@ -1,6 +1,7 @@
 // PNG and JPEG images.
 #include "base/png_bounds.h"
 #include "gltf/codecs.h"
+#include "gltf/jpeg_tables.h"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,11 @@ bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
 }
 
 bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
+    // The header comes after tables.
+    if (!hasSoundTables(bytes)) {
+        problem = "a Huffman table is damaged";
+        return false;
+    }
     if (!readHeader(bytes, image, problem)) {
         return false;
     }

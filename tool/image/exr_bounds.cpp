@@ -1,6 +1,7 @@
 #include "image/exr_bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <string_view>
@@ -44,9 +45,74 @@ public:
         return true;
     }
 
+    std::string_view rest() const {
+        return rest_;
+    }
+    bool atEnd() const {
+        return rest_.empty();
+    }
+
 private:
     std::string_view rest_;
 };
+
+// Types of attributes that the library reads by what they are, whatever size the file gives them: another one
+// would let all that follows be taken for something else.
+struct FixedType {
+    std::string_view name;
+    std::size_t size;
+};
+constexpr std::array kFixedTypes{
+    FixedType{"box2i", 16},      FixedType{"box2f", 16},   FixedType{"chromaticities", 32},
+    FixedType{"compression", 1}, FixedType{"double", 8},   FixedType{"envmap", 1},
+    FixedType{"float", 4},       FixedType{"int", 4},      FixedType{"keycode", 28},
+    FixedType{"lineOrder", 1},   FixedType{"m33f", 36},    FixedType{"m44f", 64},
+    FixedType{"m33d", 72},       FixedType{"m44d", 128},   FixedType{"rational", 8},
+    FixedType{"tiledesc", 9},    FixedType{"timecode", 8}, FixedType{"v2i", 8},
+    FixedType{"v2f", 8},         FixedType{"v2d", 16},     FixedType{"v3i", 12},
+    FixedType{"v3f", 12},        FixedType{"v3d", 24},     FixedType{"deepImageState", 1}};
+
+bool isChannelList(std::string_view value) {
+    constexpr std::size_t kChannelBytes = 16;
+    Reader reader(value, 0);
+    std::optional<std::string_view> name = reader.text();
+    while (name && !name->empty() && reader.skip(kChannelBytes)) {
+        name = reader.text();
+    }
+    return name && name->empty() && reader.atEnd();
+}
+
+bool isStringVector(std::string_view value) {
+    Reader reader(value, 0);
+    while (!reader.atEnd()) {
+        const std::optional<std::uint32_t> length = reader.word();
+        if (!length || !reader.skip(*length)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool isPreview(std::string_view value) {
+    Reader reader(value, 0);
+    const std::uint64_t width = reader.word().value_or(0);
+    const std::uint64_t height = reader.word().value_or(0);
+    constexpr std::size_t kSizeBytes = 8;
+    return value.size() >= kSizeBytes && width * height == (value.size() - kSizeBytes) / 4;
+}
+
+// Whether the library reads all of the value, and no more.
+bool fits(std::string_view type, std::string_view value) {
+    const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
+    if (fixed != kFixedTypes.end()) {
+        return value.size() == fixed->size;
+    }
+    // An ID manifest is compressed; only deep pictures have one.
+    return type == "chlist"         ? isChannelList(value)
+           : type == "stringvector" ? isStringVector(value)
+           : type == "preview"      ? isPreview(value)
+                                    : type != "idmanifest";
+}
 
 }  // namespace
 
@@ -69,10 +135,11 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
             continue;
         }
         isEmpty = false;
-        const bool hasType = reader.text().has_value();
-        const std::optional<std::uint32_t> size = hasType ? reader.word() : std::nullopt;
-        if (!size || !reader.skip(*size)) {
-            return "an attribute goes beyond its end: " + std::string(*name);
+        const std::optional<std::string_view> type = reader.text();
+        const std::optional<std::uint32_t> size = type ? reader.word() : std::nullopt;
+        const std::string_view rest = reader.rest();
+        if (!size || !reader.skip(*size) || !fits(*type, rest.substr(0, *size))) {
+            return "the size of its attribute " + std::string(*name) + " is wrong";
         }
     }
     return {};
