@@ -51,11 +51,11 @@ check_scene() {
     local scene=$1 package
     package=$(mktemp -d "$work/packages/XXXXXX")
     check 0 "$build/bin/glint" explain "$scene" --json
-    check 0 "$build/bin/glint" compile "$scene" -o "$package/a" --strategy all --tracer all --cache none \
+    check 0 "$build/bin/glint" compile "$scene" -o "$package/a" --strategy all --tracer all --cache "$work/cache" \
         --emit glsl,header --lock "$package/ids.lock" --depfile "$package/list.d" --embed "$package/embedded.cpp" \
         --jobs 1
     check 0 "$build/bin/glint" compile "$scene" -o "$package/b" --merge all --alpha opaque --jobs 1 \
-        --cache "$package/cache"
+        --cache "$work/cache"
     check 0 "$build/bin/glint" inspect "$package/a" --json
     check 01 "$build/bin/glint" lint "$package/a" --json
     check 0 "$build/bin/glint" diff "$package/a" "$package/b" --json
