@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the child process: only calls that are safe between fork and exec of a single-threaded parent.
-[[noreturn]] void execute(const std::vector<std::string>& arguments,
+[[noreturn]] void execute(std::vector<std::string> words,
                           const std::vector<std::pair<std::string, std::string>>& variables,
                           const fs::path& folder, const fs::path& out, const fs::path& err) {
     constexpr int kCantRun = 127;
@@ -29,15 +29,13 @@ namespace {
     for (const auto& [name, value] : variables) {
         setenv(name.c_str(), value.c_str(), 1);
     }
-    std::vector<std::string> all{GLINT_COMMAND};
-    all.insert(all.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
-    pointers.reserve(all.size() + 1);
-    for (std::string& argument : all) {
-        pointers.push_back(argument.data());
+    pointers.reserve(words.size() + 1);
+    for (std::string& word : words) {
+        pointers.push_back(word.data());
     }
     pointers.push_back(nullptr);
-    execv(pointers[0], pointers.data());
+    execvp(pointers[0], pointers.data());
     _exit(kCantRun);
 }
 
@@ -47,6 +45,10 @@ nlohmann::json Outcome::json() const {
     nlohmann::json parsed = nlohmann::json::parse(out, nullptr, false);
     EXPECT_FALSE(parsed.is_discarded()) << out << err;
     return parsed;
+}
+
+std::string commandPath() {
+    return GLINT_COMMAND;
 }
 
 std::string readText(const fs::path& path) {
@@ -76,12 +78,19 @@ void CommandTest::TearDown() {
 
 Outcome CommandTest::run(const std::vector<std::string>& arguments,
                          const std::vector<std::pair<std::string, std::string>>& variables) const {
+    std::vector<std::string> words{commandPath()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return runProgram(words, variables);
+}
+
+Outcome CommandTest::runProgram(const std::vector<std::string>& words,
+                                const std::vector<std::pair<std::string, std::string>>& variables) const {
     // Beside the folder, which a test may want to list.
     const fs::path out = folder_.string() + ".out";
     const fs::path err = folder_.string() + ".err";
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, out, err);
+        execute(words, variables, folder_, out, err);
     }
     int status = 0;
     Outcome outcome;

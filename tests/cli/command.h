@@ -32,6 +32,9 @@ protected:
     // Runs `glint` in the test's folder, with these variables added to the environment.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    // Runs another program, found on the PATH, likewise.
+    Outcome runProgram(const std::vector<std::string>& words,
+                       const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
     // Paths of all files below `folder`, relative and sorted.
     static std::vector<std::string> filesBelow(const std::filesystem::path& folder);
 
@@ -39,6 +42,8 @@ private:
     std::filesystem::path folder_;
 };
 
+// The path of `glint`.
+std::string commandPath();
 std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
 
