@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the child process: only calls that are safe between fork and exec of a single-threaded parent.
-[[noreturn]] void execute(const std::vector<std::string>& arguments,
+[[noreturn]] void execute(std::vector<std::string> words,
                           const std::vector<std::pair<std::string, std::string>>& variables,
                           const fs::path& folder, std::uint64_t memoryLimit, int outFile, int errFile) {
     constexpr int kCantRun = 127;
@@ -38,15 +38,13 @@ namespace {
     for (const auto& [name, value] : variables) {
         setenv(name.c_str(), value.c_str(), 1);
     }
-    std::vector<std::string> all{GLINT_COMMAND};
-    all.insert(all.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
-    pointers.reserve(all.size() + 1);
-    for (std::string& argument : all) {
-        pointers.push_back(argument.data());
+    pointers.reserve(words.size() + 1);
+    for (std::string& word : words) {
+        pointers.push_back(word.data());
     }
     pointers.push_back(nullptr);
-    execv(pointers[0], pointers.data());
+    execvp(pointers[0], pointers.data());
     _exit(kCantRun);
 }
 
@@ -99,6 +97,10 @@ nlohmann::json Outcome::json() const {
     return parsed;
 }
 
+std::string commandPath() {
+    return GLINT_COMMAND;
+}
+
 std::string readText(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::stringstream text;
@@ -126,19 +128,9 @@ void CommandTest::TearDown() {
 
 Outcome CommandTest::run(const std::vector<std::string>& arguments,
                          const std::vector<std::pair<std::string, std::string>>& variables) const {
-    // Beside the folder, which a test may want to list.
-    const fs::path out = folder_.string() + ".out";
-    const fs::path err = folder_.string() + ".err";
-    const pid_t child = fork();
-    if (child == 0) {
-        execute(arguments, variables, folder_, memoryLimit_, openForWriting(out), openForWriting(err));
-    }
-    Outcome outcome;
-    outcome.exit = waitFor(child);
-    outcome.out = readText(out);
-    outcome.err = readText(err);
-    fs::remove(out);
-    fs::remove(err);
+    std::vector<std::string> words{commandPath()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    Outcome outcome = runProgram(words, variables);
     const bool raised = std::ranges::any_of(arguments, [](const std::string& argument) {
         return argument.starts_with("--werror") || argument.starts_with("-Werror");
     });
@@ -146,8 +138,28 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments,
     return outcome;
 }
 
+Outcome CommandTest::runProgram(const std::vector<std::string>& words,
+                                const std::vector<std::pair<std::string, std::string>>& variables) const {
+    // Beside the folder, which a test may want to list.
+    const fs::path out = folder_.string() + ".out";
+    const fs::path err = folder_.string() + ".err";
+    const pid_t child = fork();
+    if (child == 0) {
+        execute(words, variables, folder_, memoryLimit_, openForWriting(out), openForWriting(err));
+    }
+    Outcome outcome;
+    outcome.exit = waitFor(child);
+    outcome.out = readText(out);
+    outcome.err = readText(err);
+    fs::remove(out);
+    fs::remove(err);
+    return outcome;
+}
+
 Outcome CommandTest::runOnTerminal(const std::vector<std::string>& arguments,
                                    const std::vector<std::pair<std::string, std::string>>& variables) const {
+    std::vector<std::string> words{commandPath()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
     const fs::path out = folder_.string() + ".out";
     Outcome outcome;
     const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -159,7 +171,7 @@ Outcome CommandTest::runOnTerminal(const std::vector<std::string>& arguments,
     const int errFile = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
     const pid_t child = fork();
     if (child == 0) {
-        execute(arguments, variables, folder_, memoryLimit_, openForWriting(out), errFile);
+        execute(words, variables, folder_, memoryLimit_, openForWriting(out), errFile);
     }
     close(errFile);
     outcome.err = readTerminal(terminal);

@@ -37,6 +37,9 @@ protected:
     // Likewise, with a terminal as its standard error; Outcome::err is what that was sent, with "\r\n".
     Outcome runOnTerminal(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    // Runs another program, found on the PATH, likewise.
+    Outcome runProgram(const std::vector<std::string>& words,
+                       const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
     // Paths of all files below `folder`, relative and sorted.
     static std::vector<std::string> filesBelow(const std::filesystem::path& folder);
 
@@ -47,6 +50,8 @@ private:
     std::filesystem::path folder_;
 };
 
+// The path of `glint`.
+std::string commandPath();
 std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
 

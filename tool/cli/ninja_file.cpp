@@ -116,7 +116,7 @@ Result<std::string> makeNinjaFile(const NinjaPlan& plan) {
     // An output that would be the same keeps its time stamp: restat tells Ninja so.
     text += fmt::format(
         "rule plan\n"
-        "  command = $glint{}\n"
+        "  command = $glint{} > /dev/null\n"
         "  description = PLAN\n"
         "  depfile = {}\n"
         "  generator = 1\n"

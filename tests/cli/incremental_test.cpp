@@ -1,0 +1,239 @@
+// What a run does again, and what it leaves alone.
+#include "cli/command.h"
+#include "cli/many_keys.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+class Incremental : public CommandTest {
+protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        writeManyKeys(path("scene"));
+    }
+    // One run on a cache of the test's own.
+    Outcome compile(const Words& options = {}) const {
+        Words words{"compile", "scene/scene.gltf", "--merge", "none", "--json"};
+        words.insert(words.end(), options.begin(), options.end());
+        const Words defaults{"--strategy", "uber,visibility", "-o", "package", "--cache", "cache"};
+        for (std::size_t i = 0; i < defaults.size(); i += 2) {
+            if (std::ranges::find(options, defaults[i]) == options.end()) {
+                words.insert(words.end(), {defaults[i], defaults[i + 1]});
+            }
+        }
+        Outcome outcome = run(words);
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return outcome;
+    }
+    // Every file of the package gets an old time stamp, so that one that is written shows.
+    void age() const {
+        for (const auto& [file, bytes] : contentsOf(path("package"))) {
+            fs::last_write_time(path("package") / file, old_);
+        }
+    }
+    std::set<std::string> writtenFiles() const {
+        std::set<std::string> files;
+        for (const auto& [file, bytes] : contentsOf(path("package"))) {
+            if (fs::last_write_time(path("package") / file) != old_) {
+                files.insert(file);
+            }
+        }
+        return files;
+    }
+
+private:
+    fs::file_time_type old_ = fs::file_time_type::clock::now() - std::chrono::hours(2);
+};
+
+int compiled(const Outcome& outcome) {
+    return outcome.json().at("modules").at("compiled").get<int>();
+}
+
+bool isUpToDate(const Outcome& outcome) {
+    return outcome.json().at("upToDate").get<bool>();
+}
+
+TEST_F(Incremental, AColdRunCompilesAndAWarmOneDoesNothing) {
+    const Outcome cold = compile();
+    EXPECT_GT(compiled(cold), 5);
+    EXPECT_FALSE(isUpToDate(cold));
+    age();
+    const Outcome warm = compile();
+    EXPECT_EQ(compiled(warm), 0);
+    EXPECT_TRUE(isUpToDate(warm));
+    EXPECT_EQ(writtenFiles(), std::set<std::string>{});
+    nlohmann::json first = cold.json();
+    nlohmann::json second = warm.json();
+    for (const char* const member : {"milliseconds", "modules", "upToDate"}) {
+        first.erase(member);
+        second.erase(member);
+    }
+    EXPECT_EQ(first, second);
+}
+
+// A package has no pixels: renderers read the scene's images.
+TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
+    compile();
+    age();
+    writeBaseTexture(path("scene"), 10);
+    EXPECT_TRUE(isUpToDate(compile()));
+    EXPECT_EQ(writtenFiles(), std::set<std::string>{});
+}
+
+TEST_F(Incremental, AnotherTextureIsInTheTablesAlone) {
+    compile();
+    age();
+    nlohmann::json scene = nlohmann::json::parse(readText(path("scene/scene.gltf")));
+    scene["images"].push_back({{"uri", "other.png"}});
+    scene["textures"].push_back({{"source", 1}});
+    scene["materials"][3]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
+    writeText(path("scene/scene.gltf"), scene.dump());
+    const Outcome changed = compile();
+    EXPECT_FALSE(isUpToDate(changed));
+    EXPECT_EQ(compiled(changed), 0);
+    EXPECT_EQ(writtenFiles(), (std::set<std::string>{"manifest.json", "tables.bin"}));
+}
+
+TEST_F(Incremental, AValueIsInTheTablesAlone) {
+    compile();
+    age();
+    writeManyKeys(path("scene"), kFourLobes, 0.25);
+    const Outcome changed = compile();
+    EXPECT_FALSE(isUpToDate(changed));
+    EXPECT_EQ(compiled(changed), 0);
+    EXPECT_EQ(writtenFiles(), (std::set<std::string>{"manifest.json", "tables.bin"}));
+}
+
+TEST_F(Incremental, ACombinationCompilesItsModuleAndThoseOfAllCases) {
+    compile();
+    // Features that the scene has, of which only the combination is new.
+    writeManyKeys(path("scene"), {{"clearcoat", "sheen"}, {"clearcoat"}, {"sheen"}, {"textured"}});
+    EXPECT_EQ(compiled(compile({"--strategy", "visibility", "-o", "other"})), 1);
+    EXPECT_EQ(compiled(compile()), 1);  // uber.comp
+    writeManyKeys(path("scene"), kFourLobes);
+    EXPECT_EQ(compiled(compile()), 0);
+}
+
+TEST_F(Incremental, WithoutACacheEverythingIsCompiledAndNothingRewritten) {
+    const int all = compiled(compile({"--cache", "none"}));
+    age();
+    const Outcome again = compile({"--cache", "none"});
+    EXPECT_EQ(compiled(again), all);
+    EXPECT_FALSE(isUpToDate(again));
+    EXPECT_EQ(writtenFiles(), std::set<std::string>{});
+}
+
+TEST_F(Incremental, TornEntriesOfTheCacheAreCompiledAgain) {
+    const int all = compiled(compile());
+    const auto package = contentsOf(path("package"));
+    int number = 0;
+    for (const std::string& file : filesBelow(path("cache"))) {
+        if (!fs::is_regular_file(path("cache") / file)) {
+            continue;
+        }
+        std::string bytes = readText(path("cache") / file);
+        if (++number % 2 == 0) {
+            bytes.resize(bytes.size() / 2);
+        } else {
+            bytes[bytes.size() - 5] ^= 1;
+        }
+        writeText(path("cache") / file, bytes);
+    }
+    ASSERT_GT(number, all);
+    fs::remove_all(path("package"));
+    const Outcome again = compile();
+    EXPECT_EQ(compiled(again), all);
+    EXPECT_TRUE(contentsOf(path("package")) == package);
+    EXPECT_TRUE(isUpToDate(compile()));
+}
+
+TEST_F(Incremental, ProcessesShareACache) {
+    const std::string script =
+        "\"$0\" compile scene/scene.gltf --cache cache -o a --quiet & first=$!\n"
+        "\"$0\" compile scene/scene.gltf --cache cache -o b --quiet & second=$!\n"
+        "wait $first && wait $second";
+    const Outcome both = runProgram({"sh", "-c", script, commandPath()});
+    ASSERT_EQ(both.exit, 0) << both.err;
+    EXPECT_EQ(both.err, "");
+    EXPECT_FALSE(contentsOf(path("a")).empty());
+    EXPECT_TRUE(contentsOf(path("a")) == contentsOf(path("b")));
+    for (const std::string& file : filesBelow(path("cache"))) {
+        EXPECT_EQ(file.find(".tmp"), std::string::npos) << file;
+    }
+    const Outcome third = run({"compile", "scene/scene.gltf", "--cache", "cache", "-o", "c", "--json"});
+    EXPECT_EQ(compiled(third), 0);
+}
+
+TEST_F(Incremental, JobsChangeNoByte) {
+    compile({"--cache", "none", "--jobs", "1", "-o", "one"});
+    compile({"--cache", "none", "--jobs", "2", "-o", "two"});
+    EXPECT_FALSE(contentsOf(path("one")).empty());
+    EXPECT_TRUE(contentsOf(path("one")) == contentsOf(path("two")));
+}
+
+// Scenes below a folder whose name has what Make and Ninja escape.
+class Dependencies : public Incremental {
+protected:
+    void SetUp() override {
+        Incremental::SetUp();
+        writeManyKeys(path(folder_));
+        const Outcome outcome = run({"compile", folder_ + "/scene.gltf", "-o", "pack age", "--cache", "cache",
+                                     "--depfile", "list.d"});
+        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    }
+    // Makes a file newer than the package.
+    void touch(const std::string& name) const {
+        const auto later = fs::file_time_type::clock::now() + std::chrono::seconds(5);
+        fs::last_write_time(path(folder_) / name, later);
+    }
+
+private:
+    const std::string folder_ = "a b#c$d:e";
+};
+
+TEST_F(Dependencies, AreReadByNinja) {
+    writeText(path("build.ninja"),
+              "rule run\n  command = echo run >> log\n  depfile = list.d\n"
+              "build pack$ age/manifest.json: run\n");
+    const Words ninja{"ninja", "-d", "explain", "-n"};
+    // Its log is empty, so that it runs once.
+    ASSERT_EQ(runProgram({"ninja"}).exit, 0);
+    const Outcome clean = runProgram(ninja);
+    EXPECT_NE(clean.out.find("no work to do"), std::string::npos) << clean.out << clean.err;
+    for (const char* const name : {"scene.gltf", "scene.bin"}) {
+        const fs::path file = path("a b#c$d:e") / name;
+        const auto before = fs::last_write_time(file);
+        touch(name);
+        const Outcome dirty = runProgram(ninja);
+        EXPECT_EQ(dirty.out.find("no work to do"), std::string::npos) << name;
+        fs::last_write_time(file, before);
+    }
+}
+
+TEST_F(Dependencies, AreReadByMake) {
+    writeText(path("Makefile"),
+              "all: pack\\ age/manifest.json\npack\\ age/manifest.json:\n\techo run\ninclude list.d\n");
+    const Words make{"make", "-q", "all"};
+    EXPECT_EQ(runProgram(make).exit, 0) << runProgram(make).err;
+    for (const char* const name : {"scene.gltf", "scene.bin"}) {
+        const fs::path file = path("a b#c$d:e") / name;
+        const auto before = fs::last_write_time(file);
+        touch(name);
+        EXPECT_EQ(runProgram(make).exit, 1) << name;
+        fs::last_write_time(file, before);
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,30 @@
+// A tiny scene with a texture, whose materials a test sets.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::testing {
+
+// Lobes of each material, "clearcoat" and "sheen" among them; "textured" gives a base colour texture.
+using Lobes = std::vector<std::vector<std::string>>;
+
+inline const Lobes kFourLobes{{}, {"clearcoat"}, {"sheen"}, {"textured"}};
+
+// Writes scene.gltf, scene.bin and base.png into `folder`, which is made: a material and a quad for each of
+// `lobes`. `red` is the first material's base colour.
+std::filesystem::path writeManyKeys(const std::filesystem::path& folder, const Lobes& lobes = kFourLobes,
+                                    double red = 0.5);
+
+// base.png, of one colour.
+void writeBaseTexture(const std::filesystem::path& folder, std::uint8_t red);
+
+// Names and bytes of all files below `folder`.
+std::vector<std::pair<std::string, std::string>> contentsOf(const std::filesystem::path& folder);
+
+}  // namespace glint::testing
