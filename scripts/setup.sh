@@ -47,6 +47,7 @@ kNeeds=(
     "file /usr/include/OpenEXR/ImfHeader.h|libopenexr-dev"
     "file /usr/include/gtest/gtest.h|libgtest-dev"
     "file /usr/lib/python3/dist-packages/numpy/__init__.py|python3-numpy"
+    "file /usr/lib/python3/dist-packages/xxhash/__init__.py|python3-xxhash"
 )
 # clang-format 14 is what the sources are formatted with.
 kLintNeeds=(
