@@ -81,12 +81,10 @@ class Measurer:
         command += ["--strategy", strategy, "--size", SIZE, "--spp", 2, "--max-roughness", 1]
         cold = run_json(command, PATIENCE_S, environment)
         warm = [run_json(command, PATIENCE_S, environment)["passes"] for _ in range(FRAMES)]
-        shades = [[e["milliseconds"] for e in passes if e["name"].startswith(("shade", "uber"))] for passes in warm]
         return {
             "pipelines": cold["pipelineCreationMs"],
             "first": cold["renderMs"],
             "frame": min(sum(each["milliseconds"] for each in passes) for passes in warm),
-            "shade": min(map(sum, shades)),
         }
 
 
@@ -147,8 +145,8 @@ def print_means(results):
 
 
 def print_switches(results):
-    print("| scene | keys | switch | cases | SPIR-V of the switch, kB | pipelines, s | first image, s | switch, ms |", end="")
-    print(" SPIR-V × `none` | pipelines × | first image × | switch × |")
+    print("| scene | keys | switch | cases | SPIR-V of the switch, kB | pipelines, s | first image, s | frame, ms |", end="")
+    print(" SPIR-V × `none` | pipelines × | first image × | frame × |")
     print("|---|" + "---|" * 11)
     for (name, keys), switches in results.items():
         for switch, runs in switches.items():
@@ -160,8 +158,8 @@ def print_switches(results):
                 print(row + f" more than {PATIENCE_S} | | |" + size + " | | |")
                 continue
             row += f" {median(runs, 'pipelines') / 1000:.2f} | {median(runs, 'first') / 1000:.2f} |"
-            row += f" {median(runs, 'shade'):.1f} |" + size
-            for what in ("pipelines", "first", "shade"):
+            row += f" {median(runs, 'frame'):.1f} |" + size
+            for what in ("pipelines", "first", "frame"):
                 row += f" {spread(ratios(runs, base, what))} |"
             print(row)
 
@@ -170,7 +168,7 @@ def print_switches(results):
 
 
 def measure_scenes(measurer, scenes, runs, minutes):
-    """Rounds over all scenes, so that what else the machine does falls on all alike; at least one."""
+    """Rounds over all scenes, those of few keys first, until the time is up. Also the names of those left out."""
     results, alike = {}, []
     for scene in scenes:
         keys, plans = measurer.plan(scene)
@@ -180,16 +178,18 @@ def measure_scenes(measurer, scenes, runs, minutes):
         same = {merge: next(m for m in POLICIES if plans[m] == plans[merge]) for merge in POLICIES}
         results[scene] = keys, {merge: [] for merge in POLICIES if same[merge] == merge}, same
     begin = time.monotonic()
-    made = 0
-    while made < runs and time.monotonic() - begin < 60 * minutes:
-        for scene, (_, by_policy, _) in results.items():
+    for made in range(runs):
+        for scene, (_, by_policy, _) in sorted(results.items(), key=lambda item: item[1][0]):
+            if time.monotonic() - begin > 60 * minutes:
+                break
             for merge, found in by_policy.items():
                 package = measurer.work / "package"
                 found.append(measurer.compile(scene, merge, "visibility", package))
                 found[-1].update(measurer.render(scene, "visibility", package))
             print(f"round {made + 1}: {scene.stem}", file=sys.stderr, flush=True)
-        made += 1
-    return {scene.stem: result for scene, result in results.items()}, alike, made
+    late = [scene.stem for scene, (_, by_policy, _) in results.items() if not by_policy["none"]]
+    measured = {scene.stem: result for scene, result in results.items() if scene.stem not in late}
+    return measured, alike, late
 
 
 def make_naive(package, inlined):
@@ -203,9 +203,12 @@ def make_naive(package, inlined):
     replace(package, "uber.spv", naive)
 
 
-def measure_switches(measurer, scenes):
+def measure_switches(measurer, scenes, minutes):
     results = {}
+    begin = time.monotonic()
     for scene in scenes:
+        if time.monotonic() - begin > 60 * minutes:
+            break
         keys, _ = measurer.plan(scene)
         names = ["`none`", "`family`", "`auto`", "naive"] + ["naive, inlined"] * (keys <= MOST_INLINED_KEYS)
         packages, made, switches = {}, {}, {name: [] for name in names}
@@ -238,22 +241,25 @@ def main():
     parser.add_argument("--glint", required=True)
     parser.add_argument("--work", required=True, type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=2)
-    parser.add_argument("--minutes", type=float, default=4, help="no further round of the scenes starts after these")
+    parser.add_argument("--minutes", type=float, default=4, help="after these no further scene starts, nor switch")
     parser.add_argument("scenes", nargs="+", type=pathlib.Path)
     arguments = parser.parse_args()
     begin = time.monotonic()
     make_synthetic(arguments.work / "synthetic.gltf")
     measurer = Measurer(arguments.glint, arguments.work)
     switched = [scene for scene in arguments.scenes if scene.stem in SWITCH_SCENES]
-    switches = measure_switches(measurer, sorted(switched, key=lambda s: SWITCH_SCENES.index(s.stem)))
-    results, alike, made = measure_scenes(measurer, arguments.scenes, arguments.runs, arguments.minutes)
+    results, alike, late = measure_scenes(measurer, arguments.scenes, arguments.runs, arguments.minutes)
     print_scenes(results)
     print(f"\nOne key, so that every policy makes the same: {', '.join(alike) or 'none'}.\n")
+    if late:
+        print(f"Not reached in {arguments.minutes:g} minutes (--minutes of measure_merge.py): {', '.join(late)}.\n")
     print_means(results)
-    print()
-    print_switches(switches)
+    print(flush=True)
+    switched.sort(key=lambda scene: SWITCH_SCENES.index(scene.stem))
+    print_switches(measure_switches(measurer, switched, arguments.minutes))
     seconds = time.monotonic() - begin
-    print(f"\nMedians of {made} rounds, {SWITCH_RUNS} of the switches; {seconds:.0f} s in all.")
+    rounds = f"{arguments.runs} rounds at most, {SWITCH_RUNS} of the switches"
+    print(f"\nMedians of {rounds}; {seconds:.0f} s in all.")
 
 
 if __name__ == "__main__":

@@ -48,6 +48,7 @@ kNeeds=(
     "file /usr/include/gtest/gtest.h|libgtest-dev"
     "file /usr/include/valijson/schema.hpp|libvalijson-dev"
     "file /usr/lib/python3/dist-packages/numpy/__init__.py|python3-numpy"
+    "file /usr/lib/python3/dist-packages/xxhash/__init__.py|python3-xxhash"
 )
 # clang-format 14 is what the sources are formatted with.
 kLintNeeds=(
