@@ -9,7 +9,7 @@ namespace {
 
 class Usage : public CommandTest {};
 
-const std::vector<std::string> kCommands{"compile", "explain", "inspect", "render", "compare", "lint"};
+const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect", "render", "compare", "lint"};
 
 bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

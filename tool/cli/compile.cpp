@@ -189,7 +189,8 @@ Status writeOutputs(const SceneList& scenes, const CompiledPackage& package,
 std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
                                  CompileCache& cache, Clock::time_point start) {
     const std::optional<ActionRecord> earlier = cache.findUpToDate();
-    const std::optional<CompileSummary> summary = earlier ? unpackSummary(earlier->summary) : std::nullopt;
+    const std::optional<CompileSummary> summary =
+        earlier ? unpackSummary(earlier->summary, console.isJson()) : std::nullopt;
     if (!summary) {
         return std::nullopt;
     }
