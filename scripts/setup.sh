@@ -37,6 +37,7 @@ kNeeds=(
     "file /usr/include/vulkan/vulkan.h|libvulkan-dev"
     "file /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json|vulkan-validationlayers"
     "file /usr/share/vulkan/icd.d/lvp_icd*.json|mesa-vulkan-drivers"
+    "file /usr/include/mimalloc.h|libmimalloc-dev"
     "file /usr/include/fmt/format.h|libfmt-dev"
     "file /usr/include/CLI/CLI.hpp|libcli11-dev"
     "file /usr/include/nlohmann/json.hpp|nlohmann-json3-dev"

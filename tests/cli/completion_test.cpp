@@ -63,7 +63,7 @@ std::vector<std::string> optionsOf(const std::string& help) {
 }
 
 TEST_F(Completion, BashOffersCommands) {
-    EXPECT_EQ(bash({"comp"}), "compile compare completion");
+    EXPECT_EQ(bash({"comp"}), "compile compile-module compare completion");
     EXPECT_EQ(bash({"--v"}), "--version");
     for (const std::string& command : kCommands) {
         EXPECT_TRUE(std::ranges::count(words(bash({""})), command) == 1) << command;

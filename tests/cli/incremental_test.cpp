@@ -92,12 +92,13 @@ TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
 }
 
 TEST_F(Incremental, AnotherTextureIsInTheTablesAlone) {
+    writeManyKeys(path("scene"), {{"textured"}, {"clearcoat", "textured"}});
     compile();
     age();
     nlohmann::json scene = nlohmann::json::parse(readText(path("scene/scene.gltf")));
     scene["images"].push_back({{"uri", "other.png"}});
     scene["textures"].push_back({{"source", 1}});
-    scene["materials"][3]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
+    scene["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     writeText(path("scene/scene.gltf"), scene.dump());
     const Outcome changed = compile();
     EXPECT_FALSE(isUpToDate(changed));

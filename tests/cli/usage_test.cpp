@@ -9,8 +9,8 @@ namespace {
 
 class Usage : public CommandTest {};
 
-const std::vector<std::string> kCommands{"compile", "explain", "inspect", "diff",
-                                         "render",  "compare", "lint"};
+const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect",
+                                         "diff",    "render",         "compare", "lint"};
 
 bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

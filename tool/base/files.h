@@ -23,6 +23,13 @@ std::string hexHash(std::uint64_t hash);
 // Reads a whole file. Errors: "file-open", "file-size" (above maxBytes), "file-read".
 Result<Bytes> readFile(const std::filesystem::path& path, std::uint64_t maxBytes = 1ULL << 32);
 
+struct FileDigest {
+    std::uint64_t bytes = 0;
+    std::uint64_t hash = 0;  // as hashBytes()
+};
+// Of a file of any size, a piece at a time. Errors "file-open", "file-read".
+Result<FileDigest> digestFile(const std::filesystem::path& path);
+
 // Writes through a temporary file beside `path` and a rename; keeps the old file, with its time stamp, where
 // the contents are the same already. Errors: "file-write".
 Status writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

@@ -50,11 +50,11 @@ std::vector<FileState> unpackFiles(Unpacker& unpacker) {
 }  // namespace
 
 std::optional<FileState> stateOf(const fs::path& path) {
-    const Result<Bytes> bytes = readFile(path);
-    if (!bytes) {
+    const Result<FileDigest> digest = digestFile(path);
+    if (!digest) {
         return std::nullopt;
     }
-    return FileState{path.string(), bytes->size(), hashBytes(*bytes), {}};
+    return FileState{path.string(), digest->bytes, digest->hash, {}};
 }
 
 std::string realPath(const fs::path& path) {

@@ -181,7 +181,8 @@ int dryRun(const Console& console, Outcome outcome, const PlanOptions& options, 
 std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
                                  CompileCache& cache, Clock::time_point start) {
     const std::optional<ActionRecord> earlier = cache.findUpToDate();
-    const std::optional<CompileSummary> summary = earlier ? unpackSummary(earlier->summary) : std::nullopt;
+    const std::optional<CompileSummary> summary =
+        earlier ? unpackSummary(earlier->summary, console.isJson()) : std::nullopt;
     if (!summary) {
         return std::nullopt;
     }

@@ -59,7 +59,7 @@ std::string pack(const CompileSummary& summary) {
     return packer.add(std::string_view(json)).take();
 }
 
-std::optional<CompileSummary> unpackSummary(std::string_view bytes) {
+std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson) {
     Unpacker unpacker(bytes);
     CompileSummary summary;
     summary.fields.resize(unpacker.count().value_or(0));
@@ -71,6 +71,9 @@ std::optional<CompileSummary> unpackSummary(std::string_view bytes) {
     const std::optional<std::string_view> json = unpacker.text();
     if (!json || !unpacker.atEnd() || summary.fields.empty()) {
         return std::nullopt;
+    }
+    if (!withJson) {
+        return summary;
     }
     if (nestsTooDeep(asBytes(*json))) {
         return std::nullopt;

@@ -33,7 +33,8 @@ void tell(const Console& console, CompileSummary summary, const std::optional<Mo
           bool upToDate, double milliseconds);
 
 std::string pack(const CompileSummary& summary);
-// Nothing where `bytes` is no summary.
-std::optional<CompileSummary> unpackSummary(std::string_view bytes);
+// Nothing where `bytes` is no summary. Without `withJson`, which takes time that grows with the scene, the
+// JSON stays empty.
+std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson);
 
 }  // namespace glint

@@ -169,8 +169,9 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
             return status.error();
         }
     }
-    // Payloads have no offsets: the stages of a pipeline must agree on their members.
-    const bool keepMembers = tracesByPipeline(optimized);
+    // Payloads have no offsets: the stages of a pipeline must agree on their members. Debuggers show them
+    // all.
+    const bool keepMembers = keepNames || tracesByPipeline(optimized);
     const auto registerAll = [&](spvtools::Optimizer& optimizer) {
         registerPasses(optimizer, keepNames, keepMembers);
     };

@@ -13,8 +13,8 @@ namespace glint {
 // vanish. Each function named in `apart` (the shaders of an uber shader's cases) becomes one of its own,
 // folded as it takes in what it calls, level by level: its size stays that of the code it needs, and time
 // grows with that, not with the code of all features. Everything else goes into main. Members of
-// structures that nothing reads go too, but in ray tracing pipelines. Names go unless `keepNames`. `name` is
-// for messages. Error "spirv-optimize".
+// structures that nothing reads go too, but in ray tracing pipelines. Names and members stay with
+// `keepNames`. `name` is for messages. Error "spirv-optimize".
 Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
                                                  const std::string& name,
                                                  const std::vector<std::string>& apart, bool keepNames);
