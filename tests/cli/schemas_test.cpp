@@ -87,6 +87,20 @@ TEST_F(Schemas, HoldExplain) {
     expectResult("explain", json({"explain", "scene.gltf", "--variant", "Day", "--hit-lobes", "base"}));
 }
 
+TEST_F(Schemas, HoldPlans) {
+    for (const char* const policy : {"none", "family", "all", "auto"}) {
+        expectResult("explain-plan", json({"explain", "scene.gltf", "--plan", "--merge", policy}));
+    }
+}
+
+TEST_F(Schemas, HoldCompileModule) {
+    const Json planned = json({"compile", "scene.gltf", "-o", "package", "--plan-only", "plan"});
+    expectResult("compile", planned);
+    EXPECT_GT(planned.at("plan").at("modules").get<int>(), 0);
+    const std::filesystem::path module = *std::filesystem::directory_iterator(path("plan/modules"));
+    expectResult("compile-module", json({"compile-module", module.string(), "-o", "module"}));
+}
+
 TEST_F(Schemas, HoldDiff) {
     compile("a", {"--merge", "none"});
     compile("b", {"--merge", "all", "--variant", "Day", "--strategy", "sorted-uber"});
@@ -106,13 +120,10 @@ TEST_F(Schemas, HoldLint) {
 }
 
 TEST_F(Schemas, HoldFailures) {
-    const std::vector<std::vector<std::string>> lines{{"compile", "none.gltf", "-o", "x"},
-                                                      {"explain", "none.gltf"},
-                                                      {"inspect", "none"},
-                                                      {"diff", "none", "none"},
-                                                      {"lint", "none.spv"},
-                                                      {"render", "none.gltf", "-o", "a.png"},
-                                                      {"compare", "a.png", "b.png"}};
+    const std::vector<std::vector<std::string>> lines{
+        {"compile", "none.gltf", "-o", "x"},    {"explain", "none.gltf"},     {"inspect", "none"},
+        {"compile-module", "none", "-o", "x"},  {"diff", "none", "none"},     {"lint", "none.spv"},
+        {"render", "none.gltf", "-o", "a.png"}, {"compare", "a.png", "b.png"}};
     for (const std::vector<std::string>& line : lines) {
         const Json failed = json(line, 1);
         expectFits(line[0], failed);
@@ -164,7 +175,8 @@ TEST(SchemaFiles, DescribeEveryMember) {
         expectDescribed(readSchema(name), name);
         names.insert(name);
     }
-    for (const char* command : {"compile", "explain", "inspect", "diff", "lint", "render", "compare"}) {
+    for (const char* command : {"compile", "compile-module", "explain", "explain-plan", "inspect", "diff",
+                                "lint", "render", "compare"}) {
         EXPECT_TRUE(names.contains(command)) << command;
     }
 }

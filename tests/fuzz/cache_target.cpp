@@ -47,10 +47,10 @@ void readAction(std::string_view text) {
 }
 
 void readSummary(std::string_view text) {
-    const std::optional<glint::CompileSummary> summary = glint::unpackSummary(text);
+    const std::optional<glint::CompileSummary> summary = glint::unpackSummary(text, true);
     if (summary) {
         const std::string packed = glint::pack(*summary);
-        const std::optional<glint::CompileSummary> again = glint::unpackSummary(packed);
+        const std::optional<glint::CompileSummary> again = glint::unpackSummary(packed, true);
         require(again && glint::pack(*again) == packed, "a summary reads back as it was packed");
     }
 }
