@@ -28,7 +28,7 @@ quartiles() {
 for ((run = 0; run < runs; ++run)); do
     for merge in none family all; do
         for jobs in 1 2; do
-            "$bin/glint" compile "$scene" -o "$work/package-$merge" --merge "$merge" --jobs "$jobs" |
+            "$bin/glint" compile "$scene" -o "$work/package-$merge" --merge "$merge" --jobs "$jobs" --cache none |
                 awk '$1 == "time" { print $2 }' >> "$work/compile-$merge-$jobs.txt"
         done
         paste "$work/compile-$merge-1.txt" "$work/compile-$merge-2.txt" | awk '{ print $1 / $2 }' > "$work/ratio-$merge.txt"

@@ -1,5 +1,4 @@
 #include "emit/compile_modules.h"
-
 #include "emit/context.h"
 #include "unit/emit/sample_scene.h"
 
