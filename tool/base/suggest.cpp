@@ -40,7 +40,8 @@ std::string containing(std::string_view word, std::span<const std::string> candi
         return {};
     }
     const auto found = std::ranges::find_if(candidates, [&](const std::string& candidate) {
-        return !std::ranges::search(candidate, word, {}, lower, lower).empty();
+        return std::search(candidate.begin(), candidate.end(), word.begin(), word.end(),
+                           [](char a, char b) { return lower(a) == lower(b); }) != candidate.end();
     });
     return found == candidates.end() ? std::string() : *found;
 }
