@@ -49,6 +49,7 @@ int addObject(dl_phdr_info* object, std::size_t, void* result) {
     for (int i = 0; i < object->dlpi_phnum && id.empty(); ++i) {
         const ElfW(Phdr)& segment = object->dlpi_phdr[i];
         if (segment.p_type == PT_NOTE) {
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives an address as a number.
             const auto* const notes = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
             constexpr std::size_t kUsual = 4;
             id = findBuildId({notes, segment.p_memsz}, segment.p_align == 8 ? 8 : kUsual);

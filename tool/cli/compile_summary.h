@@ -12,6 +12,7 @@
 
 namespace glint {
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the move of Json, which throws nothing that can be thrown here.
 struct CompileSummary {
     Json json;
     std::vector<std::vector<std::string>> fields;  // name and value; the last is the output

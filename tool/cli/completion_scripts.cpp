@@ -27,6 +27,7 @@ std::vector<std::string> namesOf(const CommandModel& command) {
 
 std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
     std::vector<std::string> names;
+    names.reserve(commands.size());
     for (const CommandModel& command : commands) {
         names.push_back(command.name);
     }

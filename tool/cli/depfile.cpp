@@ -69,7 +69,7 @@ Result<std::string> makeDepfile(std::span<const std::string> targets,
                                 std::span<const std::string> dependencies) {
     std::string text;
     for (const std::string& target : targets) {
-        const Result<std::string> escaped = escape(target, true);
+        Result<std::string> escaped = escape(target, true);
         if (!escaped) {
             return escaped;
         }
@@ -88,7 +88,7 @@ Result<std::string> makeDepfile(std::span<const std::string> targets,
         if (!known.insert(name).second) {
             continue;
         }
-        const Result<std::string> escaped = escape(name, false);
+        Result<std::string> escaped = escape(name, false);
         if (!escaped) {
             return escaped;
         }

@@ -35,6 +35,7 @@ struct DiffMaterial {
     std::string name;
     int sameNamed = 0;  // materials of that scene and name with lower indices
 
+    // NOLINTNEXTLINE(modernize-use-nullptr): a comparison against 0 that the compiler writes.
     friend auto operator<=>(const DiffMaterial&, const DiffMaterial&) = default;
 };
 

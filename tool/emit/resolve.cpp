@@ -179,7 +179,8 @@ std::string substitute(const Macro& macro, const std::vector<std::string>& argum
             result += word == macro.parameters[i] ? arguments[i] : std::string(word);
             done = at + word.size();
         }
-        text = result + text.substr(done);
+        result += text.substr(done);
+        text = std::move(result);
     }
     for (std::size_t at = text.find("##"); at != std::string::npos; at = text.find("##")) {
         text.erase(at, 2);
