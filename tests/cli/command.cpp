@@ -114,6 +114,10 @@ void writeText(const fs::path& path, const std::string& text) {
     ASSERT_TRUE(file.good()) << path;
 }
 
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 void CommandTest::SetUp() {
     const ::testing::TestInfo* info = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::path(GLINT_BINARY_DIR) / "tests" / "tmp" /

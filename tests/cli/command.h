@@ -54,5 +54,7 @@ private:
 std::string commandPath();
 std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
+// Whether `part` stands in `text`.
+bool has(const std::string& text, const std::string& part);
 
 }  // namespace glint::testing

@@ -13,10 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // Those whose member "change" is this.
 std::vector<Json> changesOf(const Json& list, const std::string& change) {
     std::vector<Json> found;

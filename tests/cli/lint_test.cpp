@@ -13,10 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // A module of one compute entry point that does nothing; or, with `model`, of another stage.
 std::string emptyModule(std::uint32_t model = 5) {
     constexpr std::uint32_t kShader = 1;

@@ -12,10 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // The scene has two keys: "unlit" of the wall, "normals" of the floor.
 class Lock : public CommandTest {
 protected:

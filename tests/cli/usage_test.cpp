@@ -12,10 +12,6 @@ class Usage : public CommandTest {};
 const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect",
                                          "diff",    "render",         "compare", "lint"};
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 TEST_F(Usage, HelpNamesEveryCommand) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.exit, 0);

@@ -3,6 +3,7 @@
 #include "emit/compile_modules.h"
 #include "spirv/compiler.h"
 #include "support/temporary_folder.h"
+#include "unit/emit/tiny_module.h"
 
 #include <gtest/gtest.h>
 
@@ -12,18 +13,6 @@
 
 namespace glint {
 namespace {
-
-using package::ModuleRole;
-
-ModuleSource makeSource(int shaderId, const std::string& body) {
-    return {{ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
-            ShaderStage::Compute,
-            "shade_" + std::to_string(shaderId) + ".comp",
-            "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n#line 10 \"case.glsl\"\n"
-            "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
-            "void main() {\n" +
-                body + "\n}\n"};
-}
 
 class Modules : public ::testing::Test {
 protected:
@@ -52,7 +41,8 @@ private:
 TEST_F(Modules, ComeFromTheCacheAsTheyWereCompiled) {
     ModuleCache cache(store(), "compiler");
     const auto sources = [] {
-        return std::vector{makeSource(0, "data.x = 1u;"), makeSource(1, "data.x = 2u;")};
+        return std::vector{testing::makeTinyModule(0, "data.x = 1u;"),
+                           testing::makeTinyModule(1, "data.x = 2u;")};
     };
     EXPECT_EQ(compile(sources(), &cache), 2);
     const std::vector<CompiledModule> first = modules_;
@@ -69,30 +59,32 @@ TEST_F(Modules, ComeFromTheCacheAsTheyWereCompiled) {
 
 TEST_F(Modules, CommentsPlacesAndNamesDoNotCountWithoutDebugInfo) {
     ModuleCache cache(store(), "compiler");
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &cache), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
     const std::vector<std::uint32_t> words = modules_[0].spirv;
-    EXPECT_EQ(compile({makeSource(5, "// Brass\n\n    data.x = /* one */ 1u;  // Gold")}, &cache), 0);
+    EXPECT_EQ(
+        compile({testing::makeTinyModule(5, "// Brass\n\n    data.x = /* one */ 1u;  // Gold")}, &cache), 0);
     EXPECT_EQ(modules_[0].spirv, words);
-    EXPECT_EQ(compile({makeSource(5, "// Brass\n\n    data.x = /* one */ 1u;  // Gold")}, nullptr), 1);
+    EXPECT_EQ(
+        compile({testing::makeTinyModule(5, "// Brass\n\n    data.x = /* one */ 1u;  // Gold")}, nullptr), 1);
     EXPECT_EQ(modules_[0].spirv, words);
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &cache, true), 1);
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;  // Gold")}, &cache, true), 1);
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &cache, true), 0);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache, true), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;  // Gold")}, &cache, true), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache, true), 0);
 }
 
 TEST_F(Modules, WhatDecidesAboutTheWordsCounts) {
     ModuleCache cache(store(), "compiler");
     ModuleCache other(store(), "another compiler");
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &cache), 1);
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &other), 1);
-    ModuleSource apart = makeSource(0, "data.x = 1u;");
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &other), 1);
+    ModuleSource apart = testing::makeTinyModule(0, "data.x = 1u;");
     apart.functionsApart = {"other"};
     EXPECT_EQ(compile({apart}, &cache), 1);
 }
 
 TEST_F(Modules, EqualTextsAreCompiledOnce) {
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;"), makeSource(1, "data.x = 2u;"),
-                       makeSource(2, "data.x = 1u;  // again")},
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;"), testing::makeTinyModule(1, "data.x = 2u;"),
+                       testing::makeTinyModule(2, "data.x = 1u;  // again")},
                       nullptr),
               2);
     EXPECT_EQ(modules_[2].file, "shade_0.spv");
@@ -103,9 +95,9 @@ TEST_F(Modules, CollisionsAreCompiled) {
     test::TemporaryFolder folder;
     CacheStore colliding({folder.path(), 1ULL << 24, [](std::string_view) { return std::uint64_t{1}; }});
     ModuleCache cache(colliding, "compiler");
-    EXPECT_EQ(compile({makeSource(0, "data.x = 1u;")}, &cache), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
     const std::vector<std::uint32_t> words = modules_[0].spirv;
-    EXPECT_EQ(compile({makeSource(0, "data.x = 2u;")}, &cache), 1);
+    EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 2u;")}, &cache), 1);
     EXPECT_NE(modules_[0].spirv, words);
 }
 

@@ -1,6 +1,7 @@
 #include "emit/compile_modules.h"
 #include "emit/context.h"
 #include "unit/emit/sample_scene.h"
+#include "unit/emit/tiny_module.h"
 
 #include <gtest/gtest.h>
 
@@ -9,22 +10,11 @@
 namespace glint {
 namespace {
 
-using package::ModuleRole;
-
-ModuleSource makeSource(int shaderId, const std::string& body) {
-    return {{ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
-            ShaderStage::Compute,
-            "shade_" + std::to_string(shaderId) + ".comp",
-            "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n#line 10 \"case.glsl\"\n"
-            "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
-            "void main() {\n" +
-                body + "\n}\n"};
-}
-
 TEST(CompileModules, SharesTheFileOfEqualSpirv) {
-    const auto modules = compileModules({makeSource(0, "data.x = 1u + 1u;"), makeSource(1, "data.x = 3u;"),
-                                         makeSource(2, "data.x = 2u;  // the same in the end")},
-                                        2, false);
+    const auto modules = compileModules(
+        {testing::makeTinyModule(0, "data.x = 1u + 1u;"), testing::makeTinyModule(1, "data.x = 3u;"),
+         testing::makeTinyModule(2, "data.x = 2u;  // the same in the end")},
+        2, false);
     ASSERT_TRUE(modules) << toString(modules.error());
     EXPECT_EQ(modules->at(0).file, "shade_0.spv");
     EXPECT_EQ(modules->at(1).file, "shade_1.spv");
@@ -38,7 +28,8 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
         std::vector<ModuleSource> sources;
         sources.reserve(12);
         for (int i = 0; i < 12; ++i) {
-            sources.push_back(makeSource(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
+            sources.push_back(
+                testing::makeTinyModule(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
         }
         const auto modules = compileModules(std::move(sources), jobs, false);
         ASSERT_FALSE(modules);

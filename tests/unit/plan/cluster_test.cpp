@@ -2,6 +2,7 @@
 #include "plan/cluster.h"
 
 #include "plan/merge.h"
+#include "unit/plan/weighted_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -64,16 +65,7 @@ std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
             }
         }
     }
-    double sum = 0.0;
-    for (const auto& [mask, weight] : weights) {
-        sum += weight;
-    }
-    std::vector<WeightedKey> keys;
-    keys.reserve(weights.size());
-    for (const auto& [mask, weight] : weights) {
-        keys.push_back({mask, weight / sum});
-    }
-    return keys;
+    return glint::testing::toKeys(weights);
 }
 
 std::vector<Cluster> oneEach(std::size_t count) {

@@ -2,6 +2,7 @@
 #include "plan/merge.h"
 
 #include "plan/cluster.h"
+#include "unit/plan/weighted_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -22,20 +23,6 @@ constexpr FeatureMask kCoated = kTextured | bit(Feature::Clearcoat);
 constexpr FeatureMask kDispersing =
     kBase | bit(Feature::Transmission) | bit(Feature::Volume) | bit(Feature::Dispersion);
 
-// In ascending order of masks, as planning has them; shares add up to 1.
-std::vector<WeightedKey> toKeys(const std::map<FeatureMask, double>& weights) {
-    double sum = 0.0;
-    for (const auto& [mask, weight] : weights) {
-        sum += weight;
-    }
-    std::vector<WeightedKey> keys;
-    keys.reserve(weights.size());
-    for (const auto& [mask, weight] : weights) {
-        keys.push_back({mask, sum > 0.0 ? weight / sum : 0.0});
-    }
-    return keys;
-}
-
 std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
     for (const FeatureInfo& info : featureTable()) {
@@ -48,7 +35,7 @@ std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
         // From a hundred thousand to one, and some that nothing hits.
         weights[sparse] = random() % 8 == 0 ? 0.0 : std::exp2(static_cast<double>(random() % 17));
     }
-    return toKeys(weights);
+    return glint::testing::toKeys(weights);
 }
 
 // Places of the keys in a list with their hits multiplied, or of a shuffled one, are found by mask.
@@ -87,7 +74,7 @@ TEST(Merge, PartitionsTheKeysWithinTheBudget) {
         const std::vector<WeightedKey> keys = randomKeys(random, count);
         for (const MergePolicy merge : kBudgeted) {
             for (const int budget : {1, 2, 3, 4, 5, 8, 32, 1000}) {
-                SCOPED_TRACE(testing::Message() << toString(merge) << ", " << count << " keys, " << budget);
+                SCOPED_TRACE(::testing::Message() << toString(merge) << ", " << count << " keys, " << budget);
                 const std::vector<CaseKeys> cases = mergeKeys(keys, merge, budget);
                 EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
                 casesOfKeys(keys.size(), cases);
@@ -120,7 +107,8 @@ TEST(Merge, GivesTheSameCasesAgain) {
 }
 
 TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
-    const std::vector<WeightedKey> keys = toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+    const std::vector<WeightedKey> keys =
+        glint::testing::toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
     ASSERT_EQ(cases.size(), 3U);
     for (const CaseKeys& shaderCase : cases) {
@@ -132,7 +120,7 @@ TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
     const FeatureMask doubleSided = kCoated | bit(Feature::DoubleSided);
     const auto casesWith = [&](double weight) {
         const std::vector<WeightedKey> keys =
-            toKeys({{kTextured, 1000.0}, {kCoated, weight}, {doubleSided, weight}});
+            glint::testing::toKeys({{kTextured, 1000.0}, {kCoated, weight}, {doubleSided, weight}});
         const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
         return casesOfKeys(keys.size(), cases);
     };
@@ -154,7 +142,7 @@ TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
                 weights[key.mask] = 1.0;
             }
             weights[start[hot].mask] = 60.0;
-            const std::vector<WeightedKey> keys = toKeys(weights);
+            const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
             const std::vector<CaseKeys> cases = mergeKeys(keys, merge, 4);
             const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
             EXPECT_EQ(std::ranges::count(caseOf, caseOf[hot]), 1) << toString(merge) << ", key " << hot;
@@ -167,7 +155,7 @@ TEST(Merge, RareKeysAreTheRest) {
     for (const Feature feature : {Feature::Sheen, Feature::Anisotropy, Feature::Iridescence}) {
         weights[kBase | bit(feature)] = 1.0;
     }
-    const std::vector<WeightedKey> keys = toKeys(weights);
+    const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
     EXPECT_EQ(cases.size(), 3U);
     const auto reasons = reasonsByMask(keys, cases);
@@ -188,7 +176,8 @@ TEST(Merge, ManyEqualKeysAreNotAllRest) {
 }
 
 TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
-    const std::vector<WeightedKey> keys = toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+    const std::vector<WeightedKey> keys =
+        glint::testing::toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
     const std::vector<CaseKeys> two = mergeKeys(keys, MergePolicy::Auto, 2);
     ASSERT_EQ(two.size(), 2U);
     EXPECT_EQ(std::ranges::count(two, CaseReason::Budget, &CaseKeys::reason), 1);
@@ -199,13 +188,14 @@ TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
 
 TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
     const FeatureMask sheen = kBase | bit(Feature::Sheen);
-    const std::vector<WeightedKey> keys = toKeys({{kBase, 500.0},
-                                                  {kTextured, 460.0},
-                                                  {kTextured | bit(Feature::TextureTransform), 20.0},
-                                                  {kTextured | bit(Feature::VertexColor), 18.0},
-                                                  {kCoated, 0.0},
-                                                  {sheen, 0.0},
-                                                  {sheen | bit(Feature::DoubleSided), 2.0}});
+    const std::vector<WeightedKey> keys =
+        glint::testing::toKeys({{kBase, 500.0},
+                                {kTextured, 460.0},
+                                {kTextured | bit(Feature::TextureTransform), 20.0},
+                                {kTextured | bit(Feature::VertexColor), 18.0},
+                                {kCoated, 0.0},
+                                {sheen, 0.0},
+                                {sheen | bit(Feature::DoubleSided), 2.0}});
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
     const auto reasons = reasonsByMask(keys, cases);
     EXPECT_EQ(reasons.at(kBase), CaseReason::Hot);
