@@ -11,10 +11,14 @@
 namespace glint {
 namespace {
 
+// Rays of the list: one a pixel and effect of a round.
+VkDeviceSize listRays(const FrameSize& size) {
+    return VkDeviceSize{size.width} * size.height * size.batchCount;
+}
+
 // Elements of the longest list: hits, each bucket with all but one slot of its last group empty.
 VkDeviceSize listSlots(const FrameSize& size) {
-    const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
-    return pixels + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+    return listRays(size) + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
 }
 
 // Rays of a dispatch that is one-dimensional, as lists are. One over an image is no wider, and its height is
@@ -27,6 +31,11 @@ std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
 
 }  // namespace
 
+VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
+    const VkDeviceSize buckets = size.ordered ? sizeof(gpu::BucketRecord) * size.bucketCount : 0;
+    return kCounterBytes + round * (kRoundCounterBytes + buckets);
+}
+
 Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const VkPhysicalDeviceLimits& limits = context.limits.core;
     const std::uint32_t maxWidth = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
@@ -36,10 +45,10 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
         return makeError("render-size", "", "an image of " + asked + " pixels cannot be rendered",
                          "use 1 x 1 to " + std::to_string(maxWidth) + " x " + std::to_string(maxHeight));
     }
-    const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
-    // The ray list has a record for every pixel, and 32 bits number them.
-    if (pixels > std::numeric_limits<std::uint32_t>::max() ||
-        pixels * sizeof(gpu::ShadowRecord) > context.limits.maxBufferBytes) {
+    const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
+    // There is a sample for every pixel and effect, and 32 bits number them.
+    if (samples > std::numeric_limits<std::uint32_t>::max() ||
+        samples * sizeof(gpu::EffectSample) > context.limits.maxBufferBytes) {
         return makeError("render-size", "",
                          "the rays of " + asked + " pixels do not fit a buffer of the device",
                          "render a smaller image");
@@ -56,10 +65,17 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
 
 namespace {
 
+bool hasImage(const FrameSize& size, std::uint32_t binding) {
+    return binding != gpu::kBindingPosition || (size.effects & package::kEffectReflection) != 0;
+}
+
 Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
         ImageInfo info;
         info.extent = {size.width, size.height};
+        if (!hasImage(size, binding)) {
+            continue;
+        }
         const bool surface = binding == gpu::kBindingSurface;
         info.format = surface ? kSurfaceFormat : VK_FORMAT_R32G32B32A32_SFLOAT;
         info.usage =
@@ -94,13 +110,18 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-    const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height;
-    const VkDeviceSize hits = size.ordered ? pixels : 1;
-    const VkDeviceSize slots = size.ordered ? listSlots(size) : 1;
+    // Nothing where no effect sends rays.
+    const VkDeviceSize samples = VkDeviceSize{size.width} * size.height * size.sampleCount;
+    const VkDeviceSize rays = listRays(size);
+    const VkDeviceSize hits = size.ordered ? rays : 0;
+    const VkDeviceSize slots = size.ordered ? listSlots(size) : 0;
     // A bit a hit, in whole words.
-    const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 1;
-    const VkDeviceSize shadows = size.deferredShadows ? pixels : 1;
-    const VkDeviceSize bucketBytes = sizeof(gpu::BucketRecord) * size.bucketCount;
+    const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
+    const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
+    const VkDeviceSize bucketBytes = size.ordered ? sizeof(gpu::BucketRecord) * size.bucketCount : 0;
+    const VkDeviceSize lists = rays > 0 ? 1 : 0;
+    const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
+    const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
     const struct {
         Buffer& target;
         VkDeviceSize bytes;
@@ -108,22 +129,28 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         MemoryUse use;
     } wanted[] = {
         {frame.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
-        {frame.rays, pixels * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        {frame.samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
+        {frame.radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
+        {frame.rays, rays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
-        {frame.shadowDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.buckets, bucketBytes, kCleared, MemoryUse::Device},
-        {frame.rayDispatch, sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketDispatch, sizeof(gpu::DispatchArguments) * (size.bucketCount + 1), kIndirect,
-         MemoryUse::Device},
-        {frame.counters, kReadbackBucketOffset, kCleared, MemoryUse::Device},
-        {frame.readback, kReadbackBucketOffset + bucketBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.counters, kCounterBytes, kCleared, MemoryUse::Device},
+        {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
          MemoryUse::Readback},
     };
     for (const auto& entry : wanted) {
+        if (entry.bytes == 0) {
+            continue;
+        }
         Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use);
         if (!buffer) {
             return buffer.error();
@@ -136,9 +163,12 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
 Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
+        if (hasImage(size, binding)) {
+            bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
+        }
     }
-    std::vector<VkDescriptorPoolSize> poolSizes{{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, gpu::kFrameImageCount}};
+    std::vector<VkDescriptorPoolSize> poolSizes{
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, static_cast<std::uint32_t>(bindings.size())}};
     if (size.environmentMap) {
         constexpr VkDescriptorType kMap = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
         bindings.push_back({gpu::kBindingEnvironment, kMap, 1, passStages(context), nullptr});
@@ -182,6 +212,9 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
 
 void fillSet(Context::State& context, const FrameResources& frame) {
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        if (frame.images[binding].handle.get() == VK_NULL_HANDLE) {
+            continue;
+        }
         const VkDescriptorImageInfo image{VK_NULL_HANDLE, frame.images[binding].view.get(),
                                           VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write{};
@@ -206,6 +239,9 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
         return commands.error();
     }
     for (const DeviceImage& image : frame.images) {
+        if (image.handle.get() == VK_NULL_HANDLE) {
+            continue;
+        }
         recordTransition(
             context, *commands,
             {image.handle.get(),

@@ -13,10 +13,12 @@ namespace glint {
 inline constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32_UINT;
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
-// What counters() reads: the counters, then the buckets.
-inline constexpr VkDeviceSize kReadbackBucketOffset = sizeof(std::uint32_t) * gpu::kCounterCount;
+// What counters() reads: the counters, then for each round of rays those of its lists, and its buckets.
+inline constexpr VkDeviceSize kCounterBytes = sizeof(std::uint32_t) * gpu::kCounterCount;
+inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 
-// Members are destroyed in reverse: the pool's memory last.
+// Members are destroyed in reverse: the pool's memory last. What the frame's effects do not need has no
+// handle.
 struct FrameResources {
     explicit FrameResources(Context::State& context) : pool(context) {}
 
@@ -24,11 +26,13 @@ struct FrameResources {
     std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL from creation on
     DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
     Buffer constants;                                       // FrameConstants, host-visible
+    Buffer samples;                                         // of every effect with rays, as are the following
+    Buffer radiance;
     Buffer rays;
-    Buffer hits;         // full or packed; one element unless hits are ordered
+    Buffer hits;         // full or packed; where hits are ordered
     Buffer orderedHits;  // likewise
-    Buffer visitedHits;  // a bit a hit; one element unless the order is checked
-    Buffer shadows;      // one element unless shadow rays are deferred
+    Buffer visitedHits;  // a bit a hit; where the order is checked
+    Buffer shadows;      // where shadow rays are deferred
     Buffer shadowDispatch;
     Buffer buckets;
     Buffer rayDispatch;
@@ -38,12 +42,22 @@ struct FrameResources {
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
+
+    std::array<const Buffer*, 14> buffers() const {
+        return {&constants,   &samples,        &radiance, &rays,           &hits,
+                &orderedHits, &visitedHits,    &shadows,  &shadowDispatch, &buckets,
+                &rayDispatch, &bucketDispatch, &counters, &readback};
+    }
 };
 
 struct FrameSize {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::uint32_t bucketCount = 0;
+    std::uint32_t effects = 0;  // Effect bits
+    // Samples of a pixel, and those of them whose rays are in the list at once.
+    std::uint32_t sampleCount = 0;
+    std::uint32_t batchCount = 0;
     bool ordered = false;  // hits are stored and ordered by bucket
     bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
@@ -51,7 +65,14 @@ struct FrameSize {
     bool deferredShadows = false;
     bool environmentMap = false;
     bool rayPipeline = false;  // lists are dispatched as rays of a ray tracing pipeline
+
+    std::uint32_t roundCount() const {
+        return batchCount > 0 ? sampleCount / batchCount : 0;
+    }
 };
+
+// Where a round of rays is read back; of the number of rounds, the end.
+VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
 
 // Error "render-size": no pixels, or more than the device can do.
 Status checkFrameSize(const Context::State& context, const FrameSize& size);

@@ -90,6 +90,7 @@ gpu::LightRecord makeLightRecord(const LightView& light) {
     record.intensity = toVec3(light.intensity);
     record.spotScale = static_cast<float>(scale);
     record.spotOffset = static_cast<float>(-cosOuter * scale);
+    record.size = light.type == LightView::Type::Directional ? std::sin(light.size) : light.size;
     return record;
 }
 

@@ -90,6 +90,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.tracers == 0 || header.tracers > package::kAllTracers) {
         return outside("the set of tracers", header.tracers);
     }
+    if (header.effects > package::kAllEffects) {
+        return outside("the set of effects", header.effects);
+    }
     if (header.alphaTested > 1) {
         return outside("the alpha policy", header.alphaTested);
     }
@@ -254,8 +257,8 @@ Status checkSamplers(const Package::State& state, const std::string& where) {
 
 package::PackageShape shapeOf(const Package::State& state) {
     const package::PackageHeader& header = state.header;
-    package::PackageShape shape{header.strategies, header.tracers, header.shadows, header.alphaTested != 0,
-                                header.caseCount};
+    package::PackageShape shape{header.strategies, header.tracers,          header.shadows,
+                                header.effects,    header.alphaTested != 0, header.caseCount};
     for (std::uint32_t id = 0; id < state.cases.size(); ++id) {
         if (state.cases[id].keyCount == 0) {
             shape.retired.push_back(id);

@@ -25,6 +25,10 @@ struct PassDependencies {
           passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                      VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
                          VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
+          passToClear{
+              stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
+              VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
           passesToCopy{stages | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                        VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT} {}
@@ -32,6 +36,7 @@ struct PassDependencies {
     MemoryDependency clearToPasses;
     MemoryDependency rasterToPasses;
     MemoryDependency passToPass;    // also into indirect arguments, which the dispatching passes read
+    MemoryDependency passToClear;   // of lists that are filled anew
     MemoryDependency passesToCopy;  // counters that no pass touched were last written by a fill
 };
 

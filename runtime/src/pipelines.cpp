@@ -146,6 +146,9 @@ Status createComputePasses(Context::State& context, const Package& package, cons
         if (key.role == ModuleRole::ShadeCase) {
             pipelines.cases.resize(package.caseCount());
             pipelines.cases[key.index] = pass;
+        } else if (key.role == ModuleRole::EffectRays) {
+            pipelines.effectRays.resize(package::kEffectCount);
+            pipelines.effectRays[key.index] = pass;
         } else {
             pipelines.passes[key.role] = pass;
         }

@@ -18,6 +18,7 @@ struct PipelineChoice {
     package::Tracer tracer = package::kTracerRayQuery;
     package::Ordering ordering = package::Ordering::GlobalAtomics;
     bool checksOrder = false;
+    bool batchEffects = false;
 };
 
 // A pass: a compute pipeline, or a ray tracing pipeline with its shader binding table.
@@ -38,7 +39,8 @@ struct Pipelines {
     UniquePipelineLayout layout;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
-    std::vector<PassPipeline> cases;  // by shader ID; cases that share a module share a pipeline
+    std::vector<PassPipeline> effectRays;  // by package::effectNumber()
+    std::vector<PassPipeline> cases;       // by shader ID; cases that share a module share a pipeline
     std::vector<UniquePipeline> owned;
     double creationMs = 0.0;
 };

@@ -1,28 +1,29 @@
 #include "readback.h"
 
-#include <algorithm>
-#include <bit>
+#include "pass_dependencies.h"
+
+#include <cstddef>
 #include <cstring>
+#include <string>
 
 namespace glint {
 namespace {
 
+constexpr MemoryDependency kWriteToCopy{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
+                                        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+
 void recordCopy(const Renderer::State& state, VkCommandBuffer commands, std::uint32_t binding,
                 const Buffer& target) {
-    recordDependency(state.context, commands,
-                     {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+    recordDependency(state.context, commands, kWriteToCopy);
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {state.size.width, state.size.height, 1};
     state.context.vk.CmdCopyImageToBuffer(commands, state.frame.images[binding].handle.get(),
                                           VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
-    recordDependency(state.context, commands,
-                     {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+    recordDependency(state.context, commands, kCopyToHost);
 }
 
-PixelPath pathOf(float path, float outcome) {
+PixelPath pathOf(float path, std::uint32_t outcome) {
     if (path == static_cast<float>(gpu::kPathScreen)) {
         return PixelPath::Screen;
     }
@@ -32,8 +33,7 @@ PixelPath pathOf(float path, float outcome) {
     if (path == static_cast<float>(gpu::kPathMiss)) {
         return PixelPath::Miss;
     }
-    return std::bit_cast<std::uint32_t>(outcome) == gpu::kRayNoSurface ? PixelPath::NoSurface
-                                                                       : PixelPath::NoRay;
+    return outcome == gpu::kRayNoSurface ? PixelPath::NoSurface : PixelPath::NoRay;
 }
 
 }  // namespace
@@ -60,26 +60,58 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
     return pixels;
 }
 
-Result<std::vector<PixelPath>> Renderer::readCoverage() {
+Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
+                                                  const Buffer& buffer) {
+    MemoryPool pool(state.context);
+    Result<Buffer> target = createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         MemoryUse::Readback);
+    if (!target) {
+        return target.error();
+    }
+    Result<VkCommandBuffer> commands = runner.begin();
+    if (!commands) {
+        return commands.error();
+    }
+    recordDependency(state.context, *commands, kWriteToCopy);
+    const VkBufferCopy region{0, 0, buffer.bytes};
+    state.context.vk.CmdCopyBuffer(*commands, buffer.handle.get(), target->handle.get(), 1, &region);
+    recordDependency(state.context, *commands, kCopyToHost);
+    if (Status status = runner.submitAndWait(); !status) {
+        return status.error();
+    }
+    return std::vector<std::uint8_t>(target->mapped, target->mapped + buffer.bytes);
+}
+
+Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     if (!state_->recorded) {
-        return makeError("frame-not-recorded", "", "no frame has been recorded",
-                         "record a frame, submit it and wait for it first");
+        return frameNotRecorded();
+    }
+    if ((package::rayEffects(state_->size.effects) & effect) == 0) {
+        return makeError("effect-missing", "",
+                         "the package has no effect " + std::string(package::nameOf(effect)) + " with rays",
+                         "compile the package with that effect");
     }
     Result<CommandRunner> runner = CommandRunner::create(state_->context);
     if (!runner) {
         return runner.error();
     }
-    const auto reflection = readFrameImage(*state_, *runner, gpu::kBindingReflection);
-    if (!reflection) {
-        return reflection.error();
+    const auto samples = readFrameBuffer(*state_, *runner, state_->frame.samples);
+    if (!samples) {
+        return samples.error();
     }
-    const auto ray = readFrameImage(*state_, *runner, gpu::kBindingReflectionRay);
-    if (!ray) {
-        return ray.error();
+    const auto radiance = readFrameBuffer(*state_, *runner, state_->frame.radiance);
+    if (!radiance) {
+        return radiance.error();
     }
-    std::vector<PixelPath> paths(reflection->size());
-    std::ranges::transform(*reflection, *ray, paths.begin(),
-                           [](const auto& found, const auto& sent) { return pathOf(found[3], sent[3]); });
+    std::vector<PixelPath> paths(std::size_t{state_->size.width} * state_->size.height);
+    const std::size_t first = paths.size() * package::effectSlot(state_->size.effects, effect);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        gpu::EffectSample sample{};
+        std::memcpy(&sample, samples->data() + (first + i) * sizeof(sample), sizeof(sample));
+        gpu::vec4 found{};
+        std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));
+        paths[i] = pathOf(found.w, sample.outcome);
+    }
     return paths;
 }
 

@@ -14,8 +14,11 @@
 namespace glint {
 namespace {
 
-// Below any roughness: no surface sends a ray, and the sky stands in for reflections.
-constexpr float kNoReflections = -1.0F;
+// As kFarDistance of shaders: a ray this long leaves any scene.
+constexpr float kFarDistance = 1e18F;
+// Rays a pixel and sample to one light, or for ambient occlusion.
+constexpr std::uint32_t kMaxSurfaceSamples = 4096;
+constexpr std::uint32_t kMaxInterfaces = 64;
 
 gpu::vec3 toVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
@@ -57,6 +60,25 @@ Status checkFrame(const FrameOptions& frame) {
     if (!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness)) {
         return makeError("frame-options", "", "a limit of roughness is not finite", "use 0 to 1");
     }
+    if (!std::isfinite(frame.faintWeight) || frame.faintWeight < 0.0F) {
+        return makeError("frame-options", "", "faintWeight is negative or not finite", "use 0 to 1");
+    }
+    if (frame.shadowSamples == 0 || frame.shadowSamples > kMaxSurfaceSamples || frame.occlusionSamples == 0 ||
+        frame.occlusionSamples > kMaxSurfaceSamples) {
+        return makeError("frame-options", "", "shadowSamples or occlusionSamples is 0 or above the limit",
+                         "use 1 to " + std::to_string(kMaxSurfaceSamples));
+    }
+    if (!(frame.occlusionRadius > 0.0F) ||
+        (frame.occlusionFalloff && !std::isfinite(frame.occlusionRadius))) {
+        return makeError(
+            "frame-options", "",
+            "occlusionRadius is not above 0, or infinite where occluders count less with distance",
+            "use metres, or infinity without the falloff");
+    }
+    if (frame.maxInterfaces == 0 || frame.maxInterfaces > kMaxInterfaces) {
+        return makeError("frame-options", "", "maxInterfaces is 0 or above the limit",
+                         "use 1 to " + std::to_string(kMaxInterfaces));
+    }
     if (!(frame.maxSampleRadiance > 0.0F)) {
         return makeError("frame-options", "", "maxSampleRadiance is not above 0",
                          "use a luminance, or infinity for no limit");
@@ -94,7 +116,15 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.bucketCount = state.size.bucketCount;
     constants.bucketAlignment = state.size.bucketAlignment;
     constants.mirrorRoughness = options.mirrorRoughness;
-    constants.maxReflectionRoughness = options.reflections ? options.maxReflectionRoughness : kNoReflections;
+    constants.maxReflectionRoughness = options.maxReflectionRoughness;
+    constants.faintWeight = options.faintWeight;
+    constants.effects = options.effects & state.size.effects;
+    constants.countsLight = options.countsLight ? 1 : 0;
+    constants.shadowSamples = options.shadowSamples;
+    constants.occlusionSamples = options.occlusionSamples;
+    constants.occlusionRadius = std::min(options.occlusionRadius, kFarDistance);
+    constants.occlusionFalloff = options.occlusionFalloff ? 1 : 0;
+    constants.maxInterfaces = options.maxInterfaces;
     constants.maxSampleRadiance = options.maxSampleRadiance;
     constants.binning = static_cast<std::uint32_t>(options.binning);
     constants.screenSteps = options.screenSteps;
@@ -110,6 +140,8 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.materials = state.scene.materials.address;
     constants.lights = state.scene.lights.address;
     const FrameResources& frame = state.frame;
+    constants.samples = frame.samples.address;
+    constants.radiance = frame.radiance.address;
     constants.rays = frame.rays.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
@@ -122,11 +154,6 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.bucketDispatch = frame.bucketDispatch.address;
     constants.counters = frame.counters.address;
     return constants;
-}
-
-Diagnostic notRecorded() {
-    return makeError("frame-not-recorded", "", "no frame has been recorded",
-                     "record a frame, submit it and wait for it first");
 }
 
 }  // namespace
@@ -142,7 +169,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
     }
-    Result<Timer> timer = Timer::create(contextState, kMaxFixedPasses + package.caseCount());
+    Result<Timer> timer = Timer::create(contextState, kMaxRounds * (kMaxFixedPasses + package.caseCount()));
     if (!timer) {
         return timer.error();
     }
@@ -228,7 +255,7 @@ Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sa
 
 Result<std::vector<PassTiming>> Renderer::timings() {
     if (!state_->recorded) {
-        return notRecorded();
+        return frameNotRecorded();
     }
     const auto count = static_cast<std::uint32_t>(state_->passes.size());
     Result<std::vector<double>> milliseconds = state_->timer.read(count);
@@ -242,41 +269,33 @@ Result<std::vector<PassTiming>> Renderer::timings() {
     return timings;
 }
 
-Result<FrameCounters> Renderer::counters() {
-    if (!state_->recorded) {
-        return notRecorded();
-    }
-    const std::uint8_t* bytes = state_->frame.readback.mapped;
-    std::array<std::uint32_t, gpu::kCounterCount> values{};
-    std::memcpy(values.data(), bytes, sizeof(values));
-    FrameCounters counters;
-    counters.rays = values[gpu::kCounterRays];
-    counters.skippedSky = values[gpu::kCounterSkippedSky];
-    counters.skippedRough = values[gpu::kCounterSkippedRough];
-    counters.skippedUnlit = values[gpu::kCounterSkippedUnlit];
-    counters.skippedBlack = values[gpu::kCounterSkippedBlack];
-    counters.screenHits = values[gpu::kCounterScreenHits];
-    counters.shadowRays = values[gpu::kCounterShadowRays];
-    counters.orderErrors = values[gpu::kCounterOrderErrors];
-    counters.unknownShader = values[gpu::kCounterUnknownShader];
-    counters.nonFinite = values[gpu::kCounterNonFinite];
-    if (state_->size.ordered) {
-        std::vector<gpu::BucketRecord> buckets(state_->size.bucketCount);
-        std::memcpy(buckets.data(), bytes + kReadbackBucketOffset,
-                    buckets.size() * sizeof(gpu::BucketRecord));
-        for (const gpu::BucketRecord& bucket : buckets) {
-            counters.bucketCounts.push_back(bucket.count);
-        }
-    }
-    return counters;
-}
-
 package::Tracer Renderer::tracer() const {
     return state_->choice.tracer;
 }
 
 package::Ordering Renderer::ordering() const {
     return state_->choice.ordering;
+}
+
+std::uint32_t Renderer::effects() const {
+    return state_->size.effects;
+}
+
+Renderer::Footprint Renderer::footprint() const {
+    Footprint footprint;
+    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
+    const FrameResources& frame = state_->frame;
+    for (const DeviceImage& image : frame.images) {
+        footprint.images += image.handle.get() != VK_NULL_HANDLE ? 1 : 0;
+        footprint.bytes += image.bytes;
+    }
+    footprint.images += 1;
+    footprint.bytes += frame.depth.bytes;
+    for (const Buffer* const buffer : frame.buffers()) {
+        footprint.buffers += buffer->bytes > 0 ? 1 : 0;
+        footprint.bytes += buffer->bytes;
+    }
+    return footprint;
 }
 
 double Renderer::pipelineCreationMs() const {

@@ -1,5 +1,6 @@
 #include "renderer_choice.h"
 
+#include <algorithm>
 #include <bit>
 #include <string>
 
@@ -88,6 +89,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.tracer = *tracer;
     choice.ordering = options.ordering.value_or(orderingOn(context, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
+    choice.batchEffects = options.batchEffects;
     if (choice.ordering >= package::Ordering::Count) {
         return notOne("ordering");
     }
@@ -106,13 +108,17 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.width = options.width;
     size.height = options.height;
     size.bucketCount = package.bucketCount();
-    size.ordered = (choice.strategy & package::kOrderedStrategies) != 0;
+    size.effects = package.shape().effects;
+    size.sampleCount = package::rayEffectCount(size.effects);
+    size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
+    size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;
     size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
     size.environmentMap = package.environmentMap();
-    size.deferredShadows = package.shape().shadows == package::ShadowPlacement::Deferred;
+    size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&
+                           package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     return size;
 }

@@ -16,6 +16,11 @@
 
 namespace glint {
 
+// Passes of a round at most: the fixed ones of the longer strategy, and one a case.
+inline constexpr std::uint32_t kMaxFixedPasses = 24;
+// Rounds at most: one an effect with rays.
+inline constexpr std::uint32_t kMaxRounds = package::rayEffectCount(package::kAllEffects);
+
 struct Renderer::State {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
         : context(contextState),
@@ -36,11 +41,9 @@ struct Renderer::State {
     std::shared_ptr<const Environment::State> environment;
     // Of the last recording.
     std::vector<std::string> passes;
+    std::vector<std::uint32_t> rounds;  // of rays: Effect bits of each
     bool recorded = false;
 };
-
-// Passes of a frame at most: the fixed ones of the longer strategy, and one a case.
-inline constexpr std::uint32_t kMaxFixedPasses = 24;
 
 // Records all passes of a frame whose constants are in state.frame.constants.
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame);

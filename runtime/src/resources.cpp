@@ -92,6 +92,7 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
 
     VkMemoryRequirements requirements{};
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
+    image.bytes = requirements.size;
     Result<Allocation> memory = pool.allocate(requirements, MemoryUse::Device, Tiling::Optimal);
     if (!memory) {
         return memory.error();

@@ -24,6 +24,7 @@ struct DeviceImage {
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
     std::uint32_t mips = 1;
+    VkDeviceSize bytes = 0;  // of memory
 };
 
 struct ImageInfo {

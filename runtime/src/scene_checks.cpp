@@ -156,15 +156,22 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
 
 Status checkLights(std::span<const LightView> lights) {
     for (const LightView& light : lights) {
-        const float values[] = {light.intensity[0],   light.intensity[1],   light.intensity[2],
-                                light.position[0],    light.position[1],    light.position[2],
-                                light.direction[0],   light.direction[1],   light.direction[2],
-                                light.innerConeAngle, light.outerConeAngle, light.range};
+        const float values[] = {
+            light.intensity[0], light.intensity[1],   light.intensity[2],   light.position[0],
+            light.position[1],  light.position[2],    light.direction[0],   light.direction[1],
+            light.direction[2], light.innerConeAngle, light.outerConeAngle, light.range,
+            light.size};
         const bool finite = std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
         if (!finite || light.type > LightView::Type::Spot) {
             return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
                              "the light has a value that is not finite, or an unknown type",
                              "repair the light");
+        }
+        const bool tooWide = light.type == LightView::Type::Directional && light.size >= 1.5707963F;
+        if (light.size < 0.0F || tooWide) {
+            return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
+                             "the size of the light is negative, or a quarter turn or more",
+                             "give a radius in metres, or an angle in radians");
         }
     }
     return okStatus();

@@ -1,5 +1,6 @@
-// Light of the sky on a surface that traces no ray for it.
+// Light of the sky on a surface, as far as no ray brings it.
 #include "effects/sky.glsl"
+#include "effects/sky_shares.glsl"
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
@@ -38,31 +39,31 @@ vec3 ambientTransmission(Surface surface, Features features) {
     return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
 }
 
-// mirrored and coated: shares of the sky that base and coat reflect at the first bounce; a traced ray brings the rest.
-vec3 ambientLight(Surface surface, Features features, vec3 view, float mirrored, float coated) {
+vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
     vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    vec3 reflected = albedo - first * (1.0 - mirrored);
-    float below = max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
-    vec3 front = surface.bsdf.diffuse * below * skyIrradianceOverPi(surface.normal) +
+    vec3 reflected = albedo - first * (1.0 - sky.mirrored);
+    float below = diffusePassed(surface);
+    // The occlusion texture is of the outside, as are the rays of ambient occlusion.
+    float open = surface.occlusion * sky.open;
+    vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * skyIrradianceOverPi(surface.normal) +
                  reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);
     vec3 back = vec3(0.0);
-    if (hasLobe(features, GLINT_TRANSMISSION)) {
-        back += ambientTransmission(surface, features);
+    if (hasLobe(features, GLINT_TRANSMISSION) && sky.transmitted > 0.0) {
+        back += ambientTransmission(surface, features) * sky.transmitted;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        back += surface.bsdf.diffuseTransmitted * below * skyIrradianceOverPi(-surface.normal);
+        back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * skyIrradianceOverPi(-surface.normal);
     }
-    // The occlusion texture is of the outside.
-    vec3 result = (front * surface.occlusion + back) * baseShare(surface, features);
+    vec3 result = (front * open + back) * baseShare(surface, features);
     float coat = coatReflectance(surface, features);
     if (hasLobe(features, GLINT_SHEEN)) {
         result += surface.bsdf.sheenColor * min(surface.bsdf.sheenAlbedo, 1.0) * skyIrradianceOverPi(surface.normal) *
-                  (surface.occlusion * (1.0 - coat));
+                  (open * (1.0 - coat));
     }
     if (hasLobe(features, GLINT_CLEARCOAT)) {
         vec3 direction = reflect(-view, toWorld(surface, surface.bsdf.clearcoatNormal));
-        result += skyAround(direction, sqrt(surface.bsdf.clearcoatAlpha)) * (coat * coated * surface.occlusion);
+        result += skyAround(direction, sqrt(surface.bsdf.clearcoatAlpha)) * (coat * sky.coated * open);
     }
     return result;
 }

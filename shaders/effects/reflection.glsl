@@ -1,8 +1,9 @@
-// The reflection effect: which surfaces trace a ray, which ray, and what it counts.
+// The effect reflection: which surfaces send a ray, which ray, and what it counts.
 #include "bsdf/sample.glsl"
+#include "effects/sample.glsl"
+#include "effects/sky_shares.glsl"
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
-#include "hit/hit.glsl"
 #include "hit/sequence.glsl"
 #include "hit/surface.glsl"
 
@@ -31,13 +32,6 @@ TracedLobes tracedLobes(Surface surface, Features features) {
 bool isMirror(float roughness) {
     return roughness <= GLINT_FRAME.mirrorRoughness;
 }
-
-// One ray of a surface: the radiance that it finds counts `weight` times.
-struct ReflectionSample {
-    vec3 direction;  // world, unit
-    vec3 weight;
-    uint outcome;    // kRaySent, or why there is no ray
-};
 
 // The mirror direction about the shading normal. Where that points below the geometric surface it is lifted to leave
 // it, by at least 1e-3 (a tenth of a degree), so that no ray starts into its own surface.
@@ -73,10 +67,9 @@ float coatLobe(Surface surface, Features features, vec3 l, out float pdf) {
                        : 0.0;
 }
 
-// A ray in the mirror direction about `normal`, whatever its pdf.
-ReflectionSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
-    return ReflectionSample(mirrorDirection(-hit.view, normal, hit.geometricNormal), weight,
-                            luminance(weight) > 0.0 ? kRaySent : kRayBlack);
+// A ray in the mirror direction about `normal`, whatever its pdf. A flat mirror continues the pixel's cone.
+EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
+    return sentSample(hit, mirrorDirection(-hit.view, normal, hit.geometricNormal), weight, GLINT_FRAME.pixelSpread);
 }
 
 // Pairs of dimensions of the sequence.
@@ -85,41 +78,38 @@ const uint kPairLobe = 1u;
 
 // A direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997, balance heuristic).
 // chances: of base and coat; 0 for a lobe that has no density here.
-ReflectionSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, vec2 chances,
-                              bool choosesCoat) {
+EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, vec2 chances,
+                          bool choosesCoat) {
     Bsdf b = surface.bsdf;
-    vec2 u = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
+    vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
     vec3 l = choosesCoat ? sampleCoat(b, u) : reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u));
     vec3 world = toWorld(surface, l);
-    ReflectionSample result = ReflectionSample(normalize(world), vec3(0.0), kRayBlack);
     if (l.z <= 0.0 || dot(world, hit.geometricNormal) <= 0.0) {
-        return result;
+        return noSample(kRayBlack);
     }
+    vec3 weight = vec3(0.0);
     float pdf = 0.0;
     if (chances.x > 0.0) {
         float basePdf;
-        result.weight += traced.base * baseLobe(surface, features, l, basePdf);
+        weight += traced.base * baseLobe(surface, features, l, basePdf);
         pdf += chances.x * basePdf;
     }
     if (chances.y > 0.0) {
         float ofCoat;
-        result.weight += vec3(traced.coat * coatLobe(surface, features, l, ofCoat));
+        weight += vec3(traced.coat * coatLobe(surface, features, l, ofCoat));
         pdf += chances.y * ofCoat;
     }
-    if (pdf > 0.0 && luminance(result.weight) > 0.0) {
-        result.weight /= pdf;
-        result.outcome = kRaySent;
-    }
-    return result;
+    return sentSample(hit, normalize(world), pdf > 0.0 ? weight / pdf : vec3(0.0), GLINT_FRAME.pixelSpread);
 }
 
-// The ray of one sample. Below the mirror limit a lobe reflects exactly; between the limits by visible normals.
-ReflectionSample sampleReflection(Hit hit, Surface surface, Features features, TracedLobes traced) {
+// The ray of one sample, for some lobe within the roughness limit. Below the mirror limit a lobe reflects exactly;
+// between the limits by visible normals.
+EffectSample sampleLobes(Hit hit, Surface surface, Features features, TracedLobes traced) {
     vec3 base = traced.base * firstBounce(surface, features);
     float coat = traced.coat * coatReflectance(surface, features);
     float brought = luminance(base) + coat;
     if (brought <= 0.0) {
-        return ReflectionSample(vec3(0.0), vec3(0.0), traced.base > 0.0 ? kRayBlack : kRayRough);
+        return noSample(traced.base > 0.0 ? kRayBlack : kRayRough);
     }
     bool baseMirror = isMirror(surface.roughness);
     bool coatMirror = isMirror(sqrt(surface.bsdf.clearcoatAlpha));
@@ -131,7 +121,7 @@ ReflectionSample sampleReflection(Hit hit, Surface surface, Features features, T
             return mirrorSample(hit, surface.normal, base + vec3(coat));
         }
         chance = coat / brought;
-        choosesCoat = sequencePair(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x < chance;
+        choosesCoat = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x < chance;
     }
     if (choosesCoat && coatMirror) {
         return mirrorSample(hit, toWorld(surface, surface.bsdf.clearcoatNormal), vec3(coat / chance));
@@ -142,4 +132,11 @@ ReflectionSample sampleReflection(Hit hit, Surface surface, Features features, T
     // A mirror has no density that a glossy direction could share.
     vec2 chances = vec2(baseMirror ? 0.0 : 1.0 - chance, coatMirror ? 0.0 : chance);
     return glossySample(hit, surface, features, traced, chances, choosesCoat);
+}
+
+EffectSample sampleReflection(Hit hit, Surface surface, Features features, inout SkyShares sky) {
+    TracedLobes traced = tracedLobes(surface, features);
+    sky.mirrored = 1.0 - traced.base;
+    sky.coated = 1.0 - traced.coat;
+    return sampleLobes(hit, surface, features, traced);
 }

@@ -4,6 +4,7 @@
 #include "hit/constants.glsl"
 #include "hit/geometry.glsl"
 #include "hit/images.glsl"
+#include "hit/samples.glsl"
 
 struct ScreenMarch {
     bool found;
@@ -130,6 +131,7 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
 // hits of rays have it.
 vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
+    uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);
     return imageLoad(radianceImage, place).rgb +
-           imageLoad(reflectanceImage, place).rgb * skyRadiance(reflect(direction, normal));
+           GLINT_FRAME.samples.data[target].weight * skyRadiance(reflect(direction, normal));
 }

@@ -16,7 +16,7 @@ struct Hit {
     vec3 view;             // unit, towards the viewer
     bool frontFace;
     uint material;
-    uint pixel;
+    uint target;  // number of the sample that the hit is of; of a primary surface, of its pixel
     vec2 texCoords[2];
     vec4 color;
     vec4 tangent;    // world; w is the sign of the bitangent
@@ -45,7 +45,7 @@ vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics
 // Attributes are fetched where `features` may need them. rayDirection is unit; coneWidth is that of the ray cone at
 // the hit.
 Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
-             uint pixel, Features features) {
+             uint target, Features features) {
     InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
     uvec3 corner = uvec3(geometry.indices.data[3u * primitive], geometry.indices.data[3u * primitive + 1u],
                          geometry.indices.data[3u * primitive + 2u]);
@@ -55,7 +55,7 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     Hit hit;
     hit.view = -rayDirection;
     hit.material = geometry.materialIndex;
-    hit.pixel = pixel;
+    hit.target = target;
 
     // Position and the plane of the triangle. Counter-clockwise is the front in object space.
     vec3 p0 = GLINT_CORNER(0);

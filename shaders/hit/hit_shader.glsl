@@ -17,9 +17,9 @@ uint hitGeometry() {
 }
 
 Hit shadedHit(GeometryRecord geometry, Features features) {
-    uint pixel = floatBitsToUint(shaded.radiance.x);
+    uint target = floatBitsToUint(shaded.radiance.x);
     float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
-    return fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, pixel,
+    return fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
                     features);
 }
 

@@ -9,7 +9,7 @@ struct TracePayload {
 };
 
 // Of the strategy hit-shaders, 52 bytes: what a ShadeResult holds, and where the shadow ray starts. On the way to the
-// hit, `radiance` carries the pixel (bits), the width of the cone at the ray's start and its spread.
+// hit, `radiance` carries the number of the sample (bits), the width of the cone at the ray's start and its spread.
 struct HitPayload {
     vec3 radiance;
     vec3 direct;

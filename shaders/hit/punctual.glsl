@@ -1,11 +1,14 @@
 // Punctual lights: KHR_lights_punctual.
 #include "interop/lights.h"
+#include "bsdf/constants.glsl"
 #include "hit/constants.glsl"
+#include "hit/geometry.glsl"
 
 struct LightSample {
     vec3 direction;  // unit, towards the light
     float distance;  // metres; kFarDistance for a directional light
     vec3 irradiance; // on a surface that faces the light
+    uint gate;       // kRaySent, or what keeps the light away: kRayRange, kRayCone
 };
 
 // Squared distance to a light is at least 1 mm²: bounds the irradiance on a surface that touches a light.
@@ -13,7 +16,7 @@ const float kMinSquaredDistance = 1e-6;
 
 LightSample sampleLight(LightRecord light, vec3 position) {
     if (light.type == kLightDirectional) {
-        return LightSample(-light.direction, kFarDistance, light.intensity);
+        return LightSample(-light.direction, kFarDistance, light.intensity, kRaySent);
     }
     precise vec3 toLight = light.position - position;
     precise float squared = dot(toLight, toLight);
@@ -27,9 +30,45 @@ LightSample sampleLight(LightRecord light, vec3 position) {
         float ratio2 = ratio * ratio;
         attenuation *= clamp(1.0 - ratio2 * ratio2, 0.0, 1.0);
     }
+    uint gate = attenuation > 0.0 ? kRaySent : kRayRange;
     if (light.type == kLightSpot) {
         float cone = clamp(dot(light.direction, -direction) * light.spotScale + light.spotOffset, 0.0, 1.0);
         attenuation *= cone * cone;
+        gate = gate == kRaySent && cone <= 0.0 ? kRayCone : gate;
     }
-    return LightSample(direction, distance, light.intensity * attenuation);
+    return LightSample(direction, distance, light.intensity * attenuation, gate);
+}
+
+// A direction within a cone, uniform by solid angle; u is uniform in [0, 1)².
+vec3 sampleCone(vec3 axis, float sine, vec2 u) {
+    // 1 - cos of the half angle, which cancels for the sun.
+    float height = sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
+    float below = u.x * height;
+    float radius = sqrt(max(below * (2.0 - below), 0.0));
+    float phi = 2.0 * kPi * u.y;
+    vec3 tangent;
+    vec3 bitangent;
+    buildBasis(axis, tangent, bitangent);
+    return normalize((1.0 - below) * axis + radius * (cos(phi) * tangent + sin(phi) * bitangent));
+}
+
+// Towards a point of a light that has a size, uniform by the solid angle that it fills: a sphere, or a disk infinitely
+// far away. `centre`: of sampleLight(). Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
+// Calculations" (1996). From inside of the sphere nothing is between: distance 0.
+LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
+    LightSample result = centre;
+    bool sphere = light.type != kLightDirectional;
+    float sine = sphere ? light.size / max(centre.distance, 1e-18) : light.size;
+    if (sine >= 1.0) {
+        result.distance = 0.0;
+        return result;
+    }
+    result.direction = sampleCone(centre.direction, sine, u);
+    if (sphere) {
+        // To the near side of the sphere.
+        float along = centre.distance * dot(result.direction, centre.direction);
+        vec3 across = centre.distance * (result.direction - centre.direction * dot(result.direction, centre.direction));
+        result.distance = along - sqrt(max(light.size * light.size - dot(across, across), 0.0));
+    }
+    return result;
 }

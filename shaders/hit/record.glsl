@@ -19,7 +19,7 @@ float unpackConeWidth(uint code) {
 
 void storeHit(uint index, HitRecord hit) {
     PackedHitRecord record;
-    record.pixel = hit.pixel;
+    record.target = hit.target;
     if (hit.geometry == kMissGeometry) {
         vec2 direction = octahedralEncode(
             vec3(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY, hit.distance_orDirectionZ));
@@ -41,10 +41,10 @@ HitRecord storedHit(uint index) {
     if (record.geometry24_coneLog8 == kMissGeometry) {
         vec3 direction = octahedralDecode(uintBitsToFloat(
             uvec2(record.primitive_orDirectionOctX, record.barycentrics2x16_orDirectionOctY)));
-        return HitRecord(record.pixel, kMissGeometry, 0u, direction.x, direction.y, direction.z, 0.0, index);
+        return HitRecord(record.target, kMissGeometry, 0u, direction.x, direction.y, direction.z, 0.0, index);
     }
     vec2 barycentrics = unpackUnorm2x16(record.barycentrics2x16_orDirectionOctY);
-    return HitRecord(record.pixel, record.geometry24_coneLog8 >> 8, record.primitive_orDirectionOctX, barycentrics.x,
+    return HitRecord(record.target, record.geometry24_coneLog8 >> 8, record.primitive_orDirectionOctX, barycentrics.x,
                      barycentrics.y, 0.0, unpackConeWidth(record.geometry24_coneLog8 & 0xFFu), index);
 }
 

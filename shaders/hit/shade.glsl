@@ -4,6 +4,8 @@
 #include "hit/material.glsl"
 #include "hit/punctual.glsl"
 #include "hit/random.glsl"
+#include "hit/samples.glsl"
+#include "hit/sequence.glsl"
 
 // Light that leaves the hit towards the viewer. `direct` counts only if nothing stands on the shadow ray: who calls
 // shade() traces that ray, so that one ray query serves every case.
@@ -16,19 +18,43 @@ struct ShadeResult {
 
 // Dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
+// And pairs of the sequence.
+const uint kPairLightArea = 5u;
 
 // Light of one light on a surface, without its shadow.
 vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
     return scatteredLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
 }
 
+// One shadow ray: to the light's place, or to a point of one that has a size.
+void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
+    LightSample aim = sampleLight(light, hit.position);
+#if GLINT_EFFECT_SHADOW
+    if (light.size > 0.0) {
+        vec3 centre = aim.direction;
+        vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLightArea);
+        aim = sampleLightArea(light, aim, u);
+        if (aim.distance <= 0.0) {
+            // Within the light.
+            result.radiance += result.direct;
+        } else if (dot(hit.geometricNormal, centre) * dot(hit.geometricNormal, aim.direction) <= 0.0) {
+            // What of the light is below the surface is hidden by the surface itself.
+            aim.distance = 0.0;
+        }
+    }
+#endif
+    result.shadowDirection = aim.direction;
+    result.shadowDistance = aim.distance;
+}
+
 // Direct light by one light, chosen in one pass with probability proportional to the luminance that it would bring
 // without shadows (weighted reservoir sampling, Chao 1982). Unbiased; exact where one light dominates.
 void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
-    float random = randomUnit(hit.pixel, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
+    float random = randomUnit(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
     float total = 0.0;
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
+    uint index = 0u;
     for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
         LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
         vec3 contribution = unshadowedLight(hit, surface, features, light);
@@ -42,13 +68,15 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
             random /= probability;
             chosen = contribution;
             chosenWeight = weight;
-            result.shadowDirection = light.direction;
-            result.shadowDistance = light.distance;
+            index = i;
         } else {
             random = (random - probability) / (1.0 - probability);
         }
     }
     result.direct = chosen * (total / chosenWeight);
+    if (total > 0.0) {
+        aimAtLight(hit, GLINT_FRAME.lights.data[index], result);
+    }
 }
 
 ShadeResult shade(Hit hit, Features features) {
@@ -58,7 +86,14 @@ ShadeResult shade(Hit hit, Features features) {
         return result;
     }
     Surface surface = evaluateSurface(hit, features);
-    result.radiance = surface.emission + ambientLight(surface, features, hit.view, 1.0, 1.0);
+    SkyShares sky = wholeSky();
+#if GLINT_EFFECT_REFRACTION
+    if (hasLobe(features, GLINT_TRANSMISSION) && hit.target / pixelCount() == GLINT_SLOT_REFRACTION) {
+        // The walk of the refracted ray has chosen what does not pass.
+        sky.transmitted = 0.0;
+    }
+#endif
+    result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
     chooseLight(hit, surface, features, result);
     return result;
 }

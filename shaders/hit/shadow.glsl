@@ -9,12 +9,15 @@ struct ShadowRay {
     vec3 light;      // what it brings if nothing is in its way
 };
 
-// The light that is certain now; deferred, the rest comes by a pass over the list. One ray a pixel: the list has room.
-vec3 lightOrDefer(uint pixel, ShadowRay shadow) {
-#if GLINT_SHADOWS_DEFERRED
+// The light that is certain now; deferred, the rest comes by a pass over the list. One ray a sample: the list has room.
+// Without the effect, nothing is in the way of any light.
+vec3 lightOrDefer(uint target, ShadowRay shadow) {
+#if !GLINT_EFFECT_SHADOW
+    return shadow.light;
+#elif GLINT_SHADOWS_DEFERRED
     uint slot = atomicAdd(GLINT_FRAME.counters.data[kCounterShadowRays], 1u);
     GLINT_FRAME.shadows.data[slot] =
-        ShadowRecord(shadow.origin, pixel, shadow.direction, shadow.distance, shadow.light, 0u);
+        ShadowRecord(shadow.origin, target, shadow.direction, shadow.distance, shadow.light, 0u);
     return vec3(0.0);
 #else
     return isVisible(shadow.origin, shadow.direction, shadow.distance) ? shadow.light : vec3(0.0);

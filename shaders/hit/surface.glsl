@@ -41,3 +41,8 @@ float baseShare(Surface surface, Features features) {
     }
     return share;
 }
+
+// Share of the light of a uniform sky that the microfacets let in to the diffuse lobes.
+float diffusePassed(Surface surface) {
+    return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
+}

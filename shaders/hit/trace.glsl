@@ -6,11 +6,11 @@
 #include "hit/tlas.glsl"
 
 HitRecord missRecord(RayRecord ray, uint rayIndex) {
-    return HitRecord(ray.pixel, kMissGeometry, 0u, ray.direction.x, ray.direction.y, ray.direction.z, 0.0, rayIndex);
+    return HitRecord(ray.target, kMissGeometry, 0u, ray.direction.x, ray.direction.y, ray.direction.z, 0.0, rayIndex);
 }
 
 HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
-    return HitRecord(ray.pixel, found.geometry, found.primitive, found.barycentrics.x, found.barycentrics.y,
+    return HitRecord(ray.target, found.geometry, found.primitive, found.barycentrics.x, found.barycentrics.y,
                      found.distance, ray.coneWidth + ray.coneSpread * found.distance, rayIndex);
 }
 
@@ -38,11 +38,10 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 #define GLINT_PROCEED(query) rayQueryProceedEXT(query)
 #endif
 
-// The closest hit of a ray of the list. Back faces of single-sided geometry let it pass, as they do in the raster pass.
-HitRecord traceRay(RayRecord ray, uint rayIndex) {
+// The closest hit of a ray.
+HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex],
-                          kOpacityFlags | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu, ray.origin, 0.0,
+    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, ray.origin, 0.0,
                           ray.direction, kFarDistance);
     GLINT_PROCEED(query);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
@@ -68,6 +67,16 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
+// Distance to whatever is closest within `most`, of either side; or that.
+float closestDistance(vec3 origin, vec3 direction, float most) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, origin, 0.0, direction, most);
+    GLINT_PROCEED(query);
+    return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT
+               ? most
+               : rayQueryGetIntersectionTEXT(query, true);
+}
+
 #elif GLINT_RAY_GENERATION
 
 #ifndef GLINT_TRACE_LOCATION
@@ -83,9 +92,9 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 #endif
 
 // As above.
-HitRecord traceRay(RayRecord ray, uint rayIndex) {
-    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu, 0u, 0u,
-                GLINT_TRACE_LOCATION, ray.origin, 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
+HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
+    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
+                0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? missRecord(ray, rayIndex) : hitRecord(ray, rayIndex, traced);
 }
 
@@ -96,6 +105,13 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
                 kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, 0u,
                 GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry;
+}
+
+// As above.
+float closestDistance(vec3 origin, vec3 direction, float most) {
+    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
+                direction, most, GLINT_TRACE_LOCATION);
+    return traced.geometry == kMissGeometry ? most : traced.distance;
 }
 
 #endif

@@ -24,10 +24,23 @@ GLINT_CONSTANT(kNoHit, 0xFFFFFFFFu);
 // GBuffer: geometry index of a pixel without a surface.
 GLINT_CONSTANT(kNoSurface, 0xFFFFFFFFu);
 
+// What an effect sends from a primary surface: slot * width * height + x + y * width, with the slot of the effect among
+// those of the package that send rays. Samples, what they bring, rays and hits are found by this number.
+
+// A ray of an effect, and how much what it finds counts. 48 bytes.
+struct EffectSample {
+    vec3 origin;
+    uint outcome;      // kRaySent, or why there is no ray
+    vec3 direction;    // unit
+    float coneWidth;   // width of the ray cone at the origin, metres
+    vec3 weight;       // of the radiance that the ray finds
+    float coneSpread;  // growth of the width by metre
+};
+
 // A ray that waits in the list. 36 bytes.
 struct RayRecord {
     vec3 origin;
-    uint pixel;  // x + y * width
+    uint target;  // number of the sample
     vec3 direction;  // unit
     float coneWidth;   // width of the ray cone at the origin, metres
     float coneSpread;  // growth of the width by metre
@@ -35,7 +48,7 @@ struct RayRecord {
 
 // What a ray found. 32 bytes.
 struct HitRecord {
-    uint pixel;      // x + y * width
+    uint target;     // number of the sample
     uint geometry;   // GeometryRecord index, or kMissGeometry
     uint primitive;  // triangle within the geometry
     float barycentricU_orDirectionX;
@@ -47,7 +60,7 @@ struct HitRecord {
 
 // The same in 16 bytes. A miss is 0xFFFFFFFF in its second word, which no hit can have.
 struct PackedHitRecord {
-    uint pixel;
+    uint target;
     uint geometry24_coneLog8;           // 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0: none
     uint primitive_orDirectionOctX;     // of a miss: bits of a float
     uint barycentrics2x16_orDirectionOctY;  // unorm; likewise
@@ -56,7 +69,7 @@ struct PackedHitRecord {
 // A shadow ray that waits, with the light that it brings if nothing is in its way. 48 bytes.
 struct ShadowRecord {
     vec3 origin;
-    uint pixel;  // x + y * width
+    uint target;  // number of the sample that it brings light to
     vec3 direction;  // unit
     float distance;  // metres
     vec3 light;
@@ -86,6 +99,8 @@ struct BucketRecord {
 GLINT_INTEROP_END
 
 #ifndef __cplusplus
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleArray { EffectSample data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArray { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { HitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
@@ -98,18 +113,42 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray
 
 GLINT_INTEROP_BEGIN
 
+// Effects: bits, as package::Effect.
+GLINT_CONSTANT(kEffectShadow, 1u);
+GLINT_CONSTANT(kEffectAmbientOcclusion, 2u);
+GLINT_CONSTANT(kEffectReflection, 4u);
+GLINT_CONSTANT(kEffectRefraction, 8u);
+GLINT_CONSTANT(kEffectIndirectDiffuse, 16u);
+GLINT_CONSTANT(kEffectCount, 5u);
+
+// Whether a surface sends a ray of an effect, or which gate keeps it from doing so; also what is counted of it.
+GLINT_CONSTANT(kRaySent, 0u);
+GLINT_CONSTANT(kRayNoSurface, 1u);  // the sky
+GLINT_CONSTANT(kRayUnlit, 2u);
+GLINT_CONSTANT(kRayRough, 3u);      // above the roughness limit
+GLINT_CONSTANT(kRayBlack, 4u);      // the sample would bring no light, or points into the surface
+GLINT_CONSTANT(kRayAbsent, 5u);     // the material has no such lobe
+GLINT_CONSTANT(kRayFaint, 6u);      // below FrameConstants::faintWeight
+GLINT_CONSTANT(kRayFacing, 7u);     // the surface faces away from the light
+GLINT_CONSTANT(kRayRange, 8u);      // beyond the light's range
+GLINT_CONSTANT(kRayCone, 9u);       // outside the light's cone
+GLINT_CONSTANT(kRayOff, 10u);       // FrameConstants::effects lacks the effect
+GLINT_CONSTANT(kRayEnded, 11u);     // its end was found without the list
+// Further counts of an effect.
+GLINT_CONSTANT(kCountScreenHits, 12u);  // found in screen space
+GLINT_CONSTANT(kCountHits, 13u);        // rays that hit
+GLINT_CONSTANT(kCountMisses, 14u);      // rays that left the scene, or met nothing on their way
+GLINT_CONSTANT(kCountSegments, 15u);    // rays traced before the one that joins the list
+GLINT_CONSTANT(kCountsOfEffect, 16u);
+
 // FrameConstants::counters, one uint each.
-GLINT_CONSTANT(kCounterRays, 0u);          // rays appended to the list
-GLINT_CONSTANT(kCounterSkippedSky, 1u);    // pixels without a surface
-GLINT_CONSTANT(kCounterSkippedRough, 2u);  // surfaces above the roughness limit
-GLINT_CONSTANT(kCounterSkippedUnlit, 3u);  // unlit surfaces
-GLINT_CONSTANT(kCounterSkippedBlack, 4u);  // surfaces whose sample reflects no light, or points into the surface
-GLINT_CONSTANT(kCounterScreenHits, 5u);    // reflections found in screen space
-GLINT_CONSTANT(kCounterShadowRays, 6u);    // deferred shadow rays
-GLINT_CONSTANT(kCounterUnknownShader, 7u); // hits whose shader ID no case has
-GLINT_CONSTANT(kCounterOrderErrors, 8u);   // found by the check of the order: lost, doubled or misplaced hits
-GLINT_CONSTANT(kCounterNonFinite, 9u);     // pixels whose sample was no number: taken as black
-GLINT_CONSTANT(kCounterCount, 10u);
+GLINT_CONSTANT(kCounterRays, 0u);           // rays appended to the list
+GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays of the list
+GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
+GLINT_CONSTANT(kCounterOrderErrors, 3u);    // found by the check of the order: lost, doubled or misplaced hits
+GLINT_CONSTANT(kCounterEffects, 4u);        // kCountsOfEffect for each effect, in order of their bits
+GLINT_CONSTANT(kCounterNonFinite, 84u);     // pixels whose sample was no number: taken as black
+GLINT_CONSTANT(kCounterCount, 85u);
 
 // FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);
@@ -132,12 +171,20 @@ struct FrameConstants {
     float pixelWidth;   // width of a pixel's cone at the camera, metres; 0 for perspective
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
+    uint effects;  // bits: those of the package that are on
+    uint countsLight;  // 1: rays of lights and of occlusion are counted
     uint lightCount;
+    uint shadowSamples;     // rays a light and sample on primary surfaces, for lights that have a size
+    uint occlusionSamples;  // rays a sample
+    float occlusionRadius;  // metres; kFarDistance: unlimited
+    uint occlusionFalloff;  // 1: an occluder counts less the farther it is, linearly; 0: all alike
+    uint maxInterfaces;     // that a refracted ray passes
     uint bucketCount;  // 1 + cases
     uint bucketAlignment;  // buckets begin at multiples of it in the ordered list
     float mirrorRoughness;  // surfaces smoother than this reflect as mirrors
     float maxReflectionRoughness;  // surfaces rougher than this send no ray
-    float maxSampleRadiance;  // what a reflection brings at most, luminance; infinite: no limit
+    float faintWeight;  // samples whose weight has a lesser luminance are not sent; 0: all are
+    float maxSampleRadiance;  // what a ray of an effect brings at most, luminance; infinite: no limit
     uint binning;  // kBinning*
     uint screenSteps;  // steps of the march in screen space; 0: none
     float screenThickness;  // how far behind the depth of a pixel its surface is taken to reach, share of its depth
@@ -152,6 +199,8 @@ struct FrameConstants {
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
+    GLINT_ADDRESS(Sample) samples;    // of every pixel, effect by effect
+    GLINT_ADDRESS(Radiance) radiance;  // likewise: what the rays bring; kPath* as a float
     GLINT_ADDRESS(Ray) rays;
     GLINT_ADDRESS(Hit) hits;
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
@@ -188,28 +237,18 @@ GLINT_CONSTANT(kBindingTextures, 1u);  // texture2D[]
 GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 // Descriptor set 1: the images of a frame, all storage images.
 GLINT_CONSTANT(kSetFrame, 1u);
-GLINT_CONSTANT(kBindingSurface, 0u);          // rg32ui: geometry, primitive; also a colour attachment
-GLINT_CONSTANT(kBindingRadiance, 1u);         // rgba32f: light that leaves the primary surface, reflection apart;
-                                              // distance along the camera's axis, 0: none
-GLINT_CONSTANT(kBindingReflectionRay, 2u);    // rgba32f: direction of the reflection ray, kRay* as bits
-GLINT_CONSTANT(kBindingPosition, 3u);         // rgba32f: ray origin off the surface; geometric normal,
-                                              // octahedral, bits 2x16snorm
-GLINT_CONSTANT(kBindingReflectance, 4u);      // rgba32f: weight of the traced reflection
-GLINT_CONSTANT(kBindingReflection, 5u);       // rgba32f: radiance that the ray brings; kPath* as a float
-GLINT_CONSTANT(kBindingAccumulated, 6u);      // rgba32f: mean over samples so far, linear
-GLINT_CONSTANT(kBindingResidual, 7u);         // rgba32f: what rounding keeps out of that mean
-GLINT_CONSTANT(kFrameImageCount, 8u);
+GLINT_CONSTANT(kBindingSurface, 0u);      // rg32ui: geometry, primitive; also a colour attachment
+GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, effects with rays apart;
+                                          // distance along the camera's axis, 0: none
+GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over samples so far, linear
+GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding keeps out of that mean
+GLINT_CONSTANT(kBindingPosition, 4u);     // rgba32f: ray origin off the surface; geometric normal, octahedral, bits
+                                          // 2x16snorm. Of packages with reflection, for the march over the screen
+GLINT_CONSTANT(kFrameImageCount, 5u);
 // And of the same set:
-GLINT_CONSTANT(kBindingEnvironment, 8u);  // sampler2D: the environment map
+GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map
 
-// Whether a pixel sends a reflection ray, or why not.
-GLINT_CONSTANT(kRaySent, 0u);
-GLINT_CONSTANT(kRayNoSurface, 1u);
-GLINT_CONSTANT(kRayUnlit, 2u);
-GLINT_CONSTANT(kRayRough, 3u);
-GLINT_CONSTANT(kRayBlack, 4u);
-
-// How a pixel came to its reflection.
+// How a sample came to what it brings.
 GLINT_CONSTANT(kPathNone, 0u);    // no ray
 GLINT_CONSTANT(kPathScreen, 1u);  // found in screen space
 GLINT_CONSTANT(kPathHit, 2u);     // a ray that hit

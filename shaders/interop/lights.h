@@ -20,6 +20,7 @@ struct LightRecord {
     vec3 intensity;  // colour times intensity: lux (directional) or candela
     float spotScale;   // 1 / max(0.001, cos(inner) - cos(outer))
     float spotOffset;  // -cos(outer) * spotScale
+    float size;  // radius, metres; directional: sine of half its angular diameter; 0: hard shadows
 };
 
 GLINT_INTEROP_END

@@ -1,6 +1,6 @@
 #version 460
-// Adds the reflection to the lit surfaces and takes the sample into the running mean.
-#include "bsdf/fresnel.glsl"
+// Adds what the effects bring to the lit surfaces and takes the sample into the running mean.
+#include "generated/compose_effects.glsl"
 #include "hit/accumulate.glsl"
 #include "hit/images.glsl"
 
@@ -12,12 +12,7 @@ void main() {
         return;
     }
     ivec2 place = ivec2(pixel);
-    vec3 reflected = imageLoad(reflectanceImage, place).rgb * imageLoad(reflectionImage, place).rgb;
-    float excess = luminance(reflected) / GLINT_FRAME.maxSampleRadiance;
-    if (excess > 1.0) {
-        reflected /= excess;
-    }
-    vec3 radiance = imageLoad(radianceImage, place).rgb + reflected;
+    vec3 radiance = imageLoad(radianceImage, place).rgb + composeEffects(pixel.x + pixel.y * GLINT_FRAME.width);
     // One sample that is no number would stay in the mean for good.
     if (!isFinite(radiance)) {
         atomicAdd(GLINT_FRAME.counters.data[kCounterNonFinite], 1u);

@@ -1,43 +1,38 @@
 #version 460
-// Lighting of the primary surfaces: materials, every punctual light with its shadow ray, the sky; and what the effects
-// need of each pixel.
+// Lighting of the primary surfaces: materials, every punctual light, the sky; and the samples of the effects.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS)
-#include "effects/reflection.glsl"
-#include "hit/camera.glsl"
+#include "generated/effects.glsl"
 #include "hit/images.glsl"
+#include "hit/primary.glsl"
 #include "hit/shade.glsl"
-#include "hit/trace.glsl"
 
 GLINT_PIXEL_WORKGROUP
 
-Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
-    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
-    vec3 corners[3];
-    for (uint i = 0u; i < 3u; ++i) {
-        uint index = geometry.indices.data[3u * primitive + i];
-        corners[i] = transformPoint(instance.objectToWorld, geometry.positions.data[index]);
-    }
-    vec2 barycentrics =
-        rayTriangleBarycentrics(ray, corners[0], corners[1] - corners[0], corners[2] - corners[0]);
-    vec3 position = corners[0] + barycentrics.x * (corners[1] - corners[0]) +
-                    barycentrics.y * (corners[2] - corners[0]);
-    float coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(position, ray.origin);
-    return fetchHit(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features);
-}
-
 vec3 directLight(Hit hit, Surface surface, Features features) {
     vec3 sum = vec3(0.0);
+#if GLINT_EFFECT_SHADOW
+    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
+#endif
     for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
-        LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
-        vec3 contribution = unshadowedLight(hit, surface, features, light);
-        if (luminance(contribution) > 0.0 &&
-            isVisible(rayOrigin(hit, light.direction), light.direction, light.distance)) {
-            sum += contribution;
+        LightRecord light = GLINT_FRAME.lights.data[i];
+        LightSample centre = sampleLight(light, hit.position);
+        vec3 contribution = unshadowedLight(hit, surface, features, centre);
+        bool reaches = luminance(contribution) > 0.0;
+#if GLINT_EFFECT_SHADOW
+        countGate(centre, reaches, counts);
+        if (reaches) {
+            sum += contribution * visibleShare(hit, light, centre, i, counts);
         }
+#else
+        sum += reaches ? contribution : vec3(0.0);
+#endif
     }
+#if GLINT_EFFECT_SHADOW
+    reportShadows(counts);
+#endif
     return sum;
 }
 
@@ -47,33 +42,34 @@ void main() {
         return;
     }
     ivec2 place = ivec2(pixel);
+    uint number = pixel.x + pixel.y * GLINT_FRAME.width;
     uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
     CameraRay ray = cameraRay(pixel);
     vec4 radianceDepth = vec4(skyRadiance(ray.direction), 0.0);
     vec4 position = vec4(0.0);
-    ReflectionSample reflection = ReflectionSample(vec3(0.0), vec3(0.0), kRayNoSurface);
 
-    if (surfaceId.x != kNoSurface) {
+    if (surfaceId.x == kNoSurface) {
+        skipEffects(number, kRayNoSurface);
+    } else {
         GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
         Features features = GLINT_PRIMARY_FEATURES(geometry);
-        Hit hit = primaryHit(geometry, surfaceId.y, ray, pixel.x + pixel.y * GLINT_FRAME.width, features);
+        Hit hit = primaryHit(geometry, surfaceId.y, ray, number, features);
         vec3 origin = rayOrigin(hit, hit.geometricNormal);
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
         if (hasLobe(features, GLINT_UNLIT)) {
             radianceDepth.rgb = baseColor(hit, features).rgb;
-            reflection.outcome = kRayUnlit;
+            skipEffects(number, kRayUnlit);
         } else {
             Surface surface = evaluateSurface(hit, features);
-            TracedLobes traced = tracedLobes(surface, features);
+            SkyShares sky = wholeSky();
+            sampleEffects(hit, surface, features, sky);
             radianceDepth.rgb = surface.emission + directLight(hit, surface, features) +
-                                ambientLight(surface, features, hit.view, 1.0 - traced.base, 1.0 - traced.coat);
-            reflection = sampleReflection(hit, surface, features, traced);
+                                ambientLight(surface, features, hit.view, sky);
         }
     }
     imageStore(radianceImage, place, radianceDepth);
-    imageStore(reflectionRayImage, place, vec4(reflection.direction, uintBitsToFloat(reflection.outcome)));
+#if GLINT_EFFECT_REFLECTION
     imageStore(positionImage, place, position);
-    imageStore(reflectanceImage, place, vec4(reflection.weight, 0.0));
-    imageStore(reflectionImage, place, vec4(0.0));
+#endif
 }

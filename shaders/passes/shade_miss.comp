@@ -1,9 +1,9 @@
 #version 460
 // Shades bucket 0: rays that left the scene see the sky. No shadow ray.
 #include "effects/sky.glsl"
-#include "hit/images.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
+#include "hit/samples.glsl"
 
 GLINT_RAY_WORKGROUP
 
@@ -22,5 +22,5 @@ void main() {
     } else {
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
     }
-    imageStore(reflectionImage, pixelCoordinates(hit.pixel), vec4(radiance, float(path)));
+    storeRadiance(hit.target, radiance, path);
 }

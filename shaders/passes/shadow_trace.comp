@@ -1,6 +1,5 @@
 #version 460
-// Traces the deferred shadow rays of hits: light that nothing blocks joins what their pixels reflect.
-#include "hit/images.glsl"
+// Traces the deferred shadow rays of hits: light that nothing blocks joins what their samples bring.
 #include "hit/list.glsl"
 #include "hit/trace.glsl"
 
@@ -13,9 +12,8 @@ void main() {
     }
     ShadowRecord shadow = GLINT_FRAME.shadows.data[index];
     if (isVisible(shadow.origin, shadow.direction, shadow.distance)) {
-        // A pixel has one reflection ray, and its hit one shadow ray: nobody else writes here.
-        ivec2 place = pixelCoordinates(shadow.pixel);
-        vec4 reflection = imageLoad(reflectionImage, place);
-        imageStore(reflectionImage, place, vec4(reflection.rgb + shadow.light, reflection.w));
+        // A sample has one ray, and its hit one shadow ray: nobody else writes here.
+        vec4 radiance = GLINT_FRAME.radiance.data[shadow.target];
+        GLINT_FRAME.radiance.data[shadow.target] = vec4(radiance.rgb + shadow.light, radiance.w);
     }
 }

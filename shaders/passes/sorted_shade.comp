@@ -32,7 +32,7 @@ void main() {
     }
     HitRecord record = storedHit(slot);
     if (record.geometry == kMissGeometry) {
-        resolveMiss(record.pixel, missDirection(record));
+        resolveMiss(record.target, missDirection(record));
         return;
     }
     // The first hit of a workgroup says which case all of it has.

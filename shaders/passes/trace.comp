@@ -13,6 +13,6 @@ GLINT_RAY_WORKGROUP
 void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        storeHit(index, traceRay(GLINT_FRAME.rays.data[index], index));
+        storeHit(index, traceRay(GLINT_FRAME.rays.data[index], index, gl_RayFlagsCullBackFacingTrianglesEXT));
     }
 }

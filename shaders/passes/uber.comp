@@ -16,9 +16,9 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    HitRecord record = traceRay(ray, index);
+    HitRecord record = traceRay(ray, index, gl_RayFlagsCullBackFacingTrianglesEXT);
     if (record.geometry == kMissGeometry) {
-        resolveMiss(record.pixel, ray.direction);
+        resolveMiss(record.target, ray.direction);
     } else {
         GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
         Hit hit = loadHit(record, ray.direction, geometry, GLINT_HIT_FEATURES(geometry));

@@ -60,7 +60,7 @@ TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
 }
 
 TEST_F(RenderProfile, WithoutHitsIsWarnedOf) {
-    const Outcome outcome = render("a.png", {"--profile", "hits.json", "--no-reflections"});
+    const Outcome outcome = render("a.png", {"--profile", "hits.json", "--effects", "none"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("[profile-empty]"), std::string::npos) << outcome.err;
 }

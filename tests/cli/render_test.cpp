@@ -7,6 +7,16 @@
 namespace glint::testing {
 namespace {
 
+// What the report says of an effect; null where the package lacks it.
+nlohmann::json effectOf(const nlohmann::json& report, const std::string& name) {
+    for (const nlohmann::json& effect : report.at("effects")) {
+        if (effect.at("name") == name) {
+            return effect;
+        }
+    }
+    return nullptr;
+}
+
 TEST_F(RenderCommand, CompileInspectRenderCompare) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
     ASSERT_EQ(run({"inspect", "package"}).exit, 0);
@@ -74,8 +84,12 @@ TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     }
     EXPECT_GT(hits, 0U);
     EXPECT_EQ(counters.at("rays"), hits);
-    EXPECT_GT(counters.at("skippedSky").get<int>(), 0);
-    EXPECT_GT(counters.at("skippedUnlit").get<int>(), 0);
+    const nlohmann::json reflection = effectOf(stats, "reflection");
+    EXPECT_EQ(reflection.at("rays"), hits);
+    EXPECT_EQ(reflection.at("hits").get<std::uint64_t>() + reflection.at("misses").get<std::uint64_t>(),
+              hits);
+    EXPECT_GT(reflection.at("skipped").at("sky").get<int>(), 0);
+    EXPECT_GT(reflection.at("skipped").at("unlit").get<int>(), 0);
     EXPECT_EQ(counters.at("nonFinite"), 0);
 }
 
@@ -96,13 +110,18 @@ TEST_F(RenderCommand, SamplesThatAreNoNumberAreWarnedOf) {
 }
 
 TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {
-    const Outcome off = render("a.png", {"--no-reflections", "--json"});
+    const Outcome off = render("a.png", {"--effects", "shadow", "--json"});
     ASSERT_EQ(off.exit, 0) << off.err;
     EXPECT_EQ(off.json().at("counters").at("rays"), 0);
-    const Outcome rough = render("b.png", {"--max-roughness", "0.05", "--json"});
+    const Outcome rough = render("b.png", {"--effects", "auto", "--max-roughness", "0.05", "--json"});
     ASSERT_EQ(rough.exit, 0) << rough.err;
     EXPECT_EQ(rough.json().at("counters").at("rays"), 0);
-    EXPECT_GT(rough.json().at("counters").at("skippedRough").get<int>(), 0);
+    const Outcome forced =
+        render("c.png", {"--effects", "auto,reflection", "--max-roughness", "0.05", "--json"});
+    ASSERT_EQ(forced.exit, 0) << forced.err;
+    EXPECT_NE(forced.err.find("effect-unused"), std::string::npos) << forced.err;
+    EXPECT_EQ(forced.json().at("counters").at("rays"), 0);
+    EXPECT_GT(effectOf(forced.json(), "reflection").at("skipped").at("rough").get<int>(), 0);
 }
 
 TEST_F(RenderCommand, SeedsAndExposureChangeThePicture) {

@@ -210,7 +210,7 @@ TEST_F(EnvironmentMap, RoughSurfacesSeeItsLevels) {
         });
         ASSERT_TRUE(loaded.ok() && one && slope);
         RenderSetup setup = setupWith(scene, one.get());
-        setup.frame.reflections = false;
+        setup.frame.effects = 0;
         const float even = at(loaded.render(package::kStrategyUber, setup), 16, 16)[0];
         setup.frame.environment = slope.get();
         const float sloped = at(loaded.render(package::kStrategyUber, setup), 16, 16)[0];

@@ -28,7 +28,7 @@ std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries) {
     for (const Query& query : queries) {
         gpu::RayRecord ray{};
         ray.origin = {query.barycentrics[0], query.barycentrics[1], query.anisotropy};
-        ray.pixel = query.geometry;
+        ray.target = query.geometry;
         ray.direction = {query.direction[0], query.direction[1], query.direction[2]};
         ray.coneWidth = query.coneWidth;
         ray.coneSpread = static_cast<float>(query.triangle);

@@ -70,8 +70,9 @@ double largestDifference(const Pixel& a, const Pixel& b) {
 // Returns the share of the pixels found that agree.
 double expectLikeRays(const TracedFrame& hybrid, const TracedFrame& rays) {
     EXPECT_EQ(hybrid.paths.size(), rays.paths.size());
-    EXPECT_EQ(rays.counters.screenHits, 0U);
-    EXPECT_EQ(hybrid.counters.rays + hybrid.counters.screenHits, rays.counters.rays);
+    EXPECT_EQ(rays.counters.of(package::kEffectReflection).screenHits, 0U);
+    EXPECT_EQ(hybrid.counters.rays + hybrid.counters.of(package::kEffectReflection).screenHits,
+              rays.counters.rays);
     std::size_t found = 0;
     std::size_t agreeing = 0;
     for (std::size_t i = 0; i < hybrid.paths.size(); ++i) {
@@ -140,10 +141,10 @@ TEST_P(ScreenSpace, AgreesWithRays) {
         EXPECT_EQ(hybrid.paths, again.paths);
         const double agreeing = expectLikeRays(hybrid, rays);
         RecordProperty("agreeing", std::to_string(agreeing));
-        RecordProperty("found", std::to_string(hybrid.counters.screenHits));
+        RecordProperty("found", std::to_string(hybrid.counters.of(package::kEffectReflection).screenHits));
         // Silhouettes, within a pixel, are some of so small a picture; coarse steps miss more of them.
         EXPECT_GE(agreeing, GetParam() == 8 ? 0.9 : 0.95);
-        EXPECT_GT(hybrid.counters.screenHits, rays.counters.rays / 10);
+        EXPECT_GT(hybrid.counters.of(package::kEffectReflection).screenHits, rays.counters.rays / 10);
     }
 }
 
@@ -186,7 +187,7 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
         const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, setup);
         ASSERT_FALSE(frame.image.pixels.empty());
         EXPECT_GT(frame.counters.rays, 1000U);
-        EXPECT_EQ(frame.counters.screenHits, 0U) << rows << " rows";
+        EXPECT_EQ(frame.counters.of(package::kEffectReflection).screenHits, 0U) << rows << " rows";
     }
 }
 
@@ -210,11 +211,11 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     expectLikeRays(hybrid, rays);
     std::vector<gpu::RayRecord> whole(std::size_t{kSize} * kSize);
     for (const gpu::RayRecord& ray : rays.rays) {
-        whole[ray.pixel] = ray;
+        whole[ray.target] = ray;
     }
     std::size_t moved = 0;
     for (const gpu::RayRecord& ray : hybrid.rays) {
-        const gpu::RayRecord& from = whole[ray.pixel];
+        const gpu::RayRecord& from = whole[ray.target];
         const gpu::vec3 step{ray.origin.x - from.origin.x, ray.origin.y - from.origin.y,
                              ray.origin.z - from.origin.z};
         const float distance = step.x * ray.direction.x + step.y * ray.direction.y + step.z * ray.direction.z;
@@ -250,7 +251,7 @@ TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
     }
     // Edges only: colours differ by 0.8 at most.
     EXPECT_LE(sum / (kSize * kSize), 5e-3);
-    EXPECT_GT(hybrid.counters.screenHits, 100U);
+    EXPECT_GT(hybrid.counters.of(package::kEffectReflection).screenHits, 100U);
 }
 
 TEST(ScreenSpaceSamples, NoThicknessMeansRays) {
@@ -264,7 +265,7 @@ TEST(ScreenSpaceSamples, NoThicknessMeansRays) {
     const TracedFrame rays = traceFrame(loaded, package::kStrategyUber, setup);
     ASSERT_FALSE(hybrid.image.pixels.empty());
     expectLikeRays(hybrid, rays);
-    EXPECT_LT(hybrid.counters.screenHits, rays.counters.rays / 50);
+    EXPECT_LT(hybrid.counters.of(package::kEffectReflection).screenHits, rays.counters.rays / 50);
 }
 
 }  // namespace

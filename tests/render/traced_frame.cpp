@@ -75,14 +75,15 @@ void expectOnePathEach(const TracedFrame& frame, const RenderSetup& setup) {
         return static_cast<std::uint32_t>(std::ranges::count(frame.paths, path));
     };
     const FrameCounters& counters = frame.counters;
-    const std::uint32_t skipped = counters.skippedRough + counters.skippedUnlit + counters.skippedBlack;
+    const EffectCounters reflection = counters.of(package::kEffectReflection);
+    const std::uint32_t skipped = reflection.skippedRough + reflection.skippedUnlit + reflection.skippedBlack;
     EXPECT_EQ(frame.paths.size(), std::size_t{setup.width} * setup.height);
-    EXPECT_EQ(counters.rays + counters.screenHits + skipped + counters.skippedSky,
+    EXPECT_EQ(counters.rays + reflection.screenHits + skipped + reflection.skippedSky,
               setup.width * setup.height);
-    EXPECT_EQ(count(PixelPath::Screen), counters.screenHits);
+    EXPECT_EQ(count(PixelPath::Screen), reflection.screenHits);
     EXPECT_EQ(count(PixelPath::Hit) + count(PixelPath::Miss), counters.rays);
     EXPECT_EQ(count(PixelPath::NoRay), skipped);
-    EXPECT_EQ(count(PixelPath::NoSurface), counters.skippedSky);
+    EXPECT_EQ(count(PixelPath::NoSurface), reflection.skippedSky);
     EXPECT_EQ(counters.nonFinite, 0U);
     EXPECT_EQ(counters.unknownShader, 0U);
 }

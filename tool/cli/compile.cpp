@@ -246,6 +246,7 @@ int compile(const Console& console, const CompileArguments& arguments) {
     }
     report(lock->warnings);
     report(lock->notes);
+    report(effectWarnings(list, settingsOf(arguments, plan->options)));
     if (console.refused()) {
         return kExitFailed;
     }

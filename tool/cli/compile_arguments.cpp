@@ -24,6 +24,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addPlanOptions(command, arguments.plan);
     addProfileInput(command, arguments.plan);
     addLockOptions(command, arguments.lock);
+    addEffectOptions(command, arguments.effects);
     addAccuracyOptions(command, arguments.accuracy);
     addFlag(command, "--environment-map", arguments.environmentMap,
             "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
@@ -107,6 +108,7 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
         throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
     }
     settleProfile(arguments.plan);
+    checkEffects(arguments.effects);
     if (arguments.depfile.targets.empty()) {
         arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
                                                                 : planFile(arguments)};
@@ -155,6 +157,7 @@ CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) 
     arguments.tracing.apply(settings);
     settings.plan = std::move(plan);
     arguments.accuracy.apply(settings);
+    arguments.effects.apply(settings);
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");

@@ -3,6 +3,7 @@
 
 #include "cli/cache_options.h"
 #include "cli/depfile.h"
+#include "cli/effect_options.h"
 #include "cli/lock_option.h"
 #include "cli/options.h"
 #include "cli/tracing_options.h"
@@ -26,6 +27,7 @@ struct CompileArguments {
     PlanArguments plan;
     LockArguments lock;
     AccuracyArguments accuracy;
+    EffectArguments effects;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
     CacheArguments cache;

@@ -36,16 +36,17 @@ double millisecondsSince(Clock::time_point start) {
 
 SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
     SceneViewData data = makeSceneView(scene);
-    const bool isUnlit = scene.lights.empty() && arguments.environment.file.empty();
-    if (arguments.sun == "on" || (arguments.sun == "auto" && isUnlit)) {
+    if (arguments.addsSun(scene)) {
         data.lights.push_back(sunLight());
     }
+    arguments.effectFrame.apply(data);
     return data;
 }
 
 // The package that is asked for, checked, or one that is made now; fills in what the report says of it.
-Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOptions& plan,
-                              std::uint32_t tracers, const Scene& scene, RenderReport& report) {
+Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
+                              const PlanOptions& plan, std::uint32_t tracers, const Scene& scene,
+                              RenderReport& report) {
     if (!arguments.package.empty()) {
         Result<Package> package = Package::load(arguments.package);
         if (!package) {
@@ -62,6 +63,9 @@ Result<Package> obtainPackage(const RenderArguments& arguments, const PlanOption
     settings.environmentMap = !arguments.environment.file.empty();
     settings.plan = plan;
     arguments.accuracy.apply(settings);
+    arguments.effects.apply(settings);
+    settings.addsLight = arguments.addsSun(scene);
+    console.report(effectWarnings(SceneList({&scene, 1}), settings));
     Result<Package> package = compileTemporary(scene, settings);
     report.compileMs = millisecondsSince(start);
     report.merge = std::string(toString(plan.merge));
@@ -108,6 +112,7 @@ RendererOptions rendererOptions(const RenderArguments& arguments, const RenderRe
     options.tracer = tracerOf(arguments);
     options.checkOrder = arguments.validate;
     arguments.frame.apply(options);
+    arguments.effectFrame.apply(options);
     return options;
 }
 
@@ -130,10 +135,13 @@ Result<LinearImage> renderFrame(Context& context, const Package& package, const 
         report.ordering = std::string(package::nameOf((*renderer)->ordering()));
     }
     report.pipelineCreationMs = (*renderer)->pipelineCreationMs();
+    report.footprint = (*renderer)->footprint();
 
     FrameOptions frame;
     frame.camera = camera;
     arguments.frame.apply(frame);
+    arguments.effectFrame.apply(frame);
+    frame.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);
     frame.environment = environment;
     arguments.environment.apply(frame);
     frame.seed = report.seed;
@@ -238,7 +246,7 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     }
     console.progress("compiling " + arguments.scene);
     const Result<Package> package =
-        obtainPackage(arguments, plan, (*context)->handles().tracers, scene, report);
+        obtainPackage(console, arguments, plan, (*context)->handles().tracers, scene, report);
     if (!package) {
         return package.error();
     }

@@ -97,6 +97,8 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         .required();
     addPictureOptions(command, *arguments);
     addEnvironmentOptions(command, arguments->environment);
+    CLI::Option& effects = addEffectOptions(command, arguments->effects);
+    addEffectFrameOptions(command, arguments->effectFrame);
     addFrameOptions(command, arguments->frame);
     const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
     std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);
@@ -104,11 +106,11 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         decided.push_back(option);
     }
     decided.insert(decided.end(), placed.begin(), placed.end());
+    decided.push_back(&effects);
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
             "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
-            "--shadows,\n--hit-record "
-            "and --profile)")
+            "--shadows,\n--hit-record, --effects and --profile)")
         .group("Shaders");
     addDeviceOptions(command, *arguments);
     command.callback([arguments, decided, then, &command] {
@@ -120,6 +122,8 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             }
         }
         checkTracingChoice(arguments->tracing);
+        checkEffects(arguments->effects);
+        checkEffectFrame(arguments->effectFrame);
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,
                             arguments->plan);

@@ -1,6 +1,7 @@
 // The command line of glint render.
 #pragma once
 
+#include "cli/effect_options.h"
 #include "cli/environment.h"
 #include "cli/options.h"
 #include "cli/tracing_options.h"
@@ -24,6 +25,8 @@ struct RenderArguments {
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;
+    EffectArguments effects;
+    EffectFrameArguments effectFrame;
     std::string package;
     std::string size = "960x540";
     std::int64_t samples = 1;
@@ -36,6 +39,12 @@ struct RenderArguments {
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
+
+    // Whether the picture has a light that the scene lacks.
+    bool addsSun(const Scene& given) const {
+        const bool isUnlit = given.lights.empty() && environment.file.empty();
+        return sun == "on" || (sun == "auto" && isUnlit);
+    }
 };
 
 package::Strategy strategyOf(const RenderArguments& arguments);

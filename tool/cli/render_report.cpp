@@ -29,6 +29,60 @@ std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
 
+// The gates of an effect, with what each kept.
+struct Gate {
+    const char* name;
+    std::uint32_t EffectCounters::*count;
+};
+constexpr Gate kGates[] = {
+    {"sky", &EffectCounters::skippedSky},       {"unlit", &EffectCounters::skippedUnlit},
+    {"rough", &EffectCounters::skippedRough},   {"black", &EffectCounters::skippedBlack},
+    {"absent", &EffectCounters::skippedAbsent}, {"faint", &EffectCounters::skippedFaint},
+    {"facing", &EffectCounters::skippedFacing}, {"range", &EffectCounters::skippedRange},
+    {"cone", &EffectCounters::skippedCone},
+};
+
+Json effectsToJson(const FrameCounters& counters) {
+    Json list = Json::array();
+    for (const EffectCounters& effect : counters.effects) {
+        Json skipped = Json::object();
+        for (const Gate& gate : kGates) {
+            skipped[gate.name] = effect.*gate.count;
+        }
+        list.push_back({{"name", package::nameOf(effect.effect)},
+                        {"rays", effect.rays},
+                        {"hits", effect.hits},
+                        {"misses", effect.misses},
+                        {"segments", effect.segments},
+                        {"screenHits", effect.screenHits},
+                        {"skipped", skipped},
+                        {"buckets", effect.bucketCounts}});
+    }
+    return list;
+}
+
+std::string effectText(const EffectCounters& effect) {
+    std::string text = fmt::format("{} rays: {} hit, {} missed", effect.rays, effect.hits, effect.misses);
+    if (effect.segments > 0) {
+        text += fmt::format("; {} on their way", effect.segments);
+    }
+    if (effect.screenHits > 0) {
+        text += fmt::format("; {} found in screen space", effect.screenHits);
+    }
+    const auto filled =
+        std::ranges::count_if(effect.bucketCounts, [](std::uint32_t count) { return count > 0; });
+    if (!effect.bucketCounts.empty()) {
+        text += fmt::format("; {} of {} buckets", filled, effect.bucketCounts.size());
+    }
+    std::string gates;
+    for (const Gate& gate : kGates) {
+        if (effect.*gate.count > 0) {
+            gates += fmt::format("{}{} {}", gates.empty() ? "" : ", ", effect.*gate.count, gate.name);
+        }
+    }
+    return gates.empty() ? text : fmt::format("{} (no ray: {})", text, gates);
+}
+
 }  // namespace
 
 void RenderReport::addHits(const FrameCounters& sample) {
@@ -90,16 +144,17 @@ Json toJson(const RenderReport& report) {
             {"passes", passes},
             {"counters",
              {{"rays", counters.rays},
-              {"skippedSky", counters.skippedSky},
-              {"skippedRough", counters.skippedRough},
-              {"skippedUnlit", counters.skippedUnlit},
-              {"skippedBlack", counters.skippedBlack},
-              {"screenHits", counters.screenHits},
               {"shadowRays", counters.shadowRays},
               {"orderErrors", counters.orderErrors},
               {"unknownShader", counters.unknownShader},
               {"nonFinite", counters.nonFinite},
-              {"buckets", counters.bucketCounts}}}};
+              {"buckets", counters.bucketCounts}}},
+            {"effects", effectsToJson(counters)},
+            {"footprint",
+             {{"pipelines", report.footprint.pipelines},
+              {"images", report.footprint.images},
+              {"buffers", report.footprint.buffers},
+              {"bytes", report.footprint.bytes}}}};
 }
 
 std::string toText(const RenderReport& report) {
@@ -126,10 +181,12 @@ std::string toText(const RenderReport& report) {
     }
     rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
     rows.push_back({"render", milliseconds(report.renderMs)});
+    for (const EffectCounters& effect : counters.effects) {
+        rows.push_back({std::string(package::nameOf(effect.effect)), effectText(effect)});
+    }
     rows.push_back(
-        {"rays", fmt::format("{} (no ray: {} sky, {} rough, {} unlit, {} black, {} in screen space)",
-                             counters.rays, counters.skippedSky, counters.skippedRough, counters.skippedUnlit,
-                             counters.skippedBlack, counters.screenHits)});
+        {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),
+                               report.footprint.images, report.footprint.buffers)});
     if (scene.narrowedTextures > 0) {
         rows.push_back(
             {"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",

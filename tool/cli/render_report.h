@@ -38,6 +38,7 @@ struct RenderReport {
     std::uint32_t cases = 0;
     std::optional<EnvironmentReport> environment;
     GpuScene::Statistics sceneStatistics;
+    Renderer::Footprint footprint;
     double pipelineCreationMs = 0.0;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample

@@ -152,11 +152,11 @@ void FrameArguments::apply(RendererOptions& options) const {
 
 void FrameArguments::apply(FrameOptions& frame) const {
     frame.mirrorRoughness = static_cast<float>(mirrorRoughness);
-    frame.maxReflectionRoughness = static_cast<float>(maxRoughness);
     if (clamp > 0.0) {
         frame.maxSampleRadiance = static_cast<float>(clamp);
     }
-    frame.reflections = !noReflections;
+    // For reports; a renderer of one's own may leave it off.
+    frame.countsLight = true;
     frame.binning = binning == "sign"         ? Binning::Sign
                     : binning == "octahedral" ? Binning::Octahedral
                                               : Binning::None;
@@ -166,12 +166,8 @@ void FrameArguments::apply(FrameOptions& frame) const {
 
 void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
     const std::string group = "Reflections";
-    addFlag(command, "--no-reflections", arguments.noReflections, "send no reflection rays").group(group);
     addReal(command, "--mirror-roughness", arguments.mirrorRoughness, 0.0, 1.0,
             "smoother surfaces reflect as mirrors\n(0 to 1, default: 0.05)")
-        .group(group);
-    addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
-            "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
         .group(group);
     addText(command, "--ssr", arguments.ssr, "off|N",
             "march N steps in screen space before a ray is sent\n(1 to 1024, default: off)")
@@ -187,7 +183,7 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
             "default: 0.02)")
         .group(group);
     addReal(command, "--clamp", arguments.clamp, 0.0, 1e9,
-            "luminance that a reflection brings at most in a sample:\nless noise, some light lost (default: "
+            "luminance that a ray brings at most in a sample:\nless noise, some light lost (default: "
             "0, no limit)")
         .group(group);
     addChoice(command, "--binning", arguments.binning, {"none", "sign", "octahedral"},

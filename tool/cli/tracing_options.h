@@ -37,9 +37,7 @@ struct FrameArguments {
     std::string ssr = "off";  // or a number of steps
     double ssrThickness = 0.02;
     double mirrorRoughness = 0.05;
-    double maxRoughness = 0.3;
     double clamp = 0.0;  // 0: no limit
-    bool noReflections = false;
     void apply(RendererOptions& options) const;
     void apply(FrameOptions& frame) const;
 };

@@ -2,6 +2,7 @@
 
 #include "emit/compile_modules.h"
 #include "emit/context.h"
+#include "emit/effects.h"
 #include "emit/header.h"
 #include "emit/manifest.h"
 #include "emit/module_files.h"
@@ -95,6 +96,7 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
         return valid.error();
     }
     Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    plan.effects = planEffects(scenes, settings);
     if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);
     }

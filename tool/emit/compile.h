@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "gltf/scene.h"
+#include "plan/effects.h"
 #include "plan/plan.h"
 #include "spirv/statistics.h"
 
@@ -36,6 +37,9 @@ struct CompileSettings {
     // acceleration structure instead of the vertex buffer.
     bool positionFetch = false;
     PlanOptions plan;
+    EffectRequest effects{false, package::kEffectShadow | package::kEffectReflection};
+    // The renderer adds a light to the scenes' own: counts for --effects auto.
+    bool addsLight = false;
     bool energyCompensation = true;  // of light that bounces between microfacets more than once
     TextureLod textureLod = TextureLod::Cones;
     int jobs = 0;            // threads; 0: one a core

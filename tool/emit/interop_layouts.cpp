@@ -74,17 +74,23 @@ constexpr MemberLayout kLightRecord[] = {
     GLINT_MEMBER(LightRecord, position),   GLINT_MEMBER(LightRecord, type),
     GLINT_MEMBER(LightRecord, direction),  GLINT_MEMBER(LightRecord, range),
     GLINT_MEMBER(LightRecord, intensity),  GLINT_MEMBER(LightRecord, spotScale),
-    GLINT_MEMBER(LightRecord, spotOffset),
+    GLINT_MEMBER(LightRecord, spotOffset), GLINT_MEMBER(LightRecord, size),
+};
+
+constexpr MemberLayout kEffectSample[] = {
+    GLINT_MEMBER(EffectSample, origin),    GLINT_MEMBER(EffectSample, outcome),
+    GLINT_MEMBER(EffectSample, direction), GLINT_MEMBER(EffectSample, coneWidth),
+    GLINT_MEMBER(EffectSample, weight),    GLINT_MEMBER(EffectSample, coneSpread),
 };
 
 constexpr MemberLayout kRayRecord[] = {
-    GLINT_MEMBER(RayRecord, origin),     GLINT_MEMBER(RayRecord, pixel),
+    GLINT_MEMBER(RayRecord, origin),     GLINT_MEMBER(RayRecord, target),
     GLINT_MEMBER(RayRecord, direction),  GLINT_MEMBER(RayRecord, coneWidth),
     GLINT_MEMBER(RayRecord, coneSpread),
 };
 
 constexpr MemberLayout kHitRecord[] = {
-    GLINT_MEMBER(HitRecord, pixel),
+    GLINT_MEMBER(HitRecord, target),
     GLINT_MEMBER(HitRecord, geometry),
     GLINT_MEMBER(HitRecord, primitive),
     GLINT_MEMBER(HitRecord, barycentricU_orDirectionX),
@@ -95,14 +101,14 @@ constexpr MemberLayout kHitRecord[] = {
 };
 
 constexpr MemberLayout kPackedHitRecord[] = {
-    GLINT_MEMBER(PackedHitRecord, pixel),
+    GLINT_MEMBER(PackedHitRecord, target),
     GLINT_MEMBER(PackedHitRecord, geometry24_coneLog8),
     GLINT_MEMBER(PackedHitRecord, primitive_orDirectionOctX),
     GLINT_MEMBER(PackedHitRecord, barycentrics2x16_orDirectionOctY),
 };
 
 constexpr MemberLayout kShadowRecord[] = {
-    GLINT_MEMBER(ShadowRecord, origin),    GLINT_MEMBER(ShadowRecord, pixel),
+    GLINT_MEMBER(ShadowRecord, origin),    GLINT_MEMBER(ShadowRecord, target),
     GLINT_MEMBER(ShadowRecord, direction), GLINT_MEMBER(ShadowRecord, distance),
     GLINT_MEMBER(ShadowRecord, light),     GLINT_MEMBER(ShadowRecord, pad),
 };
@@ -135,11 +141,19 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, pixelWidth),
     GLINT_MEMBER(FrameConstants, sampleIndex),
     GLINT_MEMBER(FrameConstants, seed),
+    GLINT_MEMBER(FrameConstants, effects),
+    GLINT_MEMBER(FrameConstants, countsLight),
     GLINT_MEMBER(FrameConstants, lightCount),
+    GLINT_MEMBER(FrameConstants, shadowSamples),
+    GLINT_MEMBER(FrameConstants, occlusionSamples),
+    GLINT_MEMBER(FrameConstants, occlusionRadius),
+    GLINT_MEMBER(FrameConstants, occlusionFalloff),
+    GLINT_MEMBER(FrameConstants, maxInterfaces),
     GLINT_MEMBER(FrameConstants, bucketCount),
     GLINT_MEMBER(FrameConstants, bucketAlignment),
     GLINT_MEMBER(FrameConstants, mirrorRoughness),
     GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
+    GLINT_MEMBER(FrameConstants, faintWeight),
     GLINT_MEMBER(FrameConstants, maxSampleRadiance),
     GLINT_MEMBER(FrameConstants, binning),
     GLINT_MEMBER(FrameConstants, screenSteps),
@@ -155,6 +169,8 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, instances),
     GLINT_MEMBER(FrameConstants, materials),
     GLINT_MEMBER(FrameConstants, lights),
+    GLINT_MEMBER(FrameConstants, samples),
+    GLINT_MEMBER(FrameConstants, radiance),
     GLINT_MEMBER(FrameConstants, rays),
     GLINT_MEMBER(FrameConstants, hits),
     GLINT_MEMBER(FrameConstants, packedHits),
@@ -175,11 +191,11 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord),    GLINT_STRUCT(InstanceRecord),  GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(MaterialRecord),    GLINT_STRUCT(LightRecord),     GLINT_STRUCT(RayRecord),
-    GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),
-    GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),    GLINT_STRUCT(FrameConstants),
-    GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(MaterialRecord), GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),
+    GLINT_STRUCT(RayRecord),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
+    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),
+    GLINT_STRUCT(FrameConstants), GLINT_STRUCT(PushConstants),
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "emit/modules.h"
 
 #include "emit/context.h"
+#include "emit/effects.h"
 #include "emit/prune.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::GBufferVertex, "passes/gbuffer.vert"},
     {ModuleRole::GBufferFragment, "passes/gbuffer.frag"},
     {ModuleRole::Lighting, "passes/lighting.comp"},
-    {ModuleRole::ReflectionRays, "passes/reflection_rays.comp"},
+    {ModuleRole::EffectRays, "effect_rays.comp.mustache"},
     {ModuleRole::RayDispatch, "passes/ray_dispatch.comp"},
     {ModuleRole::UberShade, "passes/uber.comp"},
     {ModuleRole::Trace, "passes/trace.comp"},
@@ -49,6 +50,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitCase, "hit_case.rchit.mustache"},
     {ModuleRole::HitUnknown, "passes/hit_unknown.rchit"},
     {ModuleRole::HitMiss, "passes/hit_miss.rmiss"},
+    {ModuleRole::RefractionWalk, "passes/refraction_walk.comp"},
 };
 
 ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
@@ -94,6 +96,9 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
     } else if (info.repeated == package::Repeated::ByOrdering) {
         name += fmt::format("_{}", package::nameOf(static_cast<package::Ordering>(key.index)));
         std::ranges::replace(name, '-', '_');
+    } else if (info.repeated == package::Repeated::ByEffect) {
+        // "effect_rays" gives reflection_rays.
+        name.replace(0, name.find('_'), package::kEffects[key.index].file);
     }
     if (extension == kComputeSuffix && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
         extension = ".rgen";
@@ -166,6 +171,7 @@ package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings)
     return {settings.strategies,
             settings.tracers,
             settings.shadows,
+            plan.effects.effects,
             settings.plan.keys.alpha == AlphaPolicy::Tested,
             static_cast<std::uint32_t>(plan.cases.size()),
             retiredIds(plan)};
@@ -180,6 +186,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
         const bool ofCase = package::findRole(key.role)->repeated == package::Repeated::ByCase;
         if (ofCase) {
             addCase(context, scenes, plan.cases[key.index]);
+        } else if (key.role == ModuleRole::EffectRays) {
+            addEffect(context, plan.effects.effects, package::kEffects[key.index].effect);
         }
         const auto* const source = std::ranges::find(kSources, key.role, &RoleSource::role);
         Result<ModuleSource> module =

@@ -2,6 +2,7 @@
 
 #include "emit/builtin.h"
 #include "emit/context.h"
+#include "emit/effects.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@ namespace glint {
 namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
+// Files of generated/ that are templates.
+constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, FeatureMask always, FeatureMask sometimes) {
     const auto define = [&](std::string_view when, FeatureMask mask) {
@@ -53,6 +56,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
+    text += effectDefines(plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
     return text;
@@ -89,12 +93,15 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     }
     sources.add("generated/features.glsl", featureDefines());
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
-    Result<std::string> cases =
-        renderTemplate(sources, "cases.glsl.mustache", makeContext(scenes, plan, settings.plan));
-    if (!cases) {
-        return cases.error();
+    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
+    addEffects(context, plan.effects.effects);
+    for (const std::string_view name : kGenerated) {
+        Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
+        if (!text) {
+            return text.error();
+        }
+        sources.add(fmt::format("generated/{}", name), std::move(*text));
     }
-    sources.add("generated/cases.glsl", std::move(*cases));
     return sources;
 }
 

@@ -220,6 +220,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
+    header.effects = plan.effects.effects;
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
     header.interopHash = static_cast<std::uint32_t>(interopHash());
     return writer.finish(header);

@@ -1,6 +1,7 @@
 // Keys and cases: which permutations a scene has, and which share code. Pure functions.
 #pragma once
 
+#include "plan/effects.h"
 #include "plan/features.h"
 #include "plan/lock_ids.h"
 #include "plan/merge.h"
@@ -75,6 +76,7 @@ struct Plan {
     FeatureMask primaryAlways = 0;
     FeatureMask primarySometimes = 0;
     double keysPossible = 0.0;  // 2^n for n features that occur in keys
+    EffectPlan effects;         // filled in by the compiler
 };
 
 // The canonical key of one primitive. `dropped`, if not null, receives (feature name, reason) pairs.

@@ -7,12 +7,14 @@
 // scripts.
 #pragma once
 
+#include <glint/effects.h>
+
 #include <cstdint>
 
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -74,7 +76,7 @@ struct PackageHeader {
     HitRecordFormat hitRecord;
     std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
-    std::uint32_t pad;
+    std::uint32_t effects;         // Effect bits
 };
 
 enum class SectionKind : std::uint32_t {
@@ -105,7 +107,7 @@ enum class ModuleRole : std::uint32_t {
     GBufferVertex = 1,
     GBufferFragment = 2,
     Lighting = 3,
-    ReflectionRays = 4,
+    EffectRays = 4,  // one entry an effect that sends rays
     RayDispatch = 5,
     UberShade = 6,
     Trace = 7,
@@ -126,12 +128,13 @@ enum class ModuleRole : std::uint32_t {
     HitCase = 22,     // closest hit, one entry a case
     HitUnknown = 23,  // closest hit of a geometry whose shader ID no case has
     HitMiss = 24,
+    RefractionWalk = 25,
 };
 
 struct ModuleEntry {
     ModuleRole role;
-    std::uint32_t
-        index;  // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering; 0 otherwise
+    std::uint32_t index;  // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
+                          // EffectRays: effectNumber(); 0 otherwise
     std::uint32_t tracer;  // Tracer that it traces with; 0: it traces nothing
     std::uint32_t pad;
     StringRef file;  // relative to the package's folder; several entries may name one file

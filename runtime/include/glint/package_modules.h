@@ -16,6 +16,7 @@ struct PackageShape {
     std::uint32_t strategies = kStrategyUber | kStrategyVisibility;  // Strategy bits
     std::uint32_t tracers = kTracerRayQuery;                         // Tracer bits
     ShadowPlacement shadows = ShadowPlacement::Inline;
+    std::uint32_t effects = kEffectShadow | kEffectReflection;  // Effect bits
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
     std::vector<std::uint32_t> retired{};  // shader IDs below caseCount that have no modules, ascending
@@ -43,15 +44,25 @@ enum class ShaderKind : std::uint8_t {
     Miss,
 };
 
-enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering };
+enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect };
+
+// Which effects a role is for.
+enum class Purpose : std::uint8_t {
+    Picture,     // every package
+    Hits,        // packages with an effect that sends rays: what rays hit is shaded
+    Shadows,     // of those, with deferred shadow rays
+    Refraction,  // with refraction
+    Tracing,     // wherever a ray tracing pipeline traces
+};
 
 struct RoleInfo {
     ModuleRole role;
     std::uint32_t strategies;  // Strategy bits
     std::string_view name;     // stable, as in the manifest
     ShaderKind kind;
+    Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
-    bool shades = false;  // hits: traces only where shadows are inline
+    bool shades = false;  // hits: traces only where there are shadows, and inline
 };
 
 // Names as on the command line and in the manifest; "unknown" for what is not one value.
@@ -103,30 +114,38 @@ inline constexpr std::uint32_t kOrderedStrategies = kStrategyVisibility | kStrat
 
 // By role.
 inline constexpr RoleInfo kRoles[] = {
-    {ModuleRole::GBufferVertex, kAllStrategies, "GBufferVertex", ShaderKind::Vertex},
-    {ModuleRole::GBufferFragment, kAllStrategies, "GBufferFragment", ShaderKind::Fragment},
-    {ModuleRole::Lighting, kAllStrategies, "Lighting", ShaderKind::Tracing},
-    {ModuleRole::ReflectionRays, kAllStrategies, "ReflectionRays", ShaderKind::Compute},
+    {ModuleRole::GBufferVertex, kAllStrategies, "GBufferVertex", ShaderKind::Vertex, Purpose::Picture},
+    {ModuleRole::GBufferFragment, kAllStrategies, "GBufferFragment", ShaderKind::Fragment, Purpose::Picture},
+    {ModuleRole::Lighting, kAllStrategies, "Lighting", ShaderKind::Tracing, Purpose::Picture},
+    {ModuleRole::EffectRays, kAllStrategies, "EffectRays", ShaderKind::Compute, Purpose::Hits,
+     Repeated::ByEffect},
     {ModuleRole::RayDispatch, kAllStrategies, "RayDispatch", ShaderKind::Compute},
     {ModuleRole::UberShade, kStrategyUber, "UberShade", ShaderKind::Tracing},
     {ModuleRole::Trace, kOrderedStrategies, "Trace", ShaderKind::Tracing},
-    {ModuleRole::BucketCount, kOrderedStrategies, "BucketCount", ShaderKind::Compute, Repeated::ByOrdering},
+    {ModuleRole::BucketCount, kOrderedStrategies, "BucketCount", ShaderKind::Compute, Purpose::Hits,
+     Repeated::ByOrdering},
     {ModuleRole::BucketOffset, kOrderedStrategies, "BucketOffset", ShaderKind::Compute},
-    {ModuleRole::BucketCopy, kOrderedStrategies, "BucketCopy", ShaderKind::Compute, Repeated::ByOrdering},
+    {ModuleRole::BucketCopy, kOrderedStrategies, "BucketCopy", ShaderKind::Compute, Purpose::Hits,
+     Repeated::ByOrdering},
     {ModuleRole::ShadeMiss, kStrategyVisibility, "ShadeMiss", ShaderKind::Compute},
-    {ModuleRole::ShadeCase, kStrategyVisibility, "ShadeCase", ShaderKind::Tracing, Repeated::ByCase, true},
-    {ModuleRole::Compose, kAllStrategies, "Compose", ShaderKind::Compute},
-    {ModuleRole::SortedShade, kStrategySortedUber, "SortedShade", ShaderKind::Tracing, Repeated::Once, true},
-    {ModuleRole::ShadowDispatch, kAllStrategies, "ShadowDispatch", ShaderKind::Compute},
-    {ModuleRole::ShadowTrace, kAllStrategies, "ShadowTrace", ShaderKind::Tracing},
+    {ModuleRole::ShadeCase, kStrategyVisibility, "ShadeCase", ShaderKind::Tracing, Purpose::Hits,
+     Repeated::ByCase, true},
+    {ModuleRole::Compose, kAllStrategies, "Compose", ShaderKind::Compute, Purpose::Picture},
+    {ModuleRole::SortedShade, kStrategySortedUber, "SortedShade", ShaderKind::Tracing, Purpose::Hits,
+     Repeated::Once, true},
+    {ModuleRole::ShadowDispatch, kAllStrategies, "ShadowDispatch", ShaderKind::Compute, Purpose::Shadows},
+    {ModuleRole::ShadowTrace, kAllStrategies, "ShadowTrace", ShaderKind::Tracing, Purpose::Shadows},
     {ModuleRole::OrderCheck, kOrderedStrategies, "OrderCheck", ShaderKind::Compute},
-    {ModuleRole::TraceClosestHit, kAllStrategies, "TraceClosestHit", ShaderKind::ClosestHit},
-    {ModuleRole::TraceAnyHit, kAllStrategies, "TraceAnyHit", ShaderKind::AnyHit},
-    {ModuleRole::TraceMiss, kAllStrategies, "TraceMiss", ShaderKind::Miss},
+    {ModuleRole::TraceClosestHit, kAllStrategies, "TraceClosestHit", ShaderKind::ClosestHit,
+     Purpose::Tracing},
+    {ModuleRole::TraceAnyHit, kAllStrategies, "TraceAnyHit", ShaderKind::AnyHit, Purpose::Tracing},
+    {ModuleRole::TraceMiss, kAllStrategies, "TraceMiss", ShaderKind::Miss, Purpose::Tracing},
     {ModuleRole::HitTrace, kStrategyHitShaders, "HitTrace", ShaderKind::RayGeneration},
-    {ModuleRole::HitCase, kStrategyHitShaders, "HitCase", ShaderKind::ClosestHit, Repeated::ByCase},
+    {ModuleRole::HitCase, kStrategyHitShaders, "HitCase", ShaderKind::ClosestHit, Purpose::Hits,
+     Repeated::ByCase},
     {ModuleRole::HitUnknown, kStrategyHitShaders, "HitUnknown", ShaderKind::ClosestHit},
     {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
+    {ModuleRole::RefractionWalk, kAllStrategies, "RefractionWalk", ShaderKind::Tracing, Purpose::Refraction},
 };
 
 // Null for a number that is no role.
@@ -151,14 +170,43 @@ constexpr std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracer
     return (others ? tracers : 0U) | (hitShaders ? std::uint32_t{kTracerRayPipeline} : 0U);
 }
 
+// Whether anything traces that is not the strategy's own.
+constexpr bool tracesPrimary(std::uint32_t effects) {
+    return (effects & (kEffectShadow | kEffectAmbientOcclusion)) != 0;
+}
+
+// Whether the package's effects call for modules of a purpose.
+constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
+    const bool hits = rayEffects(shape.effects) != 0;
+    switch (purpose) {
+        case Purpose::Picture:
+            return true;
+        case Purpose::Hits:
+            return hits;
+        case Purpose::Shadows:
+            return hits && (shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Deferred;
+        case Purpose::Refraction:
+            return (shape.effects & kEffectRefraction) != 0;
+        case Purpose::Tracing:
+            return hits || tracesPrimary(shape.effects);
+    }
+    return false;
+}
+
+// Whether a module of a kind that may trace does.
+constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
+    if (info.role == ModuleRole::Lighting) {
+        return tracesPrimary(shape.effects);
+    }
+    return !info.shades || ((shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Inline);
+}
+
 // Tracer values of the modules of a role: several, one, or {0} where it traces nothing. Empty: it is not
 // needed.
 inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
     const std::uint32_t strategies = info.strategies & shape.strategies;
-    const bool deferred = shape.shadows == ShadowPlacement::Deferred;
-    const bool ofShadows = info.role == ModuleRole::ShadowDispatch || info.role == ModuleRole::ShadowTrace;
     const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested;
-    if (strategies == 0 || (ofShadows && !deferred) || untested) {
+    if (strategies == 0 || !hasPurpose(info.purpose, shape) || untested) {
         return {};
     }
     const std::uint32_t tracers = tracersOf(strategies, shape.tracers);
@@ -169,7 +217,7 @@ inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const Pack
         case ShaderKind::Compute:
             return {0};
         case ShaderKind::Tracing:
-            if (info.shades && deferred) {
+            if (!traces(info, shape)) {
                 return {0};
             }
             break;
@@ -185,19 +233,45 @@ inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const Pack
     return result;
 }
 
+// Numbers that the modules of a role have, ascending.
+inline std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const PackageShape& shape) {
+    std::vector<std::uint32_t> indices;
+    switch (info.repeated) {
+        case Repeated::Once:
+            indices.push_back(0);
+            break;
+        case Repeated::ByCase:
+            for (std::uint32_t index = 0; index < shape.caseCount; ++index) {
+                if (!std::ranges::binary_search(shape.retired, index)) {
+                    indices.push_back(index);
+                }
+            }
+            break;
+        case Repeated::ByOrdering:
+            for (std::uint32_t index = 0; index < static_cast<std::uint32_t>(Ordering::Count); ++index) {
+                indices.push_back(index);
+            }
+            break;
+        case Repeated::ByEffect:
+            for (const EffectInfo& effect : kEffects) {
+                if ((rayEffects(shape.effects) & effect.effect) != 0) {
+                    indices.push_back(effectNumber(effect.effect));
+                }
+            }
+            break;
+    }
+    return indices;
+}
+
 // Every module of a package, in order of role, index, tracer.
 inline std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
     std::vector<ModuleKey> keys;
     for (const RoleInfo& info : kRoles) {
-        const std::uint32_t count = info.repeated == Repeated::ByCase ? shape.caseCount
-                                    : info.repeated == Repeated::ByOrdering
-                                        ? static_cast<std::uint32_t>(Ordering::Count)
-                                        : 1U;
         const std::vector<std::uint32_t> tracers = moduleTracers(info, shape);
-        for (std::uint32_t index = 0; index < count; ++index) {
-            if (info.repeated == Repeated::ByCase && std::ranges::binary_search(shape.retired, index)) {
-                continue;
-            }
+        if (tracers.empty()) {
+            continue;
+        }
+        for (const std::uint32_t index : moduleIndices(info, shape)) {
             for (const std::uint32_t tracer : tracers) {
                 keys.push_back({info.role, index, tracer});
             }

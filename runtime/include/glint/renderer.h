@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glint/context.h>
+#include <glint/effects.h>
 #include <glint/package.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
@@ -64,6 +65,9 @@ struct RendererOptions {
     std::optional<package::Ordering> ordering{};
     // Checks on the device that each hit is in its bucket, once: FrameCounters::orderErrors. Slow.
     bool checkOrder = false;
+    // Rays of all effects join one list, and their hits are ordered and shaded together: fewer, larger
+    // dispatches, and more memory.
+    bool batchEffects = false;
 };
 
 // The ordering that a renderer uses where none is asked for.
@@ -93,14 +97,29 @@ struct FrameOptions {
     float mirrorRoughness = 0.05F;
     // Surfaces with a greater roughness send no reflection ray.
     float maxReflectionRoughness = 0.3F;
-    // Luminance that a reflection brings at most in one sample; infinite: no limit, which is exact.
+    // Rays an effect and sample with a lesser luminance of their weight are not sent: their light is lost. 0:
+    // none.
+    float faintWeight = 0.0F;
+    // Rays a sample to each light that has a size, from primary surfaces.
+    std::uint32_t shadowSamples = 1;
+    // Ambient occlusion: rays a sample; how far they reach, metres, infinite for no limit; and whether an
+    // occluder counts less the farther it is, linearly to 0 at the radius, which then has to be finite.
+    std::uint32_t occlusionSamples = 4;
+    float occlusionRadius = std::numeric_limits<float>::infinity();
+    bool occlusionFalloff = false;
+    // Surfaces that a refracted ray meets at most.
+    std::uint32_t maxInterfaces = 8;
+    // Counts rays of lights and of ambient occlusion, too; costs time.
+    bool countsLight = false;
+    // Luminance that a ray of an effect brings at most in one sample; infinite: no limit, which is exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
     Binning binning = Binning::None;
     // Steps of the march in screen space that comes before a ray; 0: none.
     std::uint32_t screenSteps = 0;
     // How far behind its depth a surface is taken to reach in that march, as a share of its distance.
     float screenThickness = 0.02F;
-    bool reflections = true;
+    // Effect bits: of the package's effects with rays, and of ambient occlusion, those that are on.
+    std::uint32_t effects = package::kAllEffects;
     std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
     std::uint32_t seed = 0;
 };
@@ -110,24 +129,46 @@ struct PassTiming {
     double milliseconds = 0.0;
 };
 
-struct FrameCounters {
-    std::uint32_t rays = 0;
+// Of one effect in one sample.
+struct EffectCounters {
+    package::Effect effect{};
+    std::uint32_t rays = 0;  // traced to their end: of the list, or to lights and occluders
+    std::uint32_t hits = 0;
+    std::uint32_t misses = 0;      // also: nothing in the way of a light
+    std::uint32_t segments = 0;    // refraction: rays traced from one interface to the next
+    std::uint32_t screenHits = 0;  // found in screen space, without a ray
+    // Pixels, or lights of pixels, that sent no ray, by the gate that kept them.
     std::uint32_t skippedSky = 0;
-    std::uint32_t skippedRough = 0;
     std::uint32_t skippedUnlit = 0;
-    std::uint32_t skippedBlack = 0;  // the sample reflects no light
-    std::uint32_t screenHits = 0;    // reflections found in screen space
-    std::uint32_t shadowRays = 0;    // deferred ones
-    std::uint32_t orderErrors = 0;   // with RendererOptions::checkOrder
-    std::uint32_t unknownShader = 0;
-    std::uint32_t nonFinite = 0;  // samples since sample 0 that were no number: they count as black
-    std::vector<std::uint32_t> bucketCounts;  // where hits are ordered: misses, then hits by shader ID
+    std::uint32_t skippedRough = 0;
+    std::uint32_t skippedBlack = 0;   // the sample would bring no light
+    std::uint32_t skippedAbsent = 0;  // the material has no such lobe
+    std::uint32_t skippedFaint = 0;   // FrameOptions::faintWeight
+    std::uint32_t skippedFacing = 0;  // shadow: the surface turns from the light
+    std::uint32_t skippedRange = 0;
+    std::uint32_t skippedCone = 0;
+    // Where hits are ordered, and effects are not batched: misses, then hits by shader ID.
+    std::vector<std::uint32_t> bucketCounts;
 };
 
-// How a pixel came to its reflection.
+struct FrameCounters {
+    std::vector<EffectCounters> effects;  // those of the package, in order of their bits
+    std::uint32_t rays = 0;               // of all effects
+    std::uint32_t shadowRays = 0;         // of hits, deferred ones
+    std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
+    std::uint32_t unknownShader = 0;
+    std::uint32_t nonFinite = 0;  // samples since sample 0 that were no number: they count as black
+    // Where hits are ordered, of all effects: misses, then hits by shader ID.
+    std::vector<std::uint32_t> bucketCounts;
+
+    // Zeros for an effect that the package lacks.
+    EffectCounters of(package::Effect effect) const;
+};
+
+// How a pixel came to what an effect brings it.
 enum class PixelPath : std::uint8_t {
     NoSurface,
-    NoRay,   // rough, unlit, or its sample reflects no light
+    NoRay,   // rough, unlit, or its sample would bring no light
     Screen,  // found in screen space
     Hit,     // by a ray
     Miss,    // by a ray that left the scene
@@ -170,12 +211,23 @@ public:
     // Of the last recording that has completed on the device; the caller has waited for it.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
-    // Of each pixel, row by row from the top. Waits for the device.
-    Result<std::vector<PixelPath>> readCoverage();
+    // Of each pixel and an effect that sends rays, row by row from the top. Waits for the device. Error
+    // "effect-missing" where the package lacks it.
+    Result<std::vector<PixelPath>> readCoverage(package::Effect effect = package::kEffectReflection);
 
     // What it runs, where RendererOptions left the choice.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
+    // Effect bits: those of the package.
+    std::uint32_t effects() const;
+    // Pipelines, images and buffers that there are, for tests and reports.
+    struct Footprint {
+        std::uint32_t pipelines = 0;
+        std::uint32_t images = 0;
+        std::uint32_t buffers = 0;
+        std::uint64_t bytes = 0;  // of images and buffers
+    };
+    Footprint footprint() const;
 
     double pipelineCreationMs() const;
 

@@ -52,6 +52,9 @@ struct LightView {
     float range = 0.0F;                        // metres; 0 means unlimited
     float innerConeAngle = 0.0F;               // radians
     float outerConeAngle = 0.7853982F;
+    // Of soft shadows: the radius of a point or spot light, metres; half the angular diameter of a
+    // directional one, radians, below a quarter turn. 0: hard.
+    float size = 0.0F;
 };
 
 struct SceneView {

@@ -21,7 +21,7 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[ray.pixel];
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[ray.target];
     Hit hit = fetchHit(geometry, uint(ray.coneSpread), ray.origin.xy, ray.direction, ray.coneWidth, index,
                        GLINT_PRIMARY_FEATURES(geometry));
     uint base = index * kWords;

@@ -54,7 +54,7 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    HitRecord record = traceRay(ray, index);
+    HitRecord record = traceRay(ray, index, gl_RayFlagsCullBackFacingTrianglesEXT);
     if (record.geometry == kMissGeometry) {
         return;
     }

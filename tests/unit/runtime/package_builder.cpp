@@ -25,7 +25,7 @@ constexpr NamedRole kRoles[] = {
     {ModuleRole::GBufferVertex, "gbuffer.vert"},
     {ModuleRole::GBufferFragment, "gbuffer.frag"},
     {ModuleRole::Lighting, "lighting.comp"},
-    {ModuleRole::ReflectionRays, "reflection_rays.comp"},
+    {ModuleRole::EffectRays, "effect_rays.comp"},
     {ModuleRole::RayDispatch, "ray_dispatch.comp"},
     {ModuleRole::UberShade, "uber.comp"},
     {ModuleRole::Trace, "trace.comp"},
@@ -47,7 +47,8 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     spec.interopHash = interopHash();
     spec.caseCount = 1;
     for (const package::ModuleKey& key :
-         package::requiredModules({spec.strategies, spec.tracers, {}, false, 1, {}})) {
+         package::requiredModules(
+             {spec.strategies, spec.tracers, {}, package::kEffectReflection, false, 1, {}})) {
         const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
         spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
     }
@@ -172,6 +173,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.strategies = spec.strategies;
     header.tracers = spec.tracers;
     header.alphaTested = spec.alphaTested;
+    header.effects = package::kEffectReflection;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;
     return writer.finish(header);

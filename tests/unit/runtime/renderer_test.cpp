@@ -203,7 +203,7 @@ TEST_P(RendererTest, WithoutReflectionsThereAreNone) {
     scene.instances = {{0, test::kIdentity}};
     FrameOptions frame = makeFrame(4.0F);
     render(package, scene, frame);
-    frame.reflections = false;
+    frame.effects = 0;
     const Result<LinearImage> image = renderer_->render(frame);
     ASSERT_TRUE(image);
     EXPECT_EQ(countPixels(*image, 0, 1.0F), 400U);

@@ -2,9 +2,5 @@ layout(set = kSetScene, binding = kBindingTextures) uniform texture2D sceneTextu
 layout(set = kSetScene, binding = kBindingSamplers) uniform sampler sceneSamplers[];
 layout(set = kSetFrame, binding = kBindingSurface, rg32ui) uniform readonly uimage2D surfaceImage;
 layout(set = kSetFrame, binding = kBindingRadiance, rgba32f) uniform image2D radianceImage;
-layout(set = kSetFrame, binding = kBindingReflection, rgba32f) uniform image2D reflectionImage;
 layout(set = kSetFrame, binding = kBindingAccumulated, rgba32f) uniform image2D accumulatedImage;
 
-ivec2 pixelOf(uint pixel) {
-    return ivec2(pixel % FRAME.width, pixel / FRAME.width);
-}

@@ -10,6 +10,6 @@ void main() {
     BucketRecord bucket = FRAME.buckets.data[pushed.bucket];
     if (gl_GlobalInvocationID.x < bucket.count) {
         HitRecord hit = FRAME.hits.data[FRAME.orderedHits.data[bucket.begin + gl_GlobalInvocationID.x]];
-        imageStore(reflectionImage, pixelOf(hit.pixel), describe(hit));
+        FRAME.radiance.data[hit.target] = describe(hit);
     }
 }

@@ -9,7 +9,7 @@ HitRecord traceRay(RayRecord ray, uint index) {
                           gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu,
                           ray.origin, 0.0, ray.direction, 1e18);
     rayQueryProceedEXT(query);
-    HitRecord hit = HitRecord(ray.pixel, kMissGeometry, 0u, 0.0, 0.0, 0.0, 0.0, index);
+    HitRecord hit = HitRecord(ray.target, kMissGeometry, 0u, 0.0, 0.0, 0.0, 0.0, index);
     if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT) {
         hit.geometry = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
                             rayQueryGetIntersectionGeometryIndexEXT(query, true));

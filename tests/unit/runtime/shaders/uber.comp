@@ -10,6 +10,6 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < FRAME.rayDispatch.data[0].elementCount) {
         RayRecord ray = FRAME.rays.data[index];
-        imageStore(reflectionImage, pixelOf(ray.pixel), describe(traceRay(ray, index)));
+        FRAME.radiance.data[ray.target] = describe(traceRay(ray, index));
     }
 }

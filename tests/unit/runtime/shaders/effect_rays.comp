@@ -14,7 +14,7 @@ void main() {
     vec2 p = vec2(2.0 * unit.x - 1.0, 1.0 - 2.0 * unit.y);
     vec3 across = p.x * FRAME.cameraRight + p.y * FRAME.cameraUp;
     RayRecord ray;
-    ray.pixel = pixel.x + pixel.y * FRAME.width;
+    ray.target = pixel.x + pixel.y * FRAME.width;
     ray.origin = FRAME.cameraPosition + (FRAME.orthographic != 0u ? across : vec3(0.0));
     ray.direction = FRAME.orthographic != 0u ? FRAME.cameraForward : normalize(FRAME.cameraForward + across);
     ray.coneWidth = 0.0;

@@ -1,0 +1,54 @@
+// Records one pass after the other, each with its label and its timer.
+#pragma once
+
+#include "pass_dependencies.h"
+#include "renderer_state.h"
+
+#include <cstdint>
+#include <string>
+
+namespace glint {
+
+class PassRecorder {
+public:
+    PassRecorder(Renderer::State& state, VkCommandBuffer commands);
+
+    void barrier(const MemoryDependency& dependency);
+    // Descriptor sets of every kind of pass but the raster pass.
+    void bindSets();
+    // Into the G-buffer's visibility image.
+    void drawScene();
+    // Over the image.
+    void dispatchPixels(const std::string& name, const PassPipeline& pass);
+    // One workgroup, with a barrier behind it.
+    void dispatchOnce(const std::string& name, const PassPipeline& pass);
+    // Over a list whose length the device knows: entry `index` of the arguments.
+    void dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,
+                      std::uint32_t index);
+    // Which bucket the next dispatch shades.
+    void setBucket(std::uint32_t bucket);
+
+    const PassDependencies& dependencies() const {
+        return dependencies_;
+    }
+    VkCommandBuffer commands() const {
+        return commands_;
+    }
+
+private:
+    void beginPass(const std::string& name);
+    void endPass();
+    void bindSets(VkPipelineBindPoint point);
+    void bindPass(const PassPipeline& pass);
+    void push();
+    void beginRendering();
+
+    Renderer::State& state_;
+    const DeviceTable& vk_;
+    VkCommandBuffer commands_;
+    VkShaderStageFlags pushStages_;
+    PassDependencies dependencies_;
+    gpu::PushConstants pushed_{};
+};
+
+}  // namespace glint

@@ -1,0 +1,42 @@
+// The effect indirect diffuse: light that reaches the diffuse lobes after one bounce, or from the sky, in the place of
+// the sky's light without occlusion.
+#include "bsdf/sample.glsl"
+#include "effects/sample.glsl"
+#include "effects/sky_shares.glsl"
+#include "hit/sequence.glsl"
+#include "hit/surface.glsl"
+
+// Pairs of dimensions of the sequence.
+const uint kPairIndirect = 3u;
+const uint kPairIndirectSide = 4u;
+
+// Growth of a ray's cone by metre: rays of one pixel go everywhere, and what they find is a mean. An eighth of a
+// radian keeps the finest texture levels, which only make noise, out of it.
+const float kIndirectSpread = 0.125;
+
+// One ray by the cosine, on the side of the viewer or, through a surface that scatters light to its far side, on that:
+// with the same weights as the sky's light has (effects/ambient.glsl), so that an empty scene looks the same.
+EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
+    vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
+    vec3 front = surface.bsdf.diffuse * base;
+    vec3 back = vec3(0.0);
+    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        back = surface.bsdf.diffuseTransmitted * base;
+    }
+    sky.diffuse = 0.0;
+    float total = luminance(front) + luminance(back);
+    if (total <= 0.0) {
+        return noSample(kRayAbsent);
+    }
+    float chance = luminance(back) / total;
+    bool passes = chance > 0.0 && sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed,
+                                               kPairIndirectSide).x < chance;
+    vec3 local = sampleCosine(sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairIndirect));
+    vec3 direction = normalize(toWorld(surface, passes ? vec3(local.xy, -local.z) : local));
+    float height = dot(direction, hit.geometricNormal);
+    if (passes ? height >= 0.0 : height <= 0.0) {
+        return noSample(kRayBlack);
+    }
+    vec3 weight = passes ? back / chance : front / (1.0 - chance);
+    return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
+}

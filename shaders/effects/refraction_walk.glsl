@@ -1,0 +1,277 @@
+// The walk of a refracted ray from interface to interface.
+#include "generated/features.glsl"
+
+// What of a material an interface reads. Coats and sheen of inner surfaces are left out, and absorption counts over real
+// distances.
+const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
+                          GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME |
+                          GLINT_DISPERSION;
+
+#include "bsdf/sample.glsl"
+#include "effects/ambient.glsl"
+#include "effects/sample.glsl"
+#include "hit/count.glsl"
+#include "hit/images.glsl"
+#include "hit/material.glsl"
+#include "hit/primary.glsl"
+#include "hit/sequence.glsl"
+#include "hit/trace.glsl"
+
+// Pairs of dimensions of the sequence: two an interface.
+const uint kPairInterface = 512u;
+
+// Media around a ray, the innermost last.
+const uint kMaxMedia = 4u;
+struct Media {
+    uint count;
+    uint material[kMaxMedia];
+    vec3 ior[kMaxMedia];  // of red, green, blue
+};
+
+// Place of a material's medium above the ground, the innermost of several; 0: the ray is in none of that material.
+uint placeOf(Media media, uint material) {
+    uint place = 0u;
+    for (uint i = 0u; i < min(media.count, kMaxMedia); ++i) {
+        place = media.material[i] == material ? i + 1u : place;
+    }
+    return place;
+}
+
+void enterMedium(inout Media media, uint material, vec3 ior) {
+    if (media.count < kMaxMedia) {
+        media.material[media.count] = material;
+        media.ior[media.count] = ior;
+        media.count += 1u;
+    }
+}
+
+void leaveMedium(inout Media media, uint place) {
+    for (uint i = place; i < media.count; ++i) {
+        media.material[i - 1u] = media.material[i];
+        media.ior[i - 1u] = media.ior[i];
+    }
+    media.count -= 1u;
+}
+
+// The ray so far.
+struct Walker {
+    vec3 origin;
+    vec3 direction;
+    vec3 weight;
+    float coneWidth;
+    uint channel;  // 0, 1 or 2 once dispersion has chosen a colour; 3 before
+    Media media;
+};
+
+// Features of a surface met from either side.
+Features walkFeatures(GeometryRecord geometry) {
+    return Features(GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
+                    (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
+                    geometry.featureInputs | GLINT_DOUBLE_SIDED);
+}
+
+// Index of the surface's own medium.
+vec3 mediumIor(Hit hit, Features features) {
+    float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL(hit).ior : 1.5;
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        return dispersedIor(ior, GLINT_MATERIAL(hit).dispersion);
+    }
+    return vec3(ior);
+}
+
+float channelOf(vec3 color, uint channel) {
+    return channel == 0u ? color.x : channel == 2u ? color.z : color.y;
+}
+
+// What an interface does to the ray.
+const uint kPasses = 0u;
+const uint kReflects = 1u;
+const uint kStops = 2u;     // the surface is shaded as any other
+const uint kAbsorbs = 3u;
+
+// Passes, reflects or stops a ray at a surface, by chance. `first`: the primary surface, whose other light is shaded
+// already, so that the ray passes in any case.
+uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
+    Bsdf b = surface.bsdf;
+    vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth);
+    vec2 choice = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth + 1u);
+    // What is not clear is shaded where it is met, in proportion.
+    float clear = luminance(b.transmitted);
+    float rest = luminance(b.diffuse) + luminance(b.diffuseTransmitted);
+    bool pure = rest <= 0.0;
+    if (!first && !pure) {
+        float chance = clear / (clear + rest);
+        if (choice.x >= chance) {
+            walker.weight /= 1.0 - chance;
+            return kStops;
+        }
+        walker.weight /= chance;
+    }
+    bool dispersed = hasLobe(features, GLINT_DISPERSION) && b.eta.x != b.eta.z;
+    if (dispersed && walker.channel == 3u) {
+        walker.channel = min(uint(3.0 * choice.y), 2u);
+        vec3 only = vec3(walker.channel == 0u ? 1.0 : 0.0, walker.channel == 1u ? 1.0 : 0.0,
+                         walker.channel == 2u ? 1.0 : 0.0);
+        walker.weight *= 3.0 * only;
+    }
+    float eta = channelOf(b.eta, walker.channel);
+    b.eta = vec3(eta);
+    vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
+    vec2 facet2 = exactSquare(exactDot(b.view, h));
+    bool straight = !hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta);
+    if (!first && pure) {
+        float reflected = facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x;
+        float random = walker.channel == 3u || !dispersed ? choice.y : fract(3.0 * choice.y);
+        if (random < reflected) {
+            vec3 l = reflectAbout(b.view, h);
+            if (l.z <= 0.0) {
+                return kAbsorbs;
+            }
+            vec3 half1;
+            vec3 fresnel = facetFresnel(b, features, l, half1);
+            float pdf = reflected * mirroredPdf(b.view, half1, b.alpha);
+            walker.weight *= pdf > 0.0 ? fresnel * (ggxDistribution(half1, b.alpha) *
+                                                   ggxVisibility(l, b.view, b.alpha) * l.z / pdf)
+                                       : vec3(0.0);
+            walker.direction = normalize(toWorld(surface, l));
+            return kReflects;
+        }
+        walker.weight /= 1.0 - reflected;
+    }
+    vec3 l;
+    float pdf;
+    if (straight) {
+        vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
+        vec3 facet = sampleVisibleNormal(b.view, alpha, u);
+        l = reflectAbout(b.view, facet);
+        l.z = -l.z;
+        pdf = l.z < 0.0 ? mirroredPdf(b.view, normalize(b.view + vec3(l.xy, -l.z)), alpha) : 0.0;
+    } else {
+        RefractingFacet facet;
+        pdf = 0.0;
+        if (refractDirection(b.view, h, eta, l) && l.z < 0.0 && refractionHalfVector(b.view, l, eta, facet)) {
+            pdf = visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
+        }
+    }
+    if (!(pdf > 0.0)) {
+        return kAbsorbs;
+    }
+    walker.weight *= b.transmitted * (specularTransmission(b, features, l, eta) / pdf);
+    walker.direction = normalize(toWorld(surface, l));
+    return kPasses;
+}
+
+// The indices on both sides of a volume's surface, for the media that the ray is in; returns the place of the medium
+// that passing leaves, 0 where one is entered.
+uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
+    vec3 own = mediumIor(hit, features);
+    uint place = hit.frontFace ? 0u : placeOf(media, hit.material);
+    // Of the medium on the outside of the surface.
+    uint around = media.count;
+    if (place > 0u && place == media.count) {
+        around = place - 1u;
+    }
+    vec3 outside = around > 0u ? media.ior[around - 1u] : vec3(1.0);
+    b.eta = hit.frontFace ? own / outside : outside / own;
+    if (around > 0u) {
+        b.f0 = vec3(dielectricF0(b.eta.y));
+    }
+    return place;
+}
+
+// Enters the surface's medium, or leaves the one at `place`.
+void passInterface(Hit hit, Features features, uint place, inout Media media) {
+    if (hit.frontFace) {
+        enterMedium(media, hit.material, mediumIor(hit, features));
+    } else if (place > 0u) {
+        leaveMedium(media, place);
+    }
+}
+
+// Ends the walk with light, for which no ray joins the list.
+void endWith(uint target, vec3 weight, vec3 radiance) {
+    GLINT_FRAME.samples.data[target].weight = weight;
+    GLINT_FRAME.samples.data[target].outcome = kRayEnded;
+    storeRadiance(target, radiance, kPathMiss);
+}
+
+// Returns the number of rays traced.
+uint walk(uvec2 pixel, uint target) {
+    uvec2 surfaceId = imageLoad(surfaceImage, ivec2(pixel)).xy;
+    CameraRay camera = cameraRay(pixel);
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
+    Features features = walkFeatures(geometry);
+    Hit hit = primaryHit(geometry, surfaceId.y, camera, target, features);
+    Walker walker;
+    walker.origin = camera.origin;
+    walker.direction = camera.direction;
+    walker.coneWidth = GLINT_FRAME.pixelWidth;
+    walker.channel = 3u;
+    walker.media.count = 0u;
+    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see effects/refraction.glsl
+    float travelled = distance(hit.position, camera.origin);
+    uint segments = 0u;
+    bool meets = true;  // a surface that does something to the ray
+    for (uint depth = 0u;; ++depth) {
+        if (meets) {
+            Surface surface = evaluateSurface(hit, features);
+            bool volume = hasLobe(features, GLINT_VOLUME);
+            uint place = volume ? nestMedia(hit, features, walker.media, surface.bsdf) : 0u;
+            vec3 before = walker.direction;
+            uint outcome = scatter(hit, surface, features, depth == 0u, depth, walker);
+            if (outcome == kStops) {
+                walker.direction = before;
+                break;
+            }
+            if (outcome == kAbsorbs || luminance(walker.weight) <= 0.0) {
+                endWith(target, vec3(0.0), vec3(0.0));
+                return segments;
+            }
+            if (outcome == kPasses && volume) {
+                passInterface(hit, features, place, walker.media);
+            }
+        }
+        walker.origin = rayOrigin(hit, walker.direction);
+        walker.coneWidth += GLINT_FRAME.pixelSpread * travelled;
+        if (depth + 1u >= GLINT_FRAME.maxInterfaces) {
+            // The sky stands in for what further interfaces would show.
+            endWith(target, walker.weight, skyRadiance(walker.direction));
+            return segments;
+        }
+        // On to the next surface; from within a medium its back is seen, too.
+        RayRecord ray = RayRecord(walker.origin, target, walker.direction, walker.coneWidth, GLINT_FRAME.pixelSpread);
+        bool within = walker.media.count > 0u;
+        HitRecord record = traceRay(ray, 0u, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
+        segments += 1u;
+        if (record.geometry == kMissGeometry) {
+            endWith(target, walker.weight, skyRadiance(walker.direction));
+            return segments;
+        }
+        geometry = GLINT_FRAME.geometries.data[record.geometry];
+        features = walkFeatures(geometry);
+        hit = fetchHit(geometry, record.primitive,
+                       vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY), walker.direction,
+                       record.coneWidth, target, features);
+        travelled = record.distance_orDirectionZ;
+        if (within) {
+            uint medium = walker.media.material[walker.media.count - 1u];
+            walker.weight *= volumeTransmittance(GLINT_FRAME.materials.data[medium].absorption, travelled);
+        }
+        // The back of a single-sided surface is no surface, unless it is the end of a volume.
+        bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;
+        bool clear = hasLobe(features, GLINT_TRANSMISSION);
+        meets = !back || (clear && hasLobe(features, GLINT_VOLUME));
+        if (meets && !clear) {
+            break;
+        }
+    }
+    EffectSample drawn;
+    drawn.outcome = luminance(walker.weight) > 0.0 ? kRaySent : kRayBlack;
+    drawn.origin = walker.origin;
+    drawn.direction = walker.direction;
+    drawn.weight = walker.weight;
+    drawn.coneWidth = walker.coneWidth;
+    drawn.coneSpread = GLINT_FRAME.pixelSpread;
+    GLINT_FRAME.samples.data[target] = drawn;
+    return segments;
+}

@@ -1,0 +1,61 @@
+// The effect shadow: how much of a light reaches a primary surface. Hits of rays send one ray each (hit/shade.glsl).
+#include "hit/count.glsl"
+#include "hit/hit.glsl"
+#include "hit/punctual.glsl"
+#include "hit/sequence.glsl"
+#include "hit/trace.glsl"
+
+// Pair of dimensions of the sequence of the first light; each further one has the next.
+const uint kPairShadow = 64u;
+
+// Of the rays of one surface.
+struct ShadowCounts {
+    uint rays;
+    uint misses;  // that reached the light
+    uint facing;  // lights that the surface turns away from, or does not scatter
+    uint range;
+    uint cone;
+};
+
+// What keeps a light from a surface before any ray is sent.
+void countGate(LightSample centre, bool reaches, inout ShadowCounts counts) {
+    counts.range += centre.gate == kRayRange ? 1u : 0u;
+    counts.cone += centre.gate == kRayCone ? 1u : 0u;
+    counts.facing += centre.gate == kRaySent && !reaches ? 1u : 0u;
+}
+
+void reportShadows(ShadowCounts counts) {
+    countRays(kEffectShadow, counts.rays, counts.misses);
+    if (GLINT_FRAME.countsLight != 0u) {
+        addToCounter(counterOf(kEffectShadow, kRayFacing), counts.facing);
+        addToCounter(counterOf(kEffectShadow, kRayRange), counts.range);
+        addToCounter(counterOf(kEffectShadow, kRayCone), counts.cone);
+    }
+}
+
+// Share of the solid angle of a light that is visible. A hard one is, or is not.
+float visibleShare(Hit hit, LightRecord light, LightSample centre, uint index, inout ShadowCounts counts) {
+    if (light.size <= 0.0) {
+        bool visible = isVisible(rayOrigin(hit, centre.direction), centre.direction, centre.distance);
+        counts.rays += 1u;
+        counts.misses += visible ? 1u : 0u;
+        return visible ? 1.0 : 0.0;
+    }
+    float side = dot(hit.geometricNormal, centre.direction);
+    uint seen = 0u;
+    for (uint i = 0u; i < GLINT_FRAME.shadowSamples; ++i) {
+        uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + i;
+        vec2 u = sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index);
+        LightSample point = sampleLightArea(light, centre, u);
+        // What of the light is below the surface is hidden by the surface itself.
+        if (point.distance <= 0.0) {
+            seen += 1u;
+        } else if (side * dot(hit.geometricNormal, point.direction) > 0.0) {
+            bool visible = isVisible(rayOrigin(hit, point.direction), point.direction, point.distance);
+            counts.rays += 1u;
+            counts.misses += visible ? 1u : 0u;
+            seen += visible ? 1u : 0u;
+        }
+    }
+    return float(seen) / float(GLINT_FRAME.shadowSamples);
+}

@@ -1,0 +1,18 @@
+// The surface of a pixel, from the visibility of the G-buffer.
+#include "hit/camera.glsl"
+#include "hit/hit.glsl"
+
+Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
+    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
+    vec3 corners[3];
+    for (uint i = 0u; i < 3u; ++i) {
+        uint index = geometry.indices.data[3u * primitive + i];
+        corners[i] = transformPoint(instance.objectToWorld, geometry.positions.data[index]);
+    }
+    vec2 barycentrics =
+        rayTriangleBarycentrics(ray, corners[0], corners[1] - corners[0], corners[2] - corners[0]);
+    vec3 position = corners[0] + barycentrics.x * (corners[1] - corners[0]) +
+                    barycentrics.y * (corners[2] - corners[0]);
+    float coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(position, ray.origin);
+    return fetchHit(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features);
+}

@@ -1,0 +1,25 @@
+// The samples of effects in memory: what primary surfaces send, and what comes back.
+#include "hit/bindings.glsl"
+
+uint pixelCount() {
+    return GLINT_FRAME.width * GLINT_FRAME.height;
+}
+
+// Number of a pixel's sample.
+uint sampleTarget(uint slot, uint pixel) {
+    return slot * pixelCount() + pixel;
+}
+
+EffectSample noSample(uint outcome) {
+    return EffectSample(vec3(0.0), outcome, vec3(0.0), 0.0, vec3(0.0), 0.0);
+}
+
+void storeSample(uint target, EffectSample drawn) {
+    GLINT_FRAME.samples.data[target] = drawn;
+    GLINT_FRAME.radiance.data[target] = vec4(0.0, 0.0, 0.0, float(kPathNone));
+}
+
+// path: kPath*.
+void storeRadiance(uint target, vec3 radiance, uint path) {
+    GLINT_FRAME.radiance.data[target] = vec4(radiance, float(path));
+}

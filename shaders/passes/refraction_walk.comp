@@ -1,0 +1,27 @@
+#version 460
+// Follows refracted rays from one interface to the next, until they leave the scene or meet a surface that lets nothing
+// through: that hit is left to the list, and is shaded as those of every effect.
+//
+// At an interface the ray is reflected or passes by chance, in proportion to Fresnel; in a medium it is attenuated over
+// the distance that it really goes (Beer and Lambert). Media that overlap are nested: what a ray enters last it leaves
+// first, and each surface stands between its medium and the one around.
+#define GLINT_MODULE_ALWAYS_LOBES 0u
+#define GLINT_MODULE_ALWAYS_INPUTS (GLINT_ALWAYS_INPUTS)
+#define GLINT_MODULE_ANY_LOBES ((GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES) & kWalkedLobes)
+#define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED)
+#include "effects/refraction_walk.glsl"
+
+GLINT_PIXEL_WORKGROUP
+
+void main() {
+    uvec2 pixel = GLINT_PIXEL_OF_THREAD;
+    bool inside = pixel.x < GLINT_FRAME.width && pixel.y < GLINT_FRAME.height;
+    uint segments = 0u;
+    if (inside) {
+        uint target = sampleTarget(GLINT_SLOT_REFRACTION, pixel.x + pixel.y * GLINT_FRAME.width);
+        if (GLINT_FRAME.samples.data[target].outcome == kRaySent) {
+            segments = walk(pixel, target);
+        }
+    }
+    addToCounter(counterOf(kEffectRefraction, kCountSegments), segments);
+}

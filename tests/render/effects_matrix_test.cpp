@@ -1,0 +1,179 @@
+// A package has what its scene calls for and nothing else: modules, pipelines, images, buffers, passes.
+#include "render/harness.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+// What a scene has.
+struct Properties {
+    bool light;
+    bool smooth;
+    bool glass;
+    bool lit;  // otherwise everything is unlit, whatever else it says
+};
+
+Scene sceneWith(const Properties& has) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    Material plaster;
+    plaster.metallicFactor = 0.0F;
+    plaster.unlit = !has.lit;
+    Material mirror = mirrorMaterial();
+    mirror.unlit = !has.lit;
+    Material glass = plaster;
+    glass.transmission.given = true;
+    glass.transmission.factor = 0.75F;
+    const auto place = [&](const Material& material, float x) {
+        addInstance(
+            scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -1, -1}, {1, 0, 0}, {0, 2, 0})));
+    };
+    place(plaster, -1.0F);
+    if (has.smooth) {
+        place(mirror, 0.0F);
+    }
+    if (has.glass) {
+        place(glass, -0.5F);
+    }
+    if (has.light) {
+        addDirectionalLight(scene, {0, 0, -1}, 1.0F);
+    }
+    return scene;
+}
+
+std::string describe(const Properties& has) {
+    return std::string(has.lit ? "lit" : "unlit") + (has.light ? ", light" : "") +
+           (has.smooth ? ", smooth" : "") + (has.glass ? ", glass" : "");
+}
+
+// Names of the modules without those of cases, and the number of those.
+struct Modules {
+    std::multiset<std::string> roles;
+    std::size_t cases = 0;
+};
+
+Modules modulesOf(const CompiledPackage& package) {
+    Modules modules;
+    for (const CompiledModule& module : package.modules) {
+        if (module.key.role == package::ModuleRole::ShadeCase) {
+            ++modules.cases;
+        } else {
+            modules.roles.insert(module.name);
+        }
+    }
+    return modules;
+}
+
+std::vector<std::string> passesOf(Renderer& renderer) {
+    const Result<std::vector<PassTiming>> timings = renderer.timings();
+    EXPECT_TRUE(timings);
+    std::vector<std::string> names;
+    for (const PassTiming& timing : timings ? *timings : std::vector<PassTiming>{}) {
+        // One a case, and the name of the case.
+        names.push_back(timing.name.starts_with("shade ") && timing.name != "shade miss" ? "shade"
+                                                                                         : timing.name);
+    }
+    return names;
+}
+
+class EffectsMatrix : public ::testing::TestWithParam<int> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EffectsMatrix, ::testing::Range(0, 16));
+
+TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
+    const Properties has{(GetParam() & 1) != 0, (GetParam() & 2) != 0, (GetParam() & 4) != 0,
+                         (GetParam() & 8) != 0};
+    SCOPED_TRACE(describe(has));
+    const Scene scene = sceneWith(has);
+    CompileSettings settings;
+    settings.strategies = package::kStrategyVisibility;
+    settings.effects = {true, 0};
+    settings.plan.merge = MergePolicy::None;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+
+    // By hand: what each property calls for.
+    const bool shadow = has.lit && has.light;
+    const bool reflection = has.lit && has.smooth;
+    const bool refraction = has.lit && has.glass;
+    const bool rays = reflection || refraction;
+    std::multiset<std::string> expected{"gbuffer.vert", "gbuffer.frag", "lighting.comp", "compose.comp"};
+    if (rays) {
+        expected.insert(
+            {"ray_dispatch.comp", "trace.comp", "bucket_offset.comp", "shade_miss.comp", "order_check.comp"});
+        for (const char* const ordering :
+             {"global_atomics", "wave_loop", "wave_aggregated", "wave_ballot", "local_histogram"}) {
+            expected.insert({std::string("bucket_count_") + ordering + ".comp",
+                             std::string("bucket_copy_") + ordering + ".comp"});
+        }
+    }
+    if (reflection) {
+        expected.insert("reflection_rays.comp");
+    }
+    if (refraction) {
+        expected.insert({"refraction_rays.comp", "refraction_walk.comp"});
+    }
+    const Modules modules = modulesOf(loaded.compiled());
+    EXPECT_EQ(modules.roles, expected);
+    const std::size_t keys = loaded.compiled().plan.keys.size();
+    EXPECT_EQ(modules.cases, rays ? keys : 0);
+    // Without shadows nothing but the list's own passes traces.
+    for (const CompiledModule& module : loaded.compiled().modules) {
+        const bool traces = module.statistics.rayQueries > 0;
+        const bool mayTrace =
+            module.name == "trace.comp" || module.name == "refraction_walk.comp" ||
+            (shadow && (module.name == "lighting.comp" || module.name.starts_with("shade_")));
+        EXPECT_TRUE(!traces || mayTrace) << module.name;
+    }
+
+    RendererOptions options;
+    options.strategy = package::kStrategyVisibility;
+    options.ordering = package::Ordering::GlobalAtomics;
+    options.width = 16;
+    options.height = 9;
+    const Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const Renderer::Footprint footprint = (*renderer)->footprint();
+    // G-buffer, lighting, compose; the list's: dispatch, trace, count, offset, copy, misses, cases.
+    const std::uint32_t cases =
+        static_cast<std::uint32_t>(loaded.compiled().uniqueSpirv > 0 && rays ? keys : 0);
+    std::uint32_t pipelines = 3;
+    pipelines += rays ? 6 + cases : 0;
+    pipelines += reflection ? 1 : 0;
+    pipelines += refraction ? 2 : 0;
+    EXPECT_EQ(footprint.pipelines, pipelines);
+    // Surface, radiance, mean, residual, depth; the march over the screen has positions.
+    EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
+    // Constants, counters, read-back; samples, radiance, rays, hits, order, buckets and two dispatches.
+    EXPECT_EQ(footprint.buffers, 3U + (rays ? 8U : 0U));
+
+    FrameOptions frame = defaultSetup(scene, 16, 9).frame;
+    ASSERT_TRUE((*renderer)->render(frame));
+    std::vector<std::string> passes{"gbuffer", "lighting"};
+    for (const char* const effect : {"reflection", "refraction"}) {
+        const bool walks = effect == std::string("refraction");
+        if (walks ? refraction : reflection) {
+            if (walks) {
+                passes.emplace_back("refraction walk");
+            }
+            passes.push_back(std::string(effect) + " rays");
+            passes.insert(passes.end(), {"ray dispatch", "trace", "count", "offset", "copy", "shade miss"});
+            passes.insert(passes.end(), keys, "shade");
+        }
+    }
+    passes.emplace_back("compose");
+    EXPECT_EQ(passesOf(**renderer), passes);
+    expectNoValidationMessages();
+}
+
+}  // namespace

@@ -1,0 +1,151 @@
+// Which effects a scene calls for.
+#include "plan/effects.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::package;
+
+constexpr EffectRequest kAuto{true, 0};
+constexpr SceneLights kLit{true};
+constexpr SceneLights kDark{false};
+
+Material rough() {
+    Material material;
+    material.name = "Plaster";
+    material.metallicFactor = 0.0F;
+    return material;
+}
+
+std::uint32_t effectsOf(const std::vector<Material>& materials, const SceneLights& lights = kLit,
+                        const EffectRequest& request = kAuto) {
+    std::vector<const Material*> pointers;
+    for (const Material& material : materials) {
+        pointers.push_back(&material);
+    }
+    return decideEffects(pointers, lights, request).effects;
+}
+
+std::string reasonOf(const Material& material, Effect effect, const EffectRequest& request = kAuto,
+                     const SceneLights& lights = kLit) {
+    const Material* const pointer = &material;
+    return decideEffects({&pointer, 1}, lights, request).decisions[effectNumber(effect)].reason;
+}
+
+TEST(Effects, ShadowNeedsALightAndSomethingLit) {
+    EXPECT_EQ(effectsOf({rough()}), kEffectShadow);
+    EXPECT_EQ(effectsOf({rough()}, kDark), 0U);
+    Material unlit = rough();
+    unlit.unlit = true;
+    EXPECT_EQ(effectsOf({unlit}), 0U);
+    EXPECT_EQ(effectsOf({unlit, rough()}), kEffectShadow);
+    EXPECT_EQ(effectsOf({}), 0U);
+    EXPECT_EQ(reasonOf(rough(), kEffectShadow, kAuto, kDark), "no light shines");
+    EXPECT_EQ(reasonOf(unlit, kEffectShadow), "every material is unlit");
+}
+
+TEST(Effects, ReflectionNeedsSomethingSmooth) {
+    Material material = rough();
+    material.roughnessFactor = 0.31F;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    EXPECT_NE(effectsOf({material}, kLit, {true, 0, 0.31F}) & kEffectReflection, 0U);
+    material.roughnessFactor = 0.3F;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+    EXPECT_EQ(reasonOf(material, kEffectReflection),
+              "material \"Plaster\" has the roughness 0.3, at most 0.3");
+    // Values decide: this one is smooth, and reflects nothing.
+    material.specular.factor = 0.0F;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    material.specular.factor = 0.01F;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+}
+
+TEST(Effects, ATextureMayBeSmootherThanItsFactor) {
+    Material material = rough();
+    material.texture(TextureSlot::MetallicRoughness).texture = 0;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+}
+
+TEST(Effects, ACoatReflectsIfItCoversSomething) {
+    Material material = rough();
+    material.clearcoat.given = true;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    material.clearcoat.factor = 0.1F;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+    material.clearcoat.roughnessFactor = 0.5F;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    material.texture(TextureSlot::ClearcoatRoughness).texture = 0;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+}
+
+TEST(Effects, GlossinessIsRoughnessTurnedAround) {
+    Material material = rough();
+    material.specularGlossiness.given = true;
+    material.specularGlossiness.glossinessFactor = 0.5F;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    // Textures make it rougher only.
+    material.texture(TextureSlot::MetallicRoughness).texture = 0;
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+    material.specularGlossiness.glossinessFactor = 0.8F;
+    EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+    material.specularGlossiness.specularFactor = {0.0F, 0.0F, 0.0F};
+    EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
+}
+
+TEST(Effects, RefractionNeedsLightThatPasses) {
+    Material material = rough();
+    material.transmission.given = true;
+    EXPECT_EQ(effectsOf({material}) & kEffectRefraction, 0U);
+    material.transmission.factor = 0.5F;
+    EXPECT_NE(effectsOf({material}) & kEffectRefraction, 0U);
+    EXPECT_EQ(reasonOf(material, kEffectRefraction), "material \"Plaster\" transmits 0.5 of the light");
+    Material metal = material;
+    metal.metallicFactor = 1.0F;
+    EXPECT_EQ(effectsOf({metal}) & kEffectRefraction, 0U);
+    Material black = material;
+    black.baseColorFactor = {0.0F, 0.0F, 0.0F, 1.0F};
+    EXPECT_EQ(effectsOf({black}) & kEffectRefraction, 0U);
+    material.unlit = true;
+    EXPECT_EQ(effectsOf({material}) & kEffectRefraction, 0U);
+}
+
+TEST(Effects, RefinementsAreThereWhenNamed) {
+    EXPECT_EQ(effectsOf({rough()}, kDark, {true, kEffectAmbientOcclusion}), kEffectAmbientOcclusion);
+    EXPECT_EQ(effectsOf({rough()}, kDark, {false, kEffectIndirectDiffuse}), kEffectIndirectDiffuse);
+    EXPECT_EQ(effectsOf({rough()}, kLit, {false, 0}), 0U);
+    EXPECT_EQ(effectsOf({rough()}, kLit, {true, kAllEffects}), kAllEffects);
+}
+
+TEST(Effects, WhatIsAskedForIsThereEvenIfUnusable) {
+    const Material material = rough();
+    const Material* const pointer = &material;
+    const EffectPlan plan = decideEffects({&pointer, 1}, kDark, {false, kEffectRefraction});
+    EXPECT_EQ(plan.effects, kEffectRefraction);
+    ASSERT_EQ(plan.decisions.size(), kEffectCount);
+    const EffectDecision& decision = plan.decisions[effectNumber(kEffectRefraction)];
+    EXPECT_TRUE(decision.chosen);
+    EXPECT_FALSE(decision.usable);
+    EXPECT_EQ(decision.reason, "asked for, though no material transmits light");
+    for (const EffectDecision& each : plan.decisions) {
+        EXPECT_FALSE(each.reason.empty()) << nameOf(each.effect);
+    }
+}
+
+TEST(Effects, SlotsCountEffectsWithRays) {
+    constexpr std::uint32_t kSome = kEffectShadow | kEffectReflection | kEffectIndirectDiffuse;
+    EXPECT_EQ(rayEffects(kSome), kEffectReflection | kEffectIndirectDiffuse);
+    EXPECT_EQ(rayEffectCount(kSome), 2U);
+    EXPECT_EQ(effectSlot(kSome, kEffectReflection), 0U);
+    EXPECT_EQ(effectSlot(kSome, kEffectIndirectDiffuse), 1U);
+    EXPECT_EQ(effectSlot(kAllEffects, kEffectIndirectDiffuse), 2U);
+    for (std::uint32_t number = 0; number < kEffectCount; ++number) {
+        EXPECT_EQ(effectNumber(kEffects[number].effect), number);
+    }
+}
+
+}  // namespace

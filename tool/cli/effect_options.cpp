@@ -1,0 +1,144 @@
+#include "cli/effect_options.h"
+
+#include "emit/effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kAutomatic = "auto";
+constexpr const char* kNothing = "none";
+constexpr const char* kEverything = "all";
+constexpr double kMaxMetres = 1e6;
+
+std::vector<std::string> effectChoices() {
+    std::vector<std::string> choices{kAutomatic, kNothing, kEverything};
+    for (const package::EffectInfo& info : package::kEffects) {
+        choices.emplace_back(info.name);
+    }
+    return choices;
+}
+
+}  // namespace
+
+void EffectArguments::apply(CompileSettings& settings) const {
+    settings.effects = {};
+    settings.effects.maxReflectionRoughness = static_cast<float>(maxRoughness);
+    for (const std::string& name : effects) {
+        settings.effects.automatic = settings.effects.automatic || name == kAutomatic;
+        if (name == kEverything) {
+            settings.effects.named = package::kAllEffects;
+        }
+        for (const package::EffectInfo& info : package::kEffects) {
+            settings.effects.named |= name == info.name ? std::uint32_t{info.effect} : 0U;
+        }
+    }
+}
+
+CLI::Option& addEffectOptions(CLI::App& command, EffectArguments& arguments) {
+    CLI::Option& effects = addChoices(command, "--effects", arguments.effects, effectChoices(),
+                                      "which effects there are, separated by commas; auto: those\n"
+                                      "that the scene calls for, of shadow, reflection and\n"
+                                      "refraction; further: ambient-occlusion, indirect-diffuse;\n"
+                                      "none; all");
+    effects.type_name("auto|none|all|LIST")->group("Effects");
+    addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
+            "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
+        .group("Effects");
+    return effects;
+}
+
+void checkEffects(const EffectArguments& arguments) {
+    for (const char* const alone : {kNothing, kEverything}) {
+        const bool named = std::ranges::find(arguments.effects, alone) != arguments.effects.end();
+        if (named && arguments.effects.size() > 1) {
+            throw CLI::ValidationError("--effects",
+                                       std::string(alone) + " stands alone: leave out it or the others");
+        }
+    }
+}
+
+std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings) {
+    std::vector<Diagnostic> warnings;
+    if (settings.effects.named == package::kAllEffects) {
+        return warnings;  // "all" asks for none of them by name
+    }
+    for (const EffectDecision& decision : planEffects(scenes, settings).decisions) {
+        if ((settings.effects.named & decision.effect) != 0 && !decision.usable) {
+            warnings.push_back(makeWarning(
+                "effect-unused", scenes.path(),
+                fmt::format("the effect {} is {}", package::nameOf(decision.effect), decision.reason),
+                "leave it out of --effects: its passes cost time and change nothing"));
+        }
+    }
+    return warnings;
+}
+
+void EffectFrameArguments::apply(RendererOptions& options) const {
+    options.batchEffects = batch;
+}
+
+void EffectFrameArguments::apply(FrameOptions& frame) const {
+    frame.faintWeight = static_cast<float>(skipBelow);
+    frame.shadowSamples = static_cast<std::uint32_t>(shadowSamples);
+    frame.occlusionSamples = static_cast<std::uint32_t>(occlusionSamples);
+    if (occlusionRadius > 0.0) {
+        frame.occlusionRadius = static_cast<float>(occlusionRadius);
+    }
+    frame.occlusionFalloff = occlusionFalloff == "linear";
+    frame.maxInterfaces = static_cast<std::uint32_t>(maxInterfaces);
+}
+
+void EffectFrameArguments::apply(SceneViewData& scene) const {
+    for (LightView& light : scene.lights) {
+        light.size = light.type == LightView::Type::Directional
+                         ? static_cast<float>(0.5 * sunAngle * std::numbers::pi / 180.0)
+                         : static_cast<float>(lightRadius);
+    }
+}
+
+void addEffectFrameOptions(CLI::App& command, EffectFrameArguments& arguments) {
+    const std::string group = "Effects";
+    addReal(command, "--skip-below", arguments.skipBelow, 0.0, 1.0,
+            "rays whose light would count less than this are not\nsent, and it is lost (0 to 1, default: 0, "
+            "none)")
+        .group(group);
+    addReal(command, "--light-radius", arguments.lightRadius, 0.0, kMaxMetres,
+            "of point and spot lights, metres: soft shadows\n(default: 0, hard)")
+        .group(group);
+    addReal(command, "--sun-angle", arguments.sunAngle, 0.0, 90.0,
+            "angular diameter of directional lights, degrees; the sun\nhas 0.53 (0 to 90, default: 0, hard)")
+        .group(group);
+    addInteger(command, "--shadow-spp", arguments.shadowSamples, 1, 4096,
+               "shadow rays a sample to each light that has a size")
+        .group(group);
+    addReal(command, "--ao-radius", arguments.occlusionRadius, 0.0, kMaxMetres,
+            "how far ambient-occlusion looks, metres\n(default: 0, without a limit)")
+        .group(group);
+    addChoice(command, "--ao-falloff", arguments.occlusionFalloff, {"none", "linear"},
+              "whether what occludes counts less the farther it is")
+        .group(group);
+    addInteger(command, "--ao-spp", arguments.occlusionSamples, 1, 4096, "rays a sample of ambient-occlusion")
+        .group(group);
+    addInteger(command, "--max-interfaces", arguments.maxInterfaces, 1, 64,
+               "surfaces that a refracted ray meets at most")
+        .group(group);
+    addFlag(command, "--batch-effects", arguments.batch,
+            "shade the hits of all effects together: fewer and larger\ndispatches, more memory")
+        .group(group);
+}
+
+void checkEffectFrame(const EffectFrameArguments& arguments) {
+    if (arguments.occlusionFalloff == "linear" && arguments.occlusionRadius <= 0.0) {
+        throw CLI::ValidationError("--ao-falloff", "linear ends at a radius: give one by --ao-radius");
+    }
+}
+
+}  // namespace glint
