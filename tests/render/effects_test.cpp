@@ -36,8 +36,34 @@ RendererOptions optionsOf(package::Strategy strategy, package::Tracer tracer) {
     return options;
 }
 
+// The room through panes of glass: one thin, one thick, both partly clear.
+Scene roomBehindGlass() {
+    Scene scene = roomOfMaterials();
+    Material pane;
+    pane.metallicFactor = 0.0F;
+    pane.roughnessFactor = 0.1F;
+    pane.transmission.factor = 0.8F;
+    pane.doubleSided = true;
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
+                                               {0, 1, 0})));
+    pane.transmission.factor = 1.0F;
+    pane.volume.thicknessFactor = 0.2F;
+    pane.volume.attenuationDistance = 0.5F;
+    pane.volume.attenuationColor = {0.9F, 0.5F, 0.4F};
+    const int thick = addMaterial(scene, pane);
+    addInstance(scene, addMesh(scene, makeQuad(thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0})));
+    addInstance(scene, addMesh(scene, makeQuad(thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0})));
+    return scene;
+}
+
+struct Way {
+    package::Strategy strategy;
+    package::Tracer tracer;
+    bool batch;
+};
+
 TEST(AllEffects, EveryWayMakesTheSamePicture) {
-    const Scene scene = roomOfMaterials();
+    const Scene scene = roomBehindGlass();
     const LoadedScene loaded(scene, allEffects());
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = smallSetup(scene);
@@ -54,32 +80,29 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     EXPECT_GT(first.of(package::kEffectRefraction).segments, 0U);
     EXPECT_GT(first.of(package::kEffectShadow).rays, 0U);
     EXPECT_GT(first.of(package::kEffectAmbientOcclusion).hits, 0U);
-    for (const bool batch : {false, true}) {
-        for (const package::Strategy strategy : package::kStrategies) {
-            const package::Tracer tracer = strategy == package::kStrategyHitShaders || batch
-                                               ? package::kTracerRayPipeline
-                                               : package::kTracerRayQuery;
-            RendererOptions options = optionsOf(strategy, tracer);
-            options.batchEffects = batch;
-            const std::string what =
-                std::string(package::nameOf(strategy)) + (batch ? ", batched" : ", one by one");
-            FrameCounters counters;
-            const LinearImage image = loaded.render(options, setup, &counters);
-            expectSameImage(image, reference, what);
-            EXPECT_EQ(counters.rays, first.rays) << what;
-            EXPECT_EQ(counters.orderErrors, 0U) << what;
-            for (const EffectCounters& effect : counters.effects) {
-                EXPECT_EQ(effect.rays, first.of(effect.effect).rays)
-                    << what << package::nameOf(effect.effect);
-                EXPECT_EQ(effect.hits, first.of(effect.effect).hits)
-                    << what << package::nameOf(effect.effect);
-            }
+    for (const Way& way : {Way{package::kStrategyVisibility, package::kTracerRayQuery, false},
+                           Way{package::kStrategyVisibility, package::kTracerRayQuery, true},
+                           Way{package::kStrategySortedUber, package::kTracerRayPipeline, true},
+                           Way{package::kStrategyHitShaders, package::kTracerRayPipeline, false}}) {
+        RendererOptions options = optionsOf(way.strategy, way.tracer);
+        options.batchEffects = way.batch;
+        const std::string what =
+            std::string(package::nameOf(way.strategy)) + (way.batch ? ", batched" : ", one by one");
+        FrameCounters counters;
+        const LinearImage image = loaded.render(options, setup, &counters);
+        expectSameImage(image, reference, what);
+        EXPECT_EQ(counters.rays, first.rays) << what;
+        EXPECT_EQ(counters.orderErrors, 0U) << what;
+        for (const EffectCounters& effect : counters.effects) {
+            const EffectCounters other = first.of(effect.effect);
+            EXPECT_EQ(effect.rays, other.rays) << what << ", " << package::nameOf(effect.effect);
+            EXPECT_EQ(effect.hits, other.hits) << what << ", " << package::nameOf(effect.effect);
         }
     }
 }
 
 TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
-    const Scene scene = roomOfMaterials();
+    const Scene scene = roomBehindGlass();
     RenderSetup setup = smallSetup(scene);
     CompileSettings settings = allEffects();
     settings.tracers = package::kTracerRayQuery;

@@ -149,7 +149,10 @@ TEST(Manifest, DescribesThePackage) {
     EXPECT_TRUE(manifest["counts"]["keysPossible"].is_number_integer());
     EXPECT_EQ(manifest["counts"]["uniqueSpirv"], package.uniqueSpirv);
     EXPECT_EQ(manifest["buckets"], 5);
-    EXPECT_EQ(manifest["effects"][0]["name"], "reflection");
+    ASSERT_EQ(manifest["effects"].size(), package::kEffectCount);
+    EXPECT_EQ(manifest["effects"][2]["name"], "reflection");
+    EXPECT_EQ(manifest["effects"][2]["chosen"], true);
+    EXPECT_EQ(manifest["effects"][3]["chosen"], false);
     EXPECT_EQ(manifest["features"].size(), featureTable().size());
     ASSERT_EQ(manifest["shaders"].size(), 4U);
     std::set<int> materials;

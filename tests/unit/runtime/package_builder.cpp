@@ -39,6 +39,8 @@ constexpr NamedRole kRoles[] = {
     {ModuleRole::OrderCheck, "compose.comp"},
 };
 
+constexpr std::uint32_t kEffects = package::kEffectShadow | package::kEffectReflection;
+
 // A module that is one by its header only.
 const std::vector<std::uint32_t> kEmptyModule{0x07230203, 0x00010500, 0, 1, 0};
 
@@ -48,7 +50,7 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     spec.caseCount = 1;
     for (const package::ModuleKey& key :
          package::requiredModules(
-             {spec.strategies, spec.tracers, {}, package::kEffectReflection, false, 1, {}})) {
+             {spec.strategies, spec.tracers, {}, kEffects, false, 1, {}})) {
         const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
         spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
     }
@@ -173,7 +175,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.strategies = spec.strategies;
     header.tracers = spec.tracers;
     header.alphaTested = spec.alphaTested;
-    header.effects = package::kEffectReflection;
+    header.effects = kEffects;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;
     return writer.finish(header);
