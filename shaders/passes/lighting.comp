@@ -8,6 +8,7 @@
 #include "hit/images.glsl"
 #include "hit/primary.glsl"
 #include "hit/shade.glsl"
+#include "hit/stage.glsl"
 
 GLINT_PIXEL_WORKGROUP
 
