@@ -69,8 +69,8 @@ TEST_F(CompileCommand, JsonHasWhatIsPromised) {
 }
 
 TEST_F(CompileCommand, JsonHasTheStagesOfTheManifest) {
-    const Outcome outcome =
-        run({"compile", scene(), "-o", "package", "--json", "--strategy", "all", "--tracer", "all"});
+    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json", "--strategy", "all",
+                                 "--tracer", "all", "--effects", "all"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     const nlohmann::json shaders = outcome.json().at("shaders");
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));

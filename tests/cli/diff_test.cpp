@@ -122,11 +122,11 @@ TEST_F(Diff, AddedAndRemovedShaders) {
 }
 
 TEST_F(Diff, ValuesChangeTheTablesOnly) {
-    compile("a", {"--emit", "header"});
+    compile("a", {"--emit", "header", "--effects", "all"});
     Json gltf = Json::parse(readText(scene_));
     gltf["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.7;
     writeText(scene_, gltf.dump());
-    compile("b", {"--emit", "header"});
+    compile("b", {"--emit", "header", "--effects", "all"});
     const Json changed = diff();
     EXPECT_EQ(changed.at("differ"), true);
     EXPECT_EQ(changed.at("tablesDiffer"), true);

@@ -16,7 +16,7 @@ protected:
         CommandTest::SetUp();
         writeTinyScene(path(""));
         const Outcome made = run({"compile", "scene.gltf", "-o", "package", "--strategy",
-                                  "uber,visibility,hit-shaders", "--tracer", "all"});
+                                  "uber,visibility,hit-shaders", "--tracer", "all", "--effects", "all"});
         ASSERT_EQ(made.exit, 0) << made.err;
     }
     nlohmann::json disassemble(const std::string& what) const {

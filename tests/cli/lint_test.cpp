@@ -91,7 +91,10 @@ protected:
 
 TEST_F(LintCommand, OwnPackagesAreClean) {
     const std::string scene = writeTinyScene(path("")).string();
-    ASSERT_EQ(run({"compile", scene, "-o", "package", "--strategy", "all", "--merge", "none"}).exit, 0);
+    ASSERT_EQ(
+        run({"compile", scene, "-o", "package", "--strategy", "all", "--merge", "none", "--effects", "all"})
+            .exit,
+        0);
     const Outcome outcome = runWithout({"lint", "package", "--json", "--werror"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     const nlohmann::json json = outcome.json();
