@@ -1,6 +1,9 @@
-// What most files of the project include, for GLINT_PRECOMPILE. Every file still includes what it uses: builds
-// without the option show that.
+// What most files of the project include, for GLINT_PRECOMPILE. Every file still includes what it uses:
+// builds without the option show that.
 #pragma once
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,11 +12,9 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <span>
