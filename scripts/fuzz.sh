@@ -9,8 +9,8 @@ usage: scripts/fuzz.sh [SECONDS] [TARGET…]
 
 Runs the libFuzzer targets of tests/fuzz for SECONDS each (60), all of them or those named, and prints a Markdown
 table: executions, coverage (edges, and libFuzzer's features), time, findings. Inputs that are new stay in
-build/fuzz/corpus, findings in build/fuzz/findings; exit 1 if there is any. Needs Clang with its run-time libraries
-(Debian: clang, libclang-rt-14-dev).
+build/fuzz/corpus, findings in build/fuzz/findings; exit 1 if there is any. Needs Clang:
+scripts/setup.sh --sanitize.
 TEXT
 }
 

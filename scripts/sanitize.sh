@@ -7,11 +7,13 @@ usage() {
     cat <<'TEXT'
 usage: scripts/sanitize.sh
 
-Builds the command and the replays of tests/fuzz with both sanitizers (preset asan) and runs
+Builds the command and the replays of tests/fuzz with both sanitizers (preset sanitize, which needs Clang:
+scripts/setup.sh --sanitize) and runs
   - every file of tests/fuzz/corpus through the reader that it was made for, and through the command;
-  - compile --strategy all --tracer all, explain, inspect, lint and diff over the example scenes, and over those
-    of ../shared/models where they are.
-Exit 1 on a report of a sanitizer, and where a command ends in another way than done or with a diagnostic.
+  - every command over the example scenes, and over those of ../shared/models where they are; render with each
+    strategy.
+Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
+with a diagnostic.
 TEXT
 }
 
@@ -21,24 +23,37 @@ if [[ $# -gt 0 ]]; then
     exit 2
 fi
 
-build=build/asan
+build=build/sanitize
 # Not an exit code of the command: a report shows whatever the command was about to return.
-export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=exitcode=99:print_stacktrace=1 LSAN_OPTIONS=exitcode=99
+export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=exitcode=99
 export NO_COLOR=1
 models=../shared/models
+# Bounds what a hang costs; the longest command takes two minutes.
+export kTimeout=900
 
-cmake --preset asan >/dev/null
-cmake --build --preset asan --target glint glint_gallery glint_fuzzers
+say() {
+    printf 'sanitize: %s\n' "$*"
+}
+
+fail() {
+    printf 'sanitize: error: %s\n' "$*" >&2
+    exit 1
+}
+
+say "building"
+cmake --preset sanitize >/dev/null
+cmake --build --preset sanitize
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/failed" "$work/packages"
+export GLINT_CACHE=$work/cache
 
 # check ALLOWED COMMAND…: runs it; keeps what it says where its exit code is none of ALLOWED ("0", "01").
 check() {
     local allowed=$1 code=0 log
     shift
     log=$(mktemp "$work/log-XXXXXX")
-    "$@" >"$log" 2>&1 || code=$?
+    timeout -k 10 "$kTimeout" "$@" >"$log" 2>&1 || code=$?
     if [[ ${#code} -eq 1 && $allowed == *"$code"* ]]; then
         rm "$log"
     else
@@ -48,76 +63,106 @@ check() {
 
 # check_scene SCENE: all that reads it or its package.
 check_scene() {
-    local scene=$1 package
+    local scene=$1 glint=$build/bin/glint package
     package=$(mktemp -d "$work/packages/XXXXXX")
-    check 0 "$build/bin/glint" explain "$scene" --json
-    check 0 "$build/bin/glint" compile "$scene" -o "$package/a" --strategy all --tracer all --cache "$work/cache" \
-        --emit glsl,header --lock "$package/ids.lock" --depfile "$package/list.d" --embed "$package/embedded.cpp" \
-        --jobs 1
-    check 0 "$build/bin/glint" compile "$scene" -o "$package/b" --merge all --alpha opaque --jobs 1 \
-        --cache "$work/cache"
-    check 0 "$build/bin/glint" inspect "$package/a" --json
-    check 01 "$build/bin/glint" lint "$package/a" --json
-    check 0 "$build/bin/glint" diff "$package/a" "$package/b" --json
+    check 0 "$glint" explain "$scene" --json
+    check 0 "$glint" explain "$scene" --plan --merge auto
+    check 0 "$glint" compile "$scene" -o "$package/a" --strategy all --tracer all \
+        --emit glsl,header --lock "$package/ids.lock" --depfile "$package/list.d" --embed "$package/embedded.cpp"
+    check 0 "$glint" compile "$scene" -o "$package/b" --merge all --alpha tested --shadows deferred \
+        --hit-record packed --jobs 1
+    check 0 "$glint" inspect "$package/a" --json
+    check 01 "$glint" lint "$package/a" --json
+    check 0 "$glint" diff "$package/a" "$package/b" --json
+    for strategy in uber visibility sorted-uber hit-shaders; do
+        check 0 "$glint" render "$scene" -o "$package/$strategy.exr" --package "$package/a" --size 32x18 \
+            --strategy "$strategy" --stats "$package/$strategy.json"
+    done
+    check 0 "$glint" render "$scene" -o "$package/b.png" --package "$package/b" --size 32x18 --ssr 8
+    check 0 "$glint" compare "$package/uber.exr" "$package/hit-shaders.exr" --diff "$package/diff.png" --json
     rm -rf "$package"
+}
+
+# check_farm SCENE…: the commands that build several scenes, and modules one by one.
+check_farm() {
+    local glint=$build/bin/glint folder=$work/farm
+    check 0 "$glint" compile "$@" --plan-only "$folder/plan" -o "$folder/package" --merge all
+    check 0 ninja -f "$folder/plan/build.ninja"
+    check 0 "$glint" inspect "$folder/package" --disassemble 0
+    check 0 "$glint" render "$1" -o "$folder/picture.png" --size 32x18 --profile "$folder/hits.json"
+    check 0 "$glint" compile "$1" -o "$folder/b" --merge "profile:$folder/hits.json"
+    for shell in bash zsh fish; do
+        check 0 "$glint" completion "$shell"
+    done
 }
 
 # check_input FILE: a file of tests/fuzz/corpus, by its folder, or a scene that may be invalid.
 check_input() {
-    local file=$1 scene=examples/cmake-consumer/scene/cubes.gltf package
+    local file=$1 glint=$build/bin/glint scene=examples/cmake-consumer/scene/cubes.gltf package
     package=$(mktemp -d "$work/packages/XXXXXX")
     case $file in
-        */corpus/lint/*) check 01 "$build/bin/glint" lint "$file" ;;
+        */corpus/lint/*) check 01 "$glint" lint "$file" ;;
         */corpus/lock/*)
             cp "$file" "$package/ids.lock"
-            check 01 "$build/bin/glint" compile "$scene" --dry-run --lock "$package/ids.lock"
+            check 01 "$glint" compile "$scene" --dry-run --lock "$package/ids.lock"
             ;;
-        */corpus/profile/*) check 01 "$build/bin/glint" explain "$scene" --merge "profile:$file" ;;
+        */corpus/profile/*) check 01 "$glint" explain "$scene" --merge "profile:$file" ;;
         */corpus/manifest/*)
             cp "$file" "$package/manifest.json"
-            check 1 "$build/bin/glint" inspect "$package"
-            check 01 "$build/bin/glint" lint "$package"
+            check 1 "$glint" inspect "$package"
+            check 01 "$glint" lint "$package"
             ;;
         */corpus/package/*)
             cp "$file" "$package/tables.bin"
-            check 1 "$build/bin/glint" inspect "$package"
+            check 1 "$glint" inspect "$package"
             ;;
         */corpus/image/*)
             for end in png exr; do
                 cp "$file" "$package/picture.$end"
-                check 01 "$build/bin/glint" compare "$package/picture.$end" "$package/picture.$end"
+                check 01 "$glint" compare "$package/picture.$end" "$package/picture.$end"
             done
             ;;
         */corpus/cache/*) ;; # its replay has the folder of a cache
-        *) check 01 "$build/bin/glint" compile "$file" --dry-run ;;
+        *) check 01 "$glint" compile "$file" --dry-run ;;
     esac
     rm -rf "$package"
 }
 
+# each BATCH FUNCTION FILE…: calls it for every file, as many processes as there are cores, BATCH files a process.
+each() {
+    local batch=$1 function=$2
+    shift 2
+    [[ $# -gt 0 ]] || fail "nothing to run $function over"
+    # shellcheck disable=SC2016 # the inner shell expands it
+    printf '%s\0' "$@" |
+        xargs -0 -n "$batch" -P "$(nproc)" bash -c 'for file in "${@:2}"; do "$1" "$file"; done' _ "$function"
+}
+
 export build work
 export -f check check_scene check_input
-"$build/bin/gallery" "$work/gallery" >/dev/null
 
-printf 'sanitize: replays of the corpus\n'
+say "replays of the corpus"
 for folder in tests/fuzz/corpus/*; do
     check 0 "$build/tests/fuzz_${folder##*/}" "$folder"
 done
 
 mapfile -d '' inputs < <(find tests/fuzz/corpus "$models/invalid" -type f \
     \( -path '*/corpus/*' -o -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
-printf 'sanitize: %s inputs through the command\n' "${#inputs[@]}"
-# shellcheck disable=SC2016 # the inner shell expands it
-printf '%s\0' "${inputs[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'check_input "$1"' _
+say "${#inputs[@]} inputs through the command"
+each 16 check_input "${inputs[@]}"
 
-mapfile -d '' scenes < <(find examples "$work/gallery" "$models/features" "$models/large" \
+check 0 "$build/bin/gallery" "$work/gallery"
+say "a plan of two scenes, by Ninja"
+check_farm examples/cmake-consumer/scene/cubes.gltf "$work/gallery/gallery.gltf"
+
+# The gallery first: it takes longest.
+mapfile -d '' scenes < <(find "$work/gallery" "$models/large" examples "$models/features" \
     \( -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
-printf 'sanitize: %s scenes through every command\n' "${#scenes[@]}"
-# shellcheck disable=SC2016
-printf '%s\0' "${scenes[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'check_scene "$1"' _
+say "${#scenes[@]} scenes through every command"
+each 1 check_scene "${scenes[@]}"
 
 if [[ -n $(ls "$work/failed") ]]; then
     cat "$work"/failed/*
-    printf 'sanitize: error: %s findings, printed above\n' "$(find "$work/failed" -type f | wc -l)" >&2
-    exit 1
+    fail "$(find "$work/failed" -type f | wc -l) findings, printed above"
 fi
-printf 'sanitize: clean\n'
+say "clean"

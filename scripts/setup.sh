@@ -4,13 +4,14 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/setup.sh [--check] [--lint]
+usage: scripts/setup.sh [--check] [--lint] [--sanitize]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
 
-  --check  install nothing; print what is missing and exit 1 if anything is
-  --lint   also what scripts/lint.sh needs
+  --check     install nothing; print what is missing and exit 1 if anything is
+  --lint      also what scripts/lint.sh needs
+  --sanitize  also what scripts/sanitize.sh and scripts/fuzz.sh need
 TEXT
 }
 
@@ -101,6 +102,22 @@ mesa_too_old() {
     local version
     version=$(mesa_version)
     [[ -z $version ]] || dpkg --compare-versions "$version" lt "$kOldestMesa"
+}
+
+# Adds Clang, its run-time libraries, and what gives their reports names and lines.
+add_sanitizer_needs() {
+    local version
+    # Debian's packages of the run-time libraries are for one version: that of the package clang.
+    case $distribution in
+        "debian 12") version=14 ;;
+        "ubuntu 24.04") version=18 ;;
+        *) version=19 ;;
+    esac
+    needs+=(
+        "command clang++|clang"
+        "command llvm-symbolizer|llvm"
+        "file /usr/lib/llvm-$version/lib/clang/*/lib/linux/libclang_rt.asan-*.a|libclang-rt-$version-dev"
+    )
 }
 
 # --- What to install -------------------------------------------------------------------------------
@@ -204,11 +221,13 @@ install_packages() {
 # --- Main ------------------------------------------------------------------------------------------
 
 check_only=false
+sanitize=false
 needs=("${kNeeds[@]}")
 for argument in "$@"; do
     case $argument in
         --check) check_only=true ;;
         --lint) needs+=("${kLintNeeds[@]}") ;;
+        --sanitize) sanitize=true ;;
         -h | --help)
             usage
             exit 0
@@ -224,6 +243,9 @@ distribution=unknown
 if [[ -r /etc/os-release ]]; then
     # shellcheck source=/dev/null
     distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
+fi
+if [[ $sanitize == true ]]; then
+    add_sanitizer_needs
 fi
 
 mapfile -t missing < <(missing_needs "${needs[@]}")

@@ -3,7 +3,36 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/setup.sh
+usage() {
+    cat <<'TEXT'
+usage: scripts/test.sh [--sanitize]
+
+Installs what is missing, builds Glint and runs every test.
+
+  --sanitize  run scripts/sanitize.sh first: a build of its own and every command over every scene with
+              AddressSanitizer and UndefinedBehaviorSanitizer; a finding ends the run
+TEXT
+}
+
+setup=()
+for argument in "$@"; do
+    case $argument in
+        --sanitize) setup=(--sanitize) ;;
+        -h | --help)
+            usage
+            exit 0
+            ;;
+        *)
+            usage >&2
+            exit 2
+            ;;
+    esac
+done
+
+scripts/setup.sh "${setup[@]}"
+if [[ ${#setup[@]} -gt 0 ]]; then
+    scripts/sanitize.sh
+fi
 cmake --preset release -DGLINT_WARNINGS_AS_ERRORS=ON
 cmake --build --preset release
 exec ctest --preset release -j2 --output-on-failure --no-tests=error
