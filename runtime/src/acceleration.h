@@ -36,6 +36,7 @@ struct BlasCapacity {
 struct BlasInput {
     std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
     bool dataAccess = false;               // shaders read the positions of hit triangles from it
+    bool updatable = false;                // built fast and refitted, not compacted
 };
 
 // What one BLAS of this device may hold: its limits, and no structure or scratch above maxStorageBufferRange,
