@@ -60,6 +60,17 @@ Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& poo
                                         std::span<const VkAccelerationStructureInstanceKHR> instances,
                                         double& buildMs);
 
+// A top level in Vulkan's terms: `instances` is the address of their array, 0 where sizes are asked for.
+// `info` points at `geometry`: it is set again after a move.
+struct TlasBuild {
+    VkAccelerationStructureGeometryKHR geometry{};
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+};
+// Error "tlas-limit".
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count, bool updatable,
+                    TlasBuild& build);
+
 // For both: a structure of `bytes`, not yet built.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                                               VkAccelerationStructureTypeKHR type);

@@ -80,11 +80,8 @@ Box transformed(const Box& box, const std::array<float, 12>& rows) {
     return result;
 }
 
-MotionBounds::MotionBounds(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
+MotionBounds::MotionBounds(std::span<const PrimitiveView> primitives) {
     for (const PrimitiveView& primitive : primitives) {
-        if (primitive.mesh != mesh) {
-            continue;
-        }
         Part& part = parts_.emplace_back();
         std::map<std::uint32_t, Box> joints;
         const std::size_t vertices = primitive.positions.size();

@@ -31,8 +31,8 @@ Box transformed(const Box& box, const std::array<float, 12>& rows);
 // of the points that each alone makes of it.
 class MotionBounds {
 public:
-    // `primitives`: those of the mesh.
-    MotionBounds(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
+    // `primitives`: those of the mesh, and no others.
+    explicit MotionBounds(std::span<const PrimitiveView> primitives);
 
     // In world space. Not less than the mesh at that pose; equal to its box where nothing deforms and nothing
     // turns.

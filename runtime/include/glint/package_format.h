@@ -74,7 +74,7 @@ struct PackageHeader {
     HitRecordFormat hitRecord;
     std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
-    std::uint32_t pad;
+    std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
 };
 
 enum class SectionKind : std::uint32_t {
@@ -126,6 +126,7 @@ enum class ModuleRole : std::uint32_t {
     HitCase = 22,     // closest hit, one entry a case
     HitUnknown = 23,  // closest hit of a geometry whose shader ID no case has
     HitMiss = 24,
+    Deform = 25,  // skins and morphs vertices; of GpuScene, not of a renderer
 };
 
 struct ModuleEntry {

@@ -19,6 +19,7 @@ struct PackageShape {
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
     std::vector<std::uint32_t> retired{};  // shader IDs below caseCount that have no modules, ascending
+    bool deforms = false;                  // a scene has meshes that follow skins or morph targets
 };
 
 // One module of a package; fields as in ModuleEntry.
@@ -127,6 +128,7 @@ inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::HitCase, kStrategyHitShaders, "HitCase", ShaderKind::ClosestHit, Repeated::ByCase},
     {ModuleRole::HitUnknown, kStrategyHitShaders, "HitUnknown", ShaderKind::ClosestHit},
     {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
+    {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute},
 };
 
 // Null for a number that is no role.
@@ -158,7 +160,8 @@ inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const Pack
     const bool deferred = shape.shadows == ShadowPlacement::Deferred;
     const bool ofShadows = info.role == ModuleRole::ShadowDispatch || info.role == ModuleRole::ShadowTrace;
     const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested;
-    if (strategies == 0 || (ofShadows && !deferred) || untested) {
+    const bool still = info.role == ModuleRole::Deform && !shape.deforms;
+    if (strategies == 0 || (ofShadows && !deferred) || untested || still) {
         return {};
     }
     const std::uint32_t tracers = tracersOf(strategies, shape.tracers);
