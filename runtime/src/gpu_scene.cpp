@@ -263,6 +263,21 @@ Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion) {
     return recordMotion(*state_, commands, motion);
 }
 
+Status GpuScene::updateAndWait(const MotionView& motion) {
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    if (Status s = update(*commands, motion); !s) {
+        return s;
+    }
+    return runner->submitAndWait();
+}
+
 Result<MotionStatistics> GpuScene::motion() const {
     return readMotion(*state_);
 }

@@ -96,6 +96,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
                    "linear, 32-bit float")
         .required();
     addPictureOptions(command, *arguments);
+    addMotionOptions(command, arguments->motion);
     addEnvironmentOptions(command, arguments->environment);
     addFrameOptions(command, arguments->frame);
     const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
@@ -120,6 +121,9 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             }
         }
         checkTracingChoice(arguments->tracing);
+        if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
+            throw CLI::ValidationError("--coverage", "is of one picture; leave out --frames, or use --time");
+        }
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,
                             arguments->plan);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/environment.h"
+#include "cli/motion_options.h"
 #include "cli/options.h"
 #include "cli/tracing_options.h"
 
@@ -21,6 +22,7 @@ struct RenderArguments {
     TracingArguments tracing;
     FrameArguments frame;
     EnvironmentArguments environment;
+    MotionArguments motion;
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;

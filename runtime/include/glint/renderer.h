@@ -75,6 +75,9 @@ public:
     // mesh, or a number that is not finite).
     Status update(VkCommandBuffer commands, const MotionView& motion);
 
+    // Records, submits and waits; for tools and tests.
+    Status updateAndWait(const MotionView& motion);
+
     // Of the last update that has completed on the device; the caller has waited for it.
     Result<MotionStatistics> motion() const;
 
