@@ -231,7 +231,9 @@ Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
                 extend(own, point);
             }
         }
-        const Bounds placed = own.empty() ? own : transformed(own, instance.objectToWorld);
+        // Skinned vertices are in the world already.
+        const Bounds placed =
+            own.empty() || !joints.empty() ? own : transformed(own, instance.objectToWorld);
         bounds = isFinite(placed) ? united(bounds, placed) : bounds;
     }
     return united(bounds, worldBounds(rigid));

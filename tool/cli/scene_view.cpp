@@ -72,6 +72,12 @@ std::vector<bool> placedMeshes(const Scene& scene) {
     return placed;
 }
 
+// Of the linear part.
+double determinantOf(const Matrix4& m) {
+    return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
+           m[8] * (m[1] * m[6] - m[5] * m[2]);
+}
+
 // Whether the node's mesh follows its skin; the node's own transform then counts for nothing (glTF 2.0, section
 // 3.7.3.2).
 bool isSkinned(const Scene& scene, const Node& node) {
@@ -140,12 +146,18 @@ void poseSceneView(const Scene& scene, SceneViewData& data) {
         const Node& node = scene.nodes[data.nodes[i]];
         InstanceView& instance = data.instances[i];
         const bool skinned = isSkinned(scene, node);
+        // Of its transform only the sign counts, which says what the front of a triangle is (section 3.7.4): the
+        // instance mirrors X then, and so do its joints, before it.
+        const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
         instance.objectToWorld = skinned ? InstanceView{}.objectToWorld : toRows(node.world);
         data.joints[i].clear();
         if (skinned) {
+            instance.objectToWorld[0] = mirror;
             for (const Matrix4& joint :
                  jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])) {
-                data.joints[i].push_back(toRows(joint));
+                std::array<float, 12>& rows = data.joints[i].emplace_back(toRows(joint));
+                std::transform(rows.begin(), rows.begin() + 4, rows.begin(),
+                               [&](float element) { return mirror * element; });
             }
         }
         data.weights[i].assign(node.weights.begin(), node.weights.end());
