@@ -115,8 +115,8 @@ Status submitTlasBuild(Context::State& context, const VkAccelerationStructureBui
 
 }  // namespace
 
-Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count, bool updatable,
-                    TlasBuild& build) {
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
+                    bool updatable, TlasBuild& build) {
     const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
     if (count > limit) {
         return makeError("tlas-limit", "",
@@ -131,10 +131,11 @@ Status describeTlas(const Context::State& context, VkDeviceAddress instances, st
     geometry.geometry.instances.data.deviceAddress = instances;
     build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
     build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
-    build.info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
-                       (updatable ? VkBuildAccelerationStructureFlagsKHR{
-                                        VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
-                                  : 0U);
+    build.info.flags =
+        VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
+        (updatable
+             ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
+             : 0U);
     build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     build.info.geometryCount = 1;
     build.info.pGeometries = &geometry;

@@ -68,8 +68,8 @@ struct TlasBuild {
     VkAccelerationStructureBuildSizesInfoKHR sizes{};
 };
 // Error "tlas-limit".
-Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count, bool updatable,
-                    TlasBuild& build);
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
+                    bool updatable, TlasBuild& build);
 
 // For both: a structure of `bytes`, not yet built.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,

@@ -13,7 +13,7 @@ struct BlasBuild {
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     VkDeviceSize structureBytes = 0;
-    VkDeviceSize scratchBytes = 0;  // rounded up to the alignment of scratch
+    VkDeviceSize scratchBytes = 0;        // rounded up to the alignment of scratch
     VkDeviceSize updateScratchBytes = 0;  // likewise; 0 where it can't be updated
 };
 

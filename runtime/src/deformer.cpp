@@ -41,9 +41,8 @@ using Member = std::span<const Difference> MorphTargetView::*;
 
 // Target by target; zeros for those that lack the attribute; empty where all do.
 std::vector<Difference> joined(const PrimitiveView& view, Member member) {
-    const bool any = std::ranges::any_of(view.targets, [&](const MorphTargetView& target) {
-        return !(target.*member).empty();
-    });
+    const bool any = std::ranges::any_of(
+        view.targets, [&](const MorphTargetView& target) { return !(target.*member).empty(); });
     std::vector<Difference> differences;
     for (std::size_t i = 0; any && i < view.targets.size(); ++i) {
         const std::span<const Difference> own = view.targets[i].*member;
@@ -257,9 +256,9 @@ Status Deformer::createRecords(const SceneView& scene, std::span<const GpuPrimit
             dispatches_.push_back({slot.instance, record.vertexCount});
         }
     }
-    Result<Buffer> buffer = createBuffer(
-        *context_, pool_, std::max(records.size(), std::size_t{1}) * sizeof(gpu::DeformRecord),
-        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    Result<Buffer> buffer =
+        createBuffer(*context_, pool_, std::max(records.size(), std::size_t{1}) * sizeof(gpu::DeformRecord),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     if (!buffer) {
         return buffer.error();
     }

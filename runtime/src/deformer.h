@@ -74,8 +74,8 @@ private:
 
     Status createPipeline(const Package& package);
     Status createPoseBuffers(const SceneView& scene);
-    Status createRecords(const SceneView& scene, std::span<const GpuPrimitive> primitives,
-                         Uploader& uploader, MemoryPool& targetPool, DeformedBuffers& target);
+    Status createRecords(const SceneView& scene, std::span<const GpuPrimitive> primitives, Uploader& uploader,
+                         MemoryPool& targetPool, DeformedBuffers& target);
     Result<Source> uploadSource(const PrimitiveView& view, Uploader& uploader);
 
     Context::State* context_;

@@ -46,8 +46,8 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         }
         deformer = std::move(*created);
     }
-    Result<SceneLayout> laidOut = layOutScene(known, scene, state.primitives, blasCapacity(state.context),
-                                              state.deformed.addresses);
+    Result<SceneLayout> laidOut =
+        layOutScene(known, scene, state.primitives, blasCapacity(state.context), state.deformed.addresses);
     if (!laidOut) {
         return laidOut.error();
     }

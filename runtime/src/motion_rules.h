@@ -17,7 +17,8 @@ enum class BuildAction : std::uint8_t { Keep, Refit, Build };
 inline constexpr std::uint32_t kMaxRefits = 32;
 
 // Nodes of a mesh that has grown overlap more, and the time of rays goes with their surface: up to this ratio
-// of the surface of the mesh's box to that at the build, refits are taken to cost rays less than a build costs.
+// of the surface of the mesh's box to that at the build, refits are taken to cost rays less than a build
+// costs.
 inline constexpr double kMaxGrowth = 2.0;
 
 // How a bottom level stands to its last build.

@@ -42,8 +42,7 @@ Status checkInfluences(const PrimitiveView& view) {
     if (view.joints.size() != view.jointWeights.size()) {
         return attributeError(view, "the joints are not as many as their weights", "give a weight a joint");
     }
-    if (!view.joints.empty() &&
-        (view.positions.empty() || view.joints.size() % view.positions.size() != 0)) {
+    if (!view.joints.empty() && (view.positions.empty() || view.joints.size() % view.positions.size() != 0)) {
         return attributeError(view, "the joints are not as many for each vertex",
                               "give each vertex the same number; weights may be 0");
     }
@@ -119,8 +118,8 @@ Status checkDeformation(const SceneView& scene) {
         }
         if (instance.morphWeights.size() > targets) {
             return makeError("scene-motion", where,
-                             "there are " + std::to_string(instance.morphWeights.size()) +
-                                 " weights for " + std::to_string(targets) + " morph targets",
+                             "there are " + std::to_string(instance.morphWeights.size()) + " weights for " +
+                                 std::to_string(targets) + " morph targets",
                              "give a weight a target");
         }
     }

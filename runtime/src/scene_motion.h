@@ -24,11 +24,11 @@ struct SceneMotion {
     MemoryPool pool;
     // Null where nothing changes its shape.
     std::unique_ptr<Deformer> deformer;
-    std::unique_ptr<RefittedBlases> blases;        // of parts that an instance has for itself
-    std::vector<std::uint32_t> blasInstances;      // by bottom level: the instance whose it is
-    std::vector<BlasHistory> blasHistories;        // likewise
+    std::unique_ptr<RefittedBlases> blases;    // of parts that an instance has for itself
+    std::vector<std::uint32_t> blasInstances;  // by bottom level: the instance whose it is
+    std::vector<BlasHistory> blasHistories;    // likewise
 
-    std::vector<PartInstance> partInstances;       // instances of the top level, in their order
+    std::vector<PartInstance> partInstances;                 // instances of the top level, in their order
     std::vector<VkAccelerationStructureInstanceKHR> placed;  // likewise, as last sent to the device
     Buffer placedBuffer;
     TlasBuild tlasBuild;
@@ -39,7 +39,7 @@ struct SceneMotion {
     std::vector<std::uint32_t> meshes;
     std::vector<std::size_t> jointCounts;
     std::vector<std::size_t> weightCounts;
-    std::vector<const MotionBounds*> bounds;       // into boundsOfMeshes
+    std::vector<const MotionBounds*> bounds;  // into boundsOfMeshes
     std::vector<std::unique_ptr<MotionBounds>> boundsOfMeshes;
     std::vector<std::uint32_t> lightTypes;
 

@@ -20,7 +20,8 @@ TEST(MotionOptions, ReadFrames) {
     const std::optional<FrameRange> one = parseFrames("7");
     ASSERT_TRUE(one.has_value());
     EXPECT_EQ(one->first, one->last);
-    for (const char* text : {"", ":", "1:", ":1", "2:1", "-1:3", "1:2:3", "a:b", "1.5", "0:1000001", "0x1", " 1"}) {
+    for (const char* text :
+         {"", ":", "1:", ":1", "2:1", "-1:3", "1:2:3", "a:b", "1.5", "0:1000001", "0x1", " 1"}) {
         EXPECT_FALSE(parseFrames(text).has_value()) << text;
     }
 }

@@ -105,10 +105,11 @@ void addMotion(Json& gltf) {
     // Weights from 0 to 1 are the times themselves.
     const Json shift{{"input", first}, {"output", first + 1}};
     const Json weights{{"input", first}, {"output", first}};
-    gltf["animations"] = {{{"name", "Slide"},
-                           {"samplers", {shift, weights}},
-                           {"channels", {channel(0, 1, "translation"), channel(1, 1, "weights")}}},
-                          {{"name", "Look"}, {"samplers", {shift}}, {"channels", {channel(0, 2, "translation")}}}};
+    gltf["animations"] = {
+        {{"name", "Slide"},
+         {"samplers", {shift, weights}},
+         {"channels", {channel(0, 1, "translation"), channel(1, 1, "weights")}}},
+        {{"name", "Look"}, {"samplers", {shift}}, {"channels", {channel(0, 2, "translation")}}}};
 }
 
 Json materials() {

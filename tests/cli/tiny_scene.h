@@ -9,8 +9,8 @@ struct TinyScene {
     bool unknownExtension = false;  // in extensionsUsed: a warning
     bool camera = true;
     bool variants = false;  // "Day" gives the floor "Spare"; "Floor" gets a clearcoat
-    // "Slide": the wall moves by 1 m along X in a second and its morph target lifts its top edge by 1 m; "Look":
-    // the camera moves by 1 m along X.
+    // "Slide": the wall moves by 1 m along X in a second and its morph target lifts its top edge by 1 m;
+    // "Look": the camera moves by 1 m along X.
     bool animated = false;
 };
 

@@ -222,9 +222,8 @@ Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
             continue;
         }
         const std::vector<Matrix4> joints =
-            instance.joints.empty()
-                ? std::vector<Matrix4>()
-                : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+            instance.joints.empty() ? std::vector<Matrix4>()
+                                    : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
         Bounds own = kNothing;
         for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
             for (const Double3& point : deformedPositions(primitive, node.weights, joints)) {
@@ -232,8 +231,7 @@ Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
             }
         }
         // Skinned vertices are in the world already.
-        const Bounds placed =
-            own.empty() || !joints.empty() ? own : transformed(own, instance.objectToWorld);
+        const Bounds placed = own.empty() || !joints.empty() ? own : transformed(own, instance.objectToWorld);
         bounds = isFinite(placed) ? united(bounds, placed) : bounds;
     }
     return united(bounds, worldBounds(rigid));
@@ -303,11 +301,11 @@ bool framesEverything(const Scene& scene, const std::string& wanted) {
 Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
                                   double aspect) {
     const bool everything = framesEverything(scene, wanted);
-    return chooseCamera(scene, everything ? posedBounds(scene, view) : Bounds{}, wanted, aspect);
+    return chooseCameraAround(scene, everything ? posedBounds(scene, view) : Bounds{}, wanted, aspect);
 }
 
-Result<CameraChoice> chooseCamera(const Scene& scene, const Bounds& framed, const std::string& wanted,
-                                  double aspect) {
+Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
+                                        double aspect) {
     if (framesEverything(scene, wanted)) {
         return CameraChoice{framingCamera(framed, aspect), "auto"};
     }

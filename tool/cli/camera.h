@@ -46,7 +46,7 @@ bool framesEverything(const Scene& scene, const std::string& wanted);
 Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
                                   double aspect);
 // The same, with what an automatic camera is to frame.
-Result<CameraChoice> chooseCamera(const Scene& scene, const Bounds& framed, const std::string& wanted,
-                                  double aspect);
+Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
+                                        double aspect);
 
 }  // namespace glint

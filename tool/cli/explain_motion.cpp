@@ -136,9 +136,9 @@ std::string motionText(const Scene& scene) {
         if (deformed.targets > 0) {
             follows += fmt::format("{}{} morph targets", follows.empty() ? "" : "; ", deformed.targets);
         }
-        rows.push_back({"deformed", fmt::format("{} (/nodes/{}), {} vertices: {}",
-                                                meshName(scene, deformed.node->mesh), deformed.node->source,
-                                                deformed.vertices, follows)});
+        rows.push_back(
+            {"deformed", fmt::format("{} (/nodes/{}), {} vertices: {}", meshName(scene, deformed.node->mesh),
+                                     deformed.node->source, deformed.vertices, follows)});
     }
     return rows.empty() ? "" : formatFields(rows);
 }

@@ -144,8 +144,8 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
     return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
 }
 
-// Where the animated scene is looked at from: a camera that frames everything frames all that is to be seen of
-// it, and stands still.
+// Where the animated scene is looked at from: a camera that frames everything frames all that is to be seen
+// of it, and stands still.
 Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const RenderArguments& arguments,
                                 Scene& scene, SceneViewData& data, double aspect) {
     if (!movement) {
@@ -163,15 +163,15 @@ Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const R
         }
     }
     applyPose(poseAt(scene, movement->animations, movement->moments.front().seconds), scene);
-    Result<CameraChoice> camera = chooseCamera(scene, bounds, arguments.camera, aspect);
+    Result<CameraChoice> camera = chooseCameraAround(scene, bounds, arguments.camera, aspect);
     // The package does not depend on which frames are looked at.
     applyPose(restPose(scene), scene);
     return camera;
 }
 
 // Everything between the scene and the files.
-Status render(const Console& console, const RenderArguments& arguments, Scene& scene,
-              const SceneList& scenes, const PlanOptions& plan, RenderReport& report) {
+Status render(const Console& console, const RenderArguments& arguments, Scene& scene, const SceneList& scenes,
+              const PlanOptions& plan, RenderReport& report) {
     const Result<std::optional<Movement>> movement = chooseMovement(arguments.motion, scene);
     if (!movement) {
         return movement.error();
@@ -205,8 +205,8 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const FrameSetup setup{arguments, rendererOptions(arguments, report), environment->get(), *movement,
-                           camera->view, aspect};
+    const FrameSetup setup{
+        arguments, rendererOptions(arguments, report), environment->get(), *movement, camera->view, aspect};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = checkValidation(console, **context); !valid) {
@@ -247,8 +247,8 @@ int run(const Console& console, const RenderArguments& arguments) {
     parseSize(arguments.size, report.width, report.height);
 
     const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
-    Status status = checkOutputFile(frames ? numberedFile(arguments.output, frames->first).string()
-                                           : arguments.output);
+    Status status =
+        checkOutputFile(frames ? numberedFile(arguments.output, frames->first).string() : arguments.output);
     for (const std::string& file : {arguments.stats, arguments.coverage, arguments.profileOutput}) {
         if (status && !file.empty()) {
             status = checkOutputFile(file);

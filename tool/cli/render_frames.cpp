@@ -84,9 +84,8 @@ public:
         options.seed = report_.seed;
         const Clock::time_point begin = Clock::now();
         const bool countsHits = !setup_.arguments.profileOutput.empty();
-        Result<LinearImage> image =
-            renderer_->render(options, report_.samples, countsHits ? [this] { return addHits(); }
-                                                                   : std::function<Status()>());
+        Result<LinearImage> image = renderer_->render(
+            options, report_.samples, countsHits ? [this] { return addHits(); } : std::function<Status()>());
         frame.renderMs = millisecondsSince(begin);
         report_.renderMs += frame.renderMs;
         if (!image) {
@@ -106,7 +105,7 @@ private:
             return okStatus();  // that one stands still
         }
         const Result<CameraChoice> moved =
-            chooseCamera(scene_, Bounds{}, setup_.arguments.camera, setup_.aspect);
+            chooseCameraAround(scene_, Bounds{}, setup_.arguments.camera, setup_.aspect);
         if (!moved) {
             return moved.error();
         }

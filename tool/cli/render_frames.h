@@ -25,9 +25,9 @@ struct FrameSetup {
     double aspect = 1.0;                       // width / height
 };
 
-// Renders and writes every picture, and fills in what was measured. `scene` and `data`, which was made from it,
-// are left in the last pose. Before each picture is written, `accept` is asked: its error ends the work, and so
-// does its refusal, without one.
+// Renders and writes every picture, and fills in what was measured. `scene` and `data`, which was made from
+// it, are left in the last pose. Before each picture is written, `accept` is asked: its error ends the work,
+// and so does its refusal, without one.
 Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
                     SceneViewData& data, const std::function<Result<bool>()>& accept, RenderReport& report);
 

@@ -90,7 +90,8 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
                                             scene.materials.size()));
     }
     if (hasDeformedMesh(scene) && !package.shape().deforms) {
-        return mismatch(folder, "has no pass for meshes that follow joints or morph targets, as the scene has");
+        return mismatch(folder,
+                        "has no pass for meshes that follow joints or morph targets, as the scene has");
     }
     const KeyOptions keys{package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque};
     for (const PrimitiveInputs& inputs : planningInputs(scene)) {

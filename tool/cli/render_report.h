@@ -24,8 +24,9 @@ struct FrameReport {
     double seconds = 0.0;  // of the animation
     std::string image;
     MotionStatistics motion;
-    double poseMs = 0.0;    // wall clock: nodes, joints and weights on the CPU
-    double updateMs = 0.0;  // wall clock: the scene on the device; 0 for the first, which is uploaded in its pose
+    double poseMs = 0.0;  // wall clock: nodes, joints and weights on the CPU
+    double updateMs =
+        0.0;  // wall clock: the scene on the device; 0 for the first, which is uploaded in its pose
     double renderMs = 0.0;  // wall clock: all samples and the read-back
     double deviceMs = 0.0;  // the passes of the last sample
 };

@@ -78,8 +78,8 @@ double determinantOf(const Matrix4& m) {
            m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-// Whether the node's mesh follows its skin; the node's own transform then counts for nothing (glTF 2.0, section
-// 3.7.3.2).
+// Whether the node's mesh follows its skin; the node's own transform then counts for nothing (glTF 2.0,
+// section 3.7.3.2).
 bool isSkinned(const Scene& scene, const Node& node) {
     const std::vector<Primitive>& primitives = scene.meshes[static_cast<std::size_t>(node.mesh)].primitives;
     return node.skin >= 0 && std::ranges::any_of(primitives, [](const Primitive& primitive) {
@@ -146,8 +146,8 @@ void poseSceneView(const Scene& scene, SceneViewData& data) {
         const Node& node = scene.nodes[data.nodes[i]];
         InstanceView& instance = data.instances[i];
         const bool skinned = isSkinned(scene, node);
-        // Of its transform only the sign counts, which says what the front of a triangle is (section 3.7.4): the
-        // instance mirrors X then, and so do its joints, before it.
+        // Of its transform only the sign counts, which says what the front of a triangle is (section 3.7.4):
+        // the instance mirrors X then, and so do its joints, before it.
         const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
         instance.objectToWorld = skinned ? InstanceView{}.objectToWorld : toRows(node.world);
         data.joints[i].clear();

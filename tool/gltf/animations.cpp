@@ -76,8 +76,7 @@ public:
             readChannel(channels[i], fmt::format("{}/channels/{}", pointer_, i));
         }
         for (const AnimationChannel& channel : animation_.channels) {
-            const AnimationSampler& sampler =
-                animation_.samplers[static_cast<std::size_t>(channel.sampler)];
+            const AnimationSampler& sampler = animation_.samplers[static_cast<std::size_t>(channel.sampler)];
             animation_.duration = std::max<double>(animation_.duration, sampler.times.back());
         }
         return std::move(animation_);
@@ -172,8 +171,7 @@ private:
             return refuse(pointer, flaw);
         }
         // Integers stand for fractions whether they are marked as normalised or not: glTF has no others here.
-        Result<FloatElements> values =
-            readFloats(document_, json["output"].get<int>(), Integers::Normalized);
+        Result<FloatElements> values = readFloats(document_, json["output"].get<int>(), Integers::Normalized);
         if (!values) {
             return refuse(pointer, values.error().where + " " + values.error().message);
         }

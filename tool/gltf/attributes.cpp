@@ -153,7 +153,8 @@ Status readInfluences(const Reader& reader) {
         }
         if (!hasJointNumbers(reader.document(), jointAccessor)) {
             return reader.document().error("attribute-type", reader.pointer(joints.c_str()),
-                                           "must have unsigned integers of 8 or 16 bits, not normalised", kExport);
+                                           "must have unsigned integers of 8 or 16 bits, not normalised",
+                                           kExport);
         }
         InfluenceSet& read = sets.emplace_back();
         if (Status s = readAttribute(reader, joints.c_str(), 4, Integers::AsValues, read.joints); !s) {
@@ -165,9 +166,10 @@ Status readInfluences(const Reader& reader) {
     }
     const std::string beyond = fmt::format("JOINTS_{}", sets.size());
     if (find(reader.source.json["attributes"], beyond) != nullptr) {
-        reader.document().warn("skin-influences", reader.pointer(beyond.c_str()),
-                               fmt::format("only {} sets of joints are read; the others are left out", sets.size()),
-                               "export the mesh with fewer joints a vertex");
+        reader.document().warn(
+            "skin-influences", reader.pointer(beyond.c_str()),
+            fmt::format("only {} sets of joints are read; the others are left out", sets.size()),
+            "export the mesh with fewer joints a vertex");
     }
     reader.primitive.influences = joinInfluences(reader.document(), reader.primitive.pointer, sets);
     return okStatus();

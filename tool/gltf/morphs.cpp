@@ -85,9 +85,9 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
                                      Member{"NORMAL", !primitive.normals.empty(), target.normals},
                                      Member{"TANGENT", !primitive.tangents.empty(), target.tangents}}) {
             if (!member.isBased && find(targets[i], member.attribute) != nullptr) {
-                source.document.warn("morph-attribute", pointer + "/" + member.attribute,
-                                     "the primitive itself has no such attribute; its differences are left out",
-                                     kExport);
+                source.document.warn(
+                    "morph-attribute", pointer + "/" + member.attribute,
+                    "the primitive itself has no such attribute; its differences are left out", kExport);
                 continue;
             }
             if (Status status = readDifferences(source, targets[i], pointer, member.attribute, vertices,
@@ -117,10 +117,11 @@ void importMorphWeights(Document& document, Scene& scene) {
         }
         const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
         node.restWeights = mesh.weights;
-        const Json* weights = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "weights");
+        const Json* weights =
+            find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "weights");
         if (weights != nullptr && !mesh.weights.empty()) {
             node.restWeights = readWeights(document, *weights, mesh.weights.size(),
-                                       fmt::format("/nodes/{}/weights", node.source));
+                                           fmt::format("/nodes/{}/weights", node.source));
         }
         node.weights = node.restWeights;
     }

@@ -60,8 +60,8 @@ struct Node {
     int camera = -1;
     int light = -1;
     Matrix4 world{};
-    int source = -1;  // its number in the file
-    int skin = -1;    // index into Scene::skins: then the mesh follows that, and not `world`
+    int source = -1;                  // its number in the file
+    int skin = -1;                    // index into Scene::skins: then the mesh follows that, and not `world`
     std::optional<Matrix4> matrix{};  // where the file gives one; else `rest` is the local transform
     Transform rest{};
     std::vector<double> restWeights{};  // of the mesh's morph targets: one each, whoever gives them

@@ -59,7 +59,8 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& js
     const std::string place = pointer + "/inverseBindMatrices";
     if (matrices->size() < joints) {
         return document.error("skin-matrices", place,
-                              fmt::format("has {} matrices for {} joints", matrices->size(), joints), kExport);
+                              fmt::format("has {} matrices for {} joints", matrices->size(), joints),
+                              kExport);
     }
     matrices->resize(joints);
     if (!std::ranges::all_of(*matrices, fitsFloat)) {
@@ -106,11 +107,11 @@ Status checkJoints(const Document& document, const Mesh& mesh, const Skin& skin)
         const SkinInfluences& influences = primitive.influences;
         for (std::size_t i = 0; i < influences.joints.size(); ++i) {
             if (influences.weights[i] > 0.0F && influences.joints[i] >= skin.joints.size()) {
-                return document.error("skin-joint-range", primitive.pointer + "/attributes/JOINTS_0",
-                                      fmt::format("vertex {} follows joint {}, the skin has {}",
-                                                  i / influences.count, influences.joints[i],
-                                                  skin.joints.size()),
-                                      "export the mesh again with its skin");
+                return document.error(
+                    "skin-joint-range", primitive.pointer + "/attributes/JOINTS_0",
+                    fmt::format("vertex {} follows joint {}, the skin has {}", i / influences.count,
+                                influences.joints[i], skin.joints.size()),
+                    "export the mesh again with its skin");
             }
         }
     }

@@ -47,8 +47,10 @@ constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materi
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
 constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
-constexpr std::array kPrimitive{object("attributes", kAttributeRules, true), index("indices", "/accessors"),
-                                index("material", "/materials"), integer("mode", 0.0, kMaxInt),
+constexpr std::array kPrimitive{object("attributes", kAttributeRules, true),
+                                index("indices", "/accessors"),
+                                index("material", "/materials"),
+                                integer("mode", 0.0, kMaxInt),
                                 objects("targets", kTargetRules),
                                 object("extensions", kPrimitiveExtensions)};
 constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numbers("weights", 0)};
@@ -169,7 +171,8 @@ Json project(const Json& from, std::span<const Rule> rules) {
     for (const Rule& rule : rules) {
         const Json* member = find(from, rule.name);
         // These are read from the file's JSON; of extensions, tinygltf narrows the integers.
-        const bool apart = isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
+        const bool apart =
+            isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
         if (member == nullptr || apart) {
             continue;
         }

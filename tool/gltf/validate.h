@@ -8,8 +8,8 @@
 
 namespace glint::gltf {
 
-// Types, ranges and references of everything that the importer reads, but of accessors only those that a mesh,
-// an animation or a skin uses. `extras` are not looked at.
+// Types, ranges and references of everything that the importer reads, but of accessors only those that a
+// mesh, an animation or a skin uses. `extras` are not looked at.
 std::optional<SchemaError> checkDocument(Json& root);
 
 // The part of a checked document that the importer reads, for tinygltf: no buffers and images (the importer

@@ -10,8 +10,9 @@
 namespace glint {
 
 struct Pose {
-    std::vector<Matrix4> worlds;               // of Scene::nodes, in their order
-    std::vector<std::vector<double>> weights;  // likewise: of the node's morph targets; empty where it has none
+    std::vector<Matrix4> worlds;  // of Scene::nodes, in their order
+    std::vector<std::vector<double>>
+        weights;  // likewise: of the node's morph targets; empty where it has none
 };
 
 // As the file places everything.

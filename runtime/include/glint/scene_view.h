@@ -27,8 +27,8 @@ struct PrimitiveView {
     std::span<const std::array<float, 4>> colors;  // linear RGBA
     std::span<const std::uint32_t> indices;        // 3 a triangle
     std::span<const MorphTargetView> targets{};
-    // Of a primitive that follows a skin: as many a vertex for all of them, vertex by vertex. The joints index
-    // InstanceView::joints; the weights of a vertex are at least 0 and sum to 1.
+    // Of a primitive that follows a skin: as many a vertex for all of them, vertex by vertex. The joints
+    // index InstanceView::joints; the weights of a vertex are at least 0 and sum to 1.
     std::span<const std::uint16_t> joints{};
     std::span<const float> jointWeights{};
 };
@@ -37,8 +37,8 @@ struct PrimitiveView {
 struct InstanceView {
     std::uint32_t mesh = 0;
     std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
-    // Of a mesh that follows a skin: from the mesh's space to that which objectToWorld starts from, three rows
-    // of four a joint. Empty: the mesh keeps its shape.
+    // Of a mesh that follows a skin: from the mesh's space to that which objectToWorld starts from, three
+    // rows of four a joint. Empty: the mesh keeps its shape.
     std::span<const std::array<float, 12>> joints{};
     // Of a mesh with morph targets: one a target, missing ones are 0. Empty: likewise.
     std::span<const float> morphWeights{};

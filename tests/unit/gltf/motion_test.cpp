@@ -34,8 +34,8 @@ struct Animated {
         builder.addTriangle();
         const int input = builder.addAccessor(times, 1);
         if (output < 0) {
-            output = builder.addAccessor(std::vector<float>(times.size() * static_cast<std::size_t>(components), 1.0F),
-                                         components);
+            output = builder.addAccessor(
+                std::vector<float>(times.size() * static_cast<std::size_t>(components), 1.0F), components);
         }
         animation = {{"name", "move"},
                      {"samplers", {{{"input", input}, {"output", output}}}},
@@ -155,8 +155,8 @@ GltfBuilder skinned(const std::vector<std::vector<float>>& weights) {
     GltfBuilder builder;
     Json& primitive = builder.addTriangle();
     for (std::size_t set = 0; set < weights.size(); ++set) {
-        primitive["attributes"]["JOINTS_" + std::to_string(set)] = builder.addAccessor(
-            std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
+        primitive["attributes"]["JOINTS_" + std::to_string(set)] =
+            builder.addAccessor(std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
         primitive["attributes"]["WEIGHTS_" + std::to_string(set)] = builder.addAccessor(weights[set], 4);
     }
     std::vector<float> matrices(32, 0.0F);
@@ -206,9 +206,10 @@ TEST(GltfSkins, JoinSetsAndNormaliseWeights) {
 TEST(GltfSkins, ReadNormalisedWeightsOf16Bits) {
     GltfBuilder builder = skinned({kHalves});
     Json& attributes = builder.root["meshes"][0]["primitives"][0]["attributes"];
-    attributes["WEIGHTS_0"] =
-        builder.addAccessor(std::vector<std::uint16_t>{32768, 32767, 0, 0, 65535, 0, 0, 0, 0, 65535, 0, 0}, 4, true);
-    attributes["JOINTS_0"] = builder.addAccessor(std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
+    attributes["WEIGHTS_0"] = builder.addAccessor(
+        std::vector<std::uint16_t>{32768, 32767, 0, 0, 65535, 0, 0, 0, 0, 65535, 0, 0}, 4, true);
+    attributes["JOINTS_0"] =
+        builder.addAccessor(std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
     const Scene scene = mustImport(builder);
     EXPECT_NEAR(primitiveOf(scene).influences.weights.at(0), 32768.0F / 65535.0F, 1e-7F);
     EXPECT_TRUE(scene.warnings.empty());
@@ -284,14 +285,14 @@ TEST(GltfMorphs, ReadSparseDifferences) {
     const float value[] = {7, 8, 9};
     const int indices = builder.addView(&index, sizeof(index));
     const int values = builder.addView(value, sizeof(value));
-    const int accessor = builder.append(
-        "accessors", {{"componentType", 5126},
-                      {"count", 3},
-                      {"type", "VEC3"},
-                      {"sparse",
-                       {{"count", 1},
-                        {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
-                        {"values", {{"bufferView", values}}}}}});
+    const int accessor =
+        builder.append("accessors", {{"componentType", 5126},
+                                     {"count", 3},
+                                     {"type", "VEC3"},
+                                     {"sparse",
+                                      {{"count", 1},
+                                       {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                                       {"values", {{"bufferView", values}}}}}});
     primitive["targets"] = {{{"POSITION", accessor}}};
     const Scene scene = mustImport(builder);
     EXPECT_EQ(primitiveOf(scene).targets.at(0).positions,

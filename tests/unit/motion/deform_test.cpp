@@ -23,7 +23,8 @@ TEST(Deform, TargetsAddUp) {
     const std::vector<double> weights{0.5, 1.0, 0.25};
     EXPECT_EQ(deformedPositions(primitive, weights, {}), (std::vector<Double3>{{2, 0, 0.5}, {0, 1, 1}}));
     // Missing weights are 0.
-    EXPECT_EQ(deformedPositions(primitive, std::vector{1.0}, {}), (std::vector<Double3>{{1, 0, 1}, {0, 1, 2}}));
+    EXPECT_EQ(deformedPositions(primitive, std::vector{1.0}, {}),
+              (std::vector<Double3>{{1, 0, 1}, {0, 1, 2}}));
     EXPECT_EQ(deformedPositions(primitive, {}, {}), (std::vector<Double3>{{1, 0, 0}, {0, 1, 0}}));
 }
 

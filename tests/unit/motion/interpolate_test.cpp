@@ -43,7 +43,8 @@ AnimationSampler makeSampler(Interpolation interpolation, std::vector<float> tim
 }
 
 TEST(Interpolation, StepHoldsUntilTheNextKeyframe) {
-    const AnimationSampler sampler = makeSampler(Interpolation::Step, {1.0F, 2.0F, 4.0F}, 2, {1, 2, 3, 4, 5, 6});
+    const AnimationSampler sampler =
+        makeSampler(Interpolation::Step, {1.0F, 2.0F, 4.0F}, 2, {1, 2, 3, 4, 5, 6});
     expectNear(sampleNumbers(sampler, 0.0), {1, 2});
     expectNear(sampleNumbers(sampler, 1.999), {1, 2});
     expectNear(sampleNumbers(sampler, 2.0), {3, 4});
@@ -53,7 +54,8 @@ TEST(Interpolation, StepHoldsUntilTheNextKeyframe) {
 }
 
 TEST(Interpolation, LinearGoesStraight) {
-    const AnimationSampler sampler = makeSampler(Interpolation::Linear, {1.0F, 2.0F, 4.0F}, 2, {0, 8, 4, 0, 0, 2});
+    const AnimationSampler sampler =
+        makeSampler(Interpolation::Linear, {1.0F, 2.0F, 4.0F}, 2, {0, 8, 4, 0, 0, 2});
     expectNear(sampleNumbers(sampler, -1.0), {0, 8});
     expectNear(sampleNumbers(sampler, 1.25), {1, 6});
     expectNear(sampleNumbers(sampler, 2.0), {4, 0});
@@ -116,9 +118,8 @@ TEST(Interpolation, RotationsAreUnit) {
     const AnimationSampler none = makeSampler(Interpolation::Step, {0.0F}, 4, {0, 0, 0, 0});
     expectNear(sampleRotation(none, 0.0), {0, 0, 0, 1});
     const Quaternion zero{};
-    const AnimationSampler spline =
-        makeSampler(Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
-                    floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
+    const AnimationSampler spline = makeSampler(Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
+                                                floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
     // Without tangents the middle is the mean, (0, 0, 0.5, 0.5) before its length is made 1.
     expectNear(sampleRotation(spline, 0.5), turned(0.5 * kPi));
 }

@@ -1,6 +1,7 @@
 // Boxes of deformed meshes, and the rules that they decide.
-#include "motion_bounds.h"
 #include "motion_rules.h"
+
+#include "motion_bounds.h"
 
 #include <gtest/gtest.h>
 
