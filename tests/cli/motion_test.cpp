@@ -114,11 +114,11 @@ TEST_F(MovingScene, UsesPackagesThatCanDeform) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
     const Outcome outcome = render("out.exr", {"--frames", "0:1", "--package", "package"});
     EXPECT_EQ(outcome.exit, 0) << outcome.err;
-    EXPECT_NE(run({"inspect", "package"}).out.find("deform.comp"), std::string::npos);
+    EXPECT_NE(run({"inspect", "package"}).out.find("deform.spv"), std::string::npos);
     // One of the same scene without its morph target lacks the pass.
     const std::string still = writeTinyScene(path("")).string();
     ASSERT_EQ(run({"compile", still, "-o", "other"}).exit, 0);
-    EXPECT_EQ(run({"inspect", "other"}).out.find("deform.comp"), std::string::npos);
+    EXPECT_EQ(run({"inspect", "other"}).out.find("deform.spv"), std::string::npos);
     scene_ = writeTinyScene(path(""), {.animated = true}).string();
     const Outcome refused = render("out.exr", {"--package", "other"});
     EXPECT_EQ(refused.exit, 1);
