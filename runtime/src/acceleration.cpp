@@ -115,50 +115,63 @@ Status submitTlasBuild(Context::State& context, const VkAccelerationStructureBui
 
 }  // namespace
 
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
+                    bool updatable, TlasBuild& build) {
+    const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
+    if (count > limit) {
+        return makeError("tlas-limit", "",
+                         "the scene has " + std::to_string(count) + " instances, the device takes " +
+                             std::to_string(limit),
+                         "use a smaller scene");
+    }
+    VkAccelerationStructureGeometryKHR& geometry = build.geometry;
+    geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+    geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
+    geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
+    geometry.geometry.instances.data.deviceAddress = instances;
+    build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+    build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
+    build.info.flags =
+        VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
+        (updatable
+             ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
+             : 0U);
+    build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+    build.info.geometryCount = 1;
+    build.info.pGeometries = &geometry;
+    build.sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    const auto primitives = static_cast<std::uint32_t>(count);
+    context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
+                                                     VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
+                                                     &build.info, &primitives, &build.sizes);
+    return okStatus();
+}
+
 Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
                                         std::span<const VkAccelerationStructureInstanceKHR> instances,
                                         double& buildMs) {
-    const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
-    if (instances.size() > limit) {
-        return makeError("tlas-limit", "",
-                         "the scene has " + std::to_string(instances.size()) +
-                             " instances, the device takes " + std::to_string(limit),
-                         "use a smaller scene");
-    }
     MemoryPool transient(context);
     Result<Buffer> buffer = uploadInstances(context, transient, instances);
     if (!buffer) {
         return buffer.error();
     }
-    const auto count = static_cast<std::uint32_t>(instances.size());
-    VkAccelerationStructureGeometryKHR geometry{};
-    geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
-    geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
-    geometry.geometry.instances.data.deviceAddress = buffer->address;
-    VkAccelerationStructureBuildGeometryInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
-    info.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
-    info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
-    info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
-    info.geometryCount = 1;
-    info.pGeometries = &geometry;
-    VkAccelerationStructureBuildSizesInfoKHR sizes{};
-    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
-    context.vk.GetAccelerationStructureBuildSizesKHR(
-        context.handles.device, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
-    Result<AccelerationStructure> structure = createStructure(context, pool, sizes.accelerationStructureSize,
-                                                              VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
+    TlasBuild build;
+    if (Status status = describeTlas(context, buffer->address, instances.size(), false, build); !status) {
+        return status.error();
+    }
+    Result<AccelerationStructure> structure = createStructure(
+        context, pool, build.sizes.accelerationStructureSize, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
     if (!structure) {
         return structure.error();
     }
-    Result<Scratch> scratch = createScratch(context, transient, sizes.buildScratchSize);
+    Result<Scratch> scratch = createScratch(context, transient, build.sizes.buildScratchSize);
     if (!scratch) {
         return scratch.error();
     }
-    info.dstAccelerationStructure = structure->handle.get();
-    info.scratchData.deviceAddress = scratch->address;
-    if (Status status = submitTlasBuild(context, info, count, buildMs); !status) {
+    build.info.dstAccelerationStructure = structure->handle.get();
+    build.info.scratchData.deviceAddress = scratch->address;
+    const auto count = static_cast<std::uint32_t>(instances.size());
+    if (Status status = submitTlasBuild(context, build.info, count, buildMs); !status) {
         return status.error();
     }
     return structure;

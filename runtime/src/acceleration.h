@@ -36,6 +36,7 @@ struct BlasCapacity {
 struct BlasInput {
     std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
     bool dataAccess = false;               // shaders read the positions of hit triangles from it
+    bool updatable = false;                // built fast and refitted, not compacted
 };
 
 // What one BLAS of this device may hold: its limits, and no structure or scratch above maxStorageBufferRange,
@@ -58,6 +59,17 @@ Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, 
 Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
                                         std::span<const VkAccelerationStructureInstanceKHR> instances,
                                         double& buildMs);
+
+// A top level in Vulkan's terms: `instances` is the address of their array, 0 where sizes are asked for.
+// `info` points at `geometry`: it is set again after a move.
+struct TlasBuild {
+    VkAccelerationStructureGeometryKHR geometry{};
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+};
+// Error "tlas-limit".
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
+                    bool updatable, TlasBuild& build);
 
 // For both: a structure of `bytes`, not yet built.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,

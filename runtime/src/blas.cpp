@@ -1,5 +1,6 @@
 // Bottom levels: sizes, batches, compaction.
 #include "acceleration.h"
+#include "blas_build.h"
 #include "commands.h"
 #include "timer.h"
 #include "vulkan_error.h"
@@ -21,64 +22,6 @@ constexpr MemoryDependency kBuildToAll{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTUR
                                        VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                        VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
-
-// VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_DATA_ACCESS_KHR, which Vulkan headers before 1.3.249 lack.
-constexpr VkBuildAccelerationStructureFlagsKHR kAllowDataAccess = 0x800;
-
-// An input in Vulkan's terms. `info` points into `geometries`: vectors keep that when a Blas moves.
-struct BlasBuild {
-    std::vector<VkAccelerationStructureGeometryKHR> geometries;
-    std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
-    VkAccelerationStructureBuildGeometryInfoKHR info{};
-    VkDeviceSize structureBytes = 0;
-    VkDeviceSize scratchBytes = 0;  // rounded up to the alignment of scratch
-};
-
-VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
-    VkAccelerationStructureGeometryKHR described{};
-    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    described.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
-    described.flags = geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : 0;
-    VkAccelerationStructureGeometryTrianglesDataKHR& triangles = described.geometry.triangles;
-    triangles.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
-    triangles.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
-    triangles.vertexData.deviceAddress = geometry.positions;
-    triangles.vertexStride = 3 * sizeof(float);
-    triangles.maxVertex = geometry.vertexCount - 1;
-    triangles.indexType = VK_INDEX_TYPE_UINT32;
-    triangles.indexData.deviceAddress = geometry.indices;
-    return described;
-}
-
-BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
-    BlasBuild build;
-    std::vector<std::uint32_t> counts;
-    for (const BlasGeometry& geometry : input.geometries) {
-        build.geometries.push_back(describeGeometry(geometry));
-        VkAccelerationStructureBuildRangeInfoKHR range{};
-        range.primitiveCount = geometry.triangleCount;
-        build.ranges.push_back(range);
-        counts.push_back(geometry.triangleCount);
-    }
-    build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
-    build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
-    build.info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
-                       VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR |
-                       (input.dataAccess ? kAllowDataAccess : 0U);
-    build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
-    build.info.geometryCount = static_cast<std::uint32_t>(build.geometries.size());
-    build.info.pGeometries = build.geometries.data();
-    VkAccelerationStructureBuildSizesInfoKHR sizes{};
-    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
-    context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
-                                                     VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
-                                                     &build.info, counts.data(), &sizes);
-    const VkDeviceSize alignment =
-        context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
-    build.structureBytes = sizes.accelerationStructureSize;
-    build.scratchBytes = (sizes.buildScratchSize + alignment - 1) / alignment * alignment;
-    return build;
-}
 
 // Builds one batch, in transient memory, and its compacted copies.
 class BatchBuilder {

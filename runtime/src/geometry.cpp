@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace glint {
 namespace {
@@ -115,26 +116,67 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
     }
 }
 
-PartsOfMesh partition(const PackageScene& known, const SceneView& scene,
-                      std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                      std::vector<MeshPart>& parts) {
-    std::map<std::pair<std::uint32_t, bool>, std::vector<std::vector<TriangleRange>>> members;
-    for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+// Appends the parts of a mesh, which `instance` alone has if it is given; returns their indices.
+std::vector<std::uint32_t> partition(const PackageScene& known, const SceneView& scene,
+                                     std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                     std::uint32_t mesh, std::optional<std::uint32_t> instance,
+                                     std::vector<MeshPart>& parts) {
+    std::map<bool, std::vector<std::vector<TriangleRange>>> members;
+    const PrimitiveRange own = primitivesOf(scene.primitives, mesh);
+    for (std::uint32_t i = own.first; i < own.end; ++i) {
         const PrimitiveView& view = scene.primitives[i];
         if (primitives[i].triangleCount > 0) {
             const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
             appendRanges(i, primitives[i].triangleCount, capacity,
-                         members[{view.mesh, (flags & gpu::kGeometryDoubleSided) != 0}]);
+                         members[(flags & gpu::kGeometryDoubleSided) != 0]);
+        }
+    }
+    std::vector<std::uint32_t> indices;
+    for (auto& [doubleSided, blases] : members) {
+        for (std::vector<TriangleRange>& ranges : blases) {
+            indices.push_back(static_cast<std::uint32_t>(parts.size()));
+            parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+        }
+    }
+    return indices;
+}
+
+// Parts that instances share: of every mesh but those that all their instances deform.
+PartsOfMesh sharedParts(const PackageScene& known, const SceneView& scene,
+                        std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                        const std::vector<bool>& deforms, std::vector<MeshPart>& parts) {
+    std::set<std::uint32_t> meshes;
+    for (const PrimitiveView& view : scene.primitives) {
+        meshes.insert(view.mesh);
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (deforms[i]) {
+            meshes.erase(scene.instances[i].mesh);
+        }
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (!deforms[i]) {
+            meshes.insert(scene.instances[i].mesh);
         }
     }
     PartsOfMesh partsOfMesh;
-    for (auto& [key, blases] : members) {
-        for (std::vector<TriangleRange>& ranges : blases) {
-            partsOfMesh[key.first].push_back(static_cast<std::uint32_t>(parts.size()));
-            parts.push_back({key.first, key.second, std::move(ranges)});
+    for (const std::uint32_t mesh : meshes) {
+        std::vector<std::uint32_t> indices =
+            partition(known, scene, primitives, capacity, mesh, std::nullopt, parts);
+        if (!indices.empty()) {
+            partsOfMesh[mesh] = std::move(indices);
         }
     }
     return partsOfMesh;
+}
+
+void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, std::uint32_t primitive,
+                   gpu::GeometryRecord& record) {
+    if (const auto found = deformed.find({instance, primitive}); found != deformed.end()) {
+        record.positions = found->second.positions;
+        record.normals = found->second.normals;
+        record.tangents = found->second.tangents;
+    }
 }
 
 }  // namespace
@@ -154,21 +196,39 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
     return uploaded;
 }
 
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
+    const auto own = std::ranges::equal_range(primitives, mesh, {}, &PrimitiveView::mesh);
+    return {static_cast<std::uint32_t>(own.begin() - primitives.begin()),
+            static_cast<std::uint32_t>(own.end() - primitives.begin())};
+}
+
 Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity) {
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed) {
     SceneLayout layout;
-    const PartsOfMesh partsOfMesh = partition(known, scene, primitives, capacity, layout.parts);
+    std::vector<bool> deforms(scene.instances.size());
+    for (const auto& [place, vertices] : deformed) {
+        deforms[place.first] = true;
+    }
+    const PartsOfMesh partsOfMesh = sharedParts(known, scene, primitives, capacity, deforms, layout.parts);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
         layout.instances.push_back(record);
-        const auto parts = partsOfMesh.find(instance.mesh);
+        std::vector<std::uint32_t> parts;
+        if (deforms[i]) {
+            parts = partition(known, scene, primitives, capacity, instance.mesh, i, layout.parts);
+        } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
+            parts = shared->second;
+        }
         // A flattened instance has no place in a TLAS, whose transforms must be invertible. It is not drawn
         // either: a surface that the camera sees and reflections don't would be worse than none.
-        if (parts == partsOfMesh.end() || !isInvertible(instance.objectToWorld)) {
+        // One that moves may be whole again in the next frame: it keeps its place, hidden.
+        const bool hidden = !isInvertible(instance.objectToWorld);
+        if (hidden && !scene.moves) {
             continue;
         }
-        for (const std::uint32_t part : parts->second) {
+        for (const std::uint32_t part : parts) {
             layout.partInstances.push_back({part, i, static_cast<std::uint32_t>(layout.geometries.size())});
             for (const TriangleRange& range : layout.parts[part].ranges) {
                 const PrimitiveView& view = scene.primitives[range.primitive];
@@ -176,8 +236,9 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
                 const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
                 layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
                                         layout.parts[part].doubleSided,
-                                        (record.flags & gpu::kInstanceMirrored) != 0});
+                                        (record.flags & gpu::kInstanceMirrored) != 0, i, hidden});
                 layout.geometries.push_back(makeGeometryRecord(entry, primitive, range.first, i));
+                placeDeformed(deformed, i, range.primitive, layout.geometries.back());
                 layout.triangles += range.count;
             }
         }

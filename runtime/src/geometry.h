@@ -10,8 +10,11 @@
 #include <glint/scene_view.h>
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -35,6 +38,15 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
                                                    Uploader& uploader,
                                                    std::span<const PrimitiveView> primitives);
 
+// Deformed vertices of a primitive of an instance; 0 where it lacks the attribute.
+struct DeformedVertices {
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+};
+// By indices into SceneView::instances and primitives. An instance that is here has its own parts.
+using DeformedAddresses = std::map<std::pair<std::uint32_t, std::uint32_t>, DeformedVertices>;
+
 // Consecutive triangles of a primitive: a geometry of a BLAS.
 struct TriangleRange {
     std::uint32_t primitive = 0;  // index into SceneView::primitives
@@ -49,6 +61,7 @@ struct MeshPart {
     std::uint32_t mesh = 0;
     bool doubleSided = false;
     std::vector<TriangleRange> ranges;
+    std::optional<std::uint32_t> instance{};  // that alone has it, as it deforms the mesh
 };
 
 // A part placed in the world: an instance of the TLAS.
@@ -64,7 +77,16 @@ struct Draw {
     std::uint32_t vertexCount = 0;
     bool doubleSided = false;
     bool mirrored = false;
+    std::uint32_t instance = 0;  // index into SceneView::instances
+    bool hidden = false;         // the instance is flattened, as long as it is
 };
+
+// Those of a mesh among primitives that are sorted as SceneView::primitives are: indices [first, end).
+struct PrimitiveRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
 
 struct SceneLayout {
     std::vector<MeshPart> parts;  // in order of mesh; single-sided first
@@ -78,6 +100,7 @@ struct SceneLayout {
 // Pure. `primitives` are those of uploadPrimitives(); the capacity is at least one triangle. Error
 // "scene-geometries": more records than the 24 bits of a custom index can number.
 Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity);
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed = {});
 
 }  // namespace glint

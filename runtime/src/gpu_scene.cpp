@@ -1,6 +1,7 @@
 // GpuScene: the order of an upload.
 #include "gpu_scene_state.h"
 #include "instance_math.h"
+#include "pass_dependencies.h"
 #include "scene_checks.h"
 #include "textures.h"
 
@@ -23,8 +24,10 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
-Status uploadData(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
-                  SceneLayout& layout) {
+// `deformer` is made where an instance changes its shape.
+Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
+                  std::unique_ptr<Deformer>& deformer) {
+    const PackageScene known = package.scene(scene.packageScene);
     Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
     if (!uploader) {
         return uploader.error();
@@ -35,7 +38,16 @@ Status uploadData(GpuScene::State& state, const PackageScene& known, const Scene
         return primitives.error();
     }
     state.primitives = std::move(*primitives);
-    Result<SceneLayout> laidOut = layOutScene(known, scene, state.primitives, blasCapacity(state.context));
+    if (hasDeformedInstance(scene)) {
+        Result<std::unique_ptr<Deformer>> created = Deformer::create(
+            state.context, package, scene, state.primitives, **uploader, state.pool, state.deformed);
+        if (!created) {
+            return created.error();
+        }
+        deformer = std::move(*created);
+    }
+    Result<SceneLayout> laidOut =
+        layOutScene(known, scene, state.primitives, blasCapacity(state.context), state.deformed.addresses);
     if (!laidOut) {
         return laidOut.error();
     }
@@ -76,21 +88,57 @@ Status uploadData(GpuScene::State& state, const PackageScene& known, const Scene
     return (*uploader)->finish();
 }
 
-Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
-                         const SceneLayout& layout, bool dataAccess) {
-    std::vector<BlasInput> inputs;
-    for (const MeshPart& part : layout.parts) {
-        BlasInput input;
-        input.dataAccess = dataAccess;
-        for (const TriangleRange& range : part.ranges) {
-            const PrimitiveView& view = scene.primitives[range.primitive];
-            const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
-            const GpuPrimitive& primitive = state.primitives[range.primitive];
-            const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
-            input.geometries.push_back({primitive.positions, indices, primitive.vertexCount, range.count,
-                                        (flags & gpu::kGeometryAlphaTested) == 0});
+// The vertices of the scene's pose, before anything is built of them.
+Status deformOnce(Context::State& context, const Deformer& deformer, std::size_t instances) {
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    deformer.recordPose(*commands);
+    recordDependency(context, *commands, kAllToAll);
+    deformer.recordDeform(*commands, std::vector<bool>(instances, true));
+    recordDependency(context, *commands, kAllToAll);
+    return runner->submitAndWait();
+}
+
+BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, const SceneView& scene,
+                    const MeshPart& part, bool dataAccess) {
+    BlasInput input;
+    input.dataAccess = dataAccess;
+    input.updatable = scene.moves && part.instance.has_value();
+    for (const TriangleRange& range : part.ranges) {
+        const PrimitiveView& view = scene.primitives[range.primitive];
+        const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+        const GpuPrimitive& primitive = state.primitives[range.primitive];
+        const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
+        VkDeviceAddress positions = primitive.positions;
+        if (part.instance) {
+            const auto own = state.deformed.addresses.find({*part.instance, range.primitive});
+            positions = own == state.deformed.addresses.end() ? positions : own->second.positions;
         }
-        inputs.push_back(std::move(input));
+        input.geometries.push_back({positions, indices, primitive.vertexCount, range.count,
+                                    (flags & gpu::kGeometryAlphaTested) == 0});
+    }
+    return input;
+}
+
+// Those that stay as they are, compacted; what moves is built by createMotion().
+Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
+                         const SceneLayout& layout, bool dataAccess, std::vector<BlasInput>& refitted) {
+    std::vector<BlasInput> inputs;
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < layout.parts.size(); ++i) {
+        BlasInput input = makeInput(state, known, scene, layout.parts[i], dataAccess);
+        if (input.updatable) {
+            refitted.push_back(std::move(input));
+        } else {
+            parts.push_back(i);
+            inputs.push_back(std::move(input));
+        }
     }
     BlasStatistics statistics;
     Result<std::vector<AccelerationStructure>> blases =
@@ -99,6 +147,10 @@ Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, cons
         return blases.error();
     }
     state.blases = std::move(*blases);
+    state.partBlases.resize(layout.parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        state.partBlases[parts[i]] = state.blases[i].address;
+    }
     state.statistics.blasCount = static_cast<std::uint32_t>(state.blases.size());
     state.statistics.blasBytes = statistics.bytes;
     state.statistics.blasUncompactedBytes = statistics.uncompactedBytes;
@@ -106,30 +158,12 @@ Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, cons
     return okStatus();
 }
 
-VkAccelerationStructureInstanceKHR makeInstance(const GpuScene::State& state, const SceneView& scene,
-                                                const SceneLayout& layout, const PartInstance& placed) {
-    VkAccelerationStructureInstanceKHR instance{};
-    const std::array<float, 12>& rows = scene.instances[placed.instance].objectToWorld;
-    static_assert(sizeof(instance.transform) == sizeof(rows));
-    std::memcpy(&instance.transform, rows.data(), sizeof(rows));
-    // An instance mask of 8 bits, a custom index of 24: layOutScene() has seen that it fits.
-    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
-    // Shader binding tables, where they have records, have one for each geometry record.
-    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
-    instance.mask = 0xFF;
-    // Facing is determined in object space, so that a mirroring transform changes nothing, and the default
-    // is glTF's: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
-    instance.flags = layout.parts[placed.part].doubleSided
-                         ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU
-                         : 0U;
-    instance.accelerationStructureReference = state.blases[placed.part].address;
-    return instance;
-}
-
 Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout) {
     std::vector<VkAccelerationStructureInstanceKHR> instances;
     for (const PartInstance& placed : layout.partInstances) {
-        instances.push_back(makeInstance(state, scene, layout, placed));
+        instances.push_back(makePlaced(layout.parts[placed.part].doubleSided, placed,
+                                       scene.instances[placed.instance].objectToWorld,
+                                       state.partBlases[placed.part]));
     }
     Result<AccelerationStructure> tlas =
         buildTlas(state.context, state.pool, instances, state.statistics.tlasBuildMs);
@@ -141,6 +175,24 @@ Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const Scene
 }
 
 }  // namespace
+
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+                                              const std::array<float, 12>& objectToWorld,
+                                              VkDeviceAddress blas) {
+    VkAccelerationStructureInstanceKHR instance{};
+    static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
+    std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
+    // An instance mask of 8 bits, a custom index of 24: layOutScene() has seen that it fits.
+    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
+    // Shader binding tables, where they have records, have one for each geometry record.
+    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
+    instance.mask = 0xFF;
+    // Facing is determined in object space, so that a mirroring transform changes nothing, and the default
+    // is glTF's: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
+    instance.flags = doubleSided ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU : 0U;
+    instance.accelerationStructureReference = blas;
+    return instance;
+}
 
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
                                                    const SceneView& scene) {
@@ -165,13 +217,22 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     }
     auto state = std::make_unique<State>(contextState);
     SceneLayout layout;
-    if (Status s = uploadData(*state, known, scene, layout); !s) {
+    std::unique_ptr<Deformer> deformer;
+    if (Status s = uploadData(*state, package, scene, layout, deformer); !s) {
         return s.error();
     }
-    if (Status s = buildBottomLevels(*state, known, scene, layout, package.positionFetch()); !s) {
+    if (deformer) {
+        if (Status s = deformOnce(contextState, *deformer, scene.instances.size()); !s) {
+            return s.error();
+        }
+    }
+    std::vector<BlasInput> refitted;
+    if (Status s = buildBottomLevels(*state, known, scene, layout, package.positionFetch(), refitted); !s) {
         return s.error();
     }
-    if (Status s = buildTopLevel(*state, scene, layout); !s) {
+    if (Status s = scene.moves ? createMotion(*state, scene, layout, refitted, std::move(deformer))
+                               : buildTopLevel(*state, scene, layout);
+        !s) {
         return s.error();
     }
     Result<std::vector<UniqueSampler>> samplers = createSamplers(contextState, known.samplers);
@@ -185,7 +246,9 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     state->statistics.triangles = layout.triangles;
     state->statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
     state->statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
-    state->draws = std::move(layout.draws);
+    if (!state->motion) {
+        state->draws = std::move(layout.draws);
+    }
     return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
 }
 
@@ -194,6 +257,29 @@ GpuScene::~GpuScene() = default;
 
 const GpuScene::Statistics& GpuScene::statistics() const {
     return state_->statistics;
+}
+
+Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion) {
+    return recordMotion(*state_, commands, motion);
+}
+
+Status GpuScene::updateAndWait(const MotionView& motion) {
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    if (Status s = update(*commands, motion); !s) {
+        return s;
+    }
+    return runner->submitAndWait();
+}
+
+Result<MotionStatistics> GpuScene::motion() const {
+    return readMotion(*state_);
 }
 
 GpuScene::State& GpuScene::state() {

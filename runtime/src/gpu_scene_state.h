@@ -4,10 +4,12 @@
 #include "acceleration.h"
 #include "geometry.h"
 #include "resources.h"
+#include "scene_motion.h"
 
 #include <glint/renderer.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace glint {
@@ -22,7 +24,9 @@ struct GpuScene::State {
     Context::State& context;
     MemoryPool pool;
     std::vector<GpuPrimitive> primitives;
-    std::vector<AccelerationStructure> blases;
+    DeformedBuffers deformed;
+    std::vector<AccelerationStructure> blases;  // those that are built once
+    std::vector<VkDeviceAddress> partBlases;    // by SceneLayout::parts
     AccelerationStructure tlas;
     Buffer geometries;
     std::vector<std::uint32_t> shaderIds;  // of the geometry records, in their order
@@ -37,6 +41,7 @@ struct GpuScene::State {
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Draw> draws;
     Statistics statistics;
+    std::unique_ptr<SceneMotion> motion;  // null: the scene stays as it is
 };
 
 // Layout, pool and set 0, filled from the state's structures, textures and samplers.

@@ -101,7 +101,8 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     }
     // Linear and optimal resources never share a block, which settles bufferImageGranularity.
     auto block = std::ranges::find_if(blocks_, [&](const Block& candidate) {
-        return candidate.type == *type && candidate.tiling == tiling &&
+        const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
+        return candidate.type == *type && candidate.tiling == tiling && reachable &&
                alignUp(candidate.used, requirements.alignment) + requirements.size <= candidate.bytes;
     });
     if (block == blocks_.end()) {

@@ -105,6 +105,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.positionFetch > 1) {
         return outside("the source of positions", header.positionFetch);
     }
+    if (header.deforms > 1) {
+        return outside("the kind of movement", header.deforms);
+    }
     if (header.environmentMap > 1) {
         return outside("the kind of sky", header.environmentMap);
     }
@@ -264,6 +267,7 @@ package::PackageShape shapeOf(const Package::State& state) {
             shape.retired.push_back(id);
         }
     }
+    shape.deforms = header.deforms != 0;
     return shape;
 }
 

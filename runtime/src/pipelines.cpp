@@ -162,6 +162,7 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
     package::PackageShape shape = package.shape();
     shape.strategies = choice.strategy;
     shape.tracers = choice.tracer;
+    shape.deforms = false;  // that pass is the scene's own
     return shape;
 }
 

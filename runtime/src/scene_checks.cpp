@@ -154,6 +154,8 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
     return okStatus();
 }
 
+}  // namespace
+
 Status checkLights(std::span<const LightView> lights) {
     for (const LightView& light : lights) {
         const float values[] = {
@@ -177,8 +179,6 @@ Status checkLights(std::span<const LightView> lights) {
     return okStatus();
 }
 
-}  // namespace
-
 Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize) {
     if (Status status = checkPrimitives(known, scene.primitives); !status) {
         return status;
@@ -187,6 +187,9 @@ Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32
         return status;
     }
     if (Status status = checkImages(known, scene.images, maxImageSize); !status) {
+        return status;
+    }
+    if (Status status = checkDeformation(scene); !status) {
         return status;
     }
     return checkLights(scene.lights);

@@ -5,7 +5,9 @@
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace glint {
 
@@ -20,5 +22,23 @@ inline constexpr std::uint32_t kInputTangents = 1U << 11;
 // Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
 // scene), "scene-image", "scene-light". Their place is "mesh 3, primitive 1", "image 2" or "light 0".
 Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize);
+
+// Part of checkScene(): joints, weights and morph targets of primitives and instances. Errors:
+// "scene-attribute", "scene-index", "scene-motion".
+Status checkDeformation(const SceneView& scene);
+
+// What a MotionView has in common with the scene that was uploaded; of instances and lights, in their order.
+struct MotionShape {
+    std::span<const std::uint32_t> meshes;
+    std::span<const std::size_t> jointCounts;
+    std::span<const std::size_t> weightCounts;
+    std::span<const std::uint32_t> lightTypes;
+};
+
+// Pure. Errors: "scene-motion", "scene-light".
+Status checkMotion(const MotionView& motion, const MotionShape& shape);
+
+// Every light is finite and of a known type. Error "scene-light".
+Status checkLights(std::span<const LightView> lights);
 
 }  // namespace glint

@@ -62,7 +62,7 @@ TEST_F(Diagnostics, WnoLeavesThemOut) {
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(outcome.json().at("diagnostics").empty());
     EXPECT_EQ(plan({"-W", "no-extension-ignored"}).err, "");
-    EXPECT_NE(plan({"-Wno-animation-ignored"}).err, "");
+    EXPECT_NE(plan({"-Wno-animation-pointer"}).err, "");
 }
 
 TEST_F(Diagnostics, NotesAreLeftOutLikewise) {
@@ -80,8 +80,8 @@ TEST_F(Diagnostics, WerrorMakesErrorsOfAllOrOfOneId) {
         {"-Werror"},
         {"--werror=extension-ignored"},
         {"-Werror=extension-ignored"},
-        {"--werror=animation-ignored", "--werror=extension-ignored"},
-        {"-Wno-animation-ignored", "-Werror=extension-ignored"}};
+        {"--werror=animation-pointer", "--werror=extension-ignored"},
+        {"-Wno-animation-pointer", "-Werror=extension-ignored"}};
     for (const std::vector<std::string>& options : raising) {
         const Outcome outcome = plan(options);
         EXPECT_EQ(outcome.exit, 1) << options[0];
@@ -89,7 +89,7 @@ TEST_F(Diagnostics, WerrorMakesErrorsOfAllOrOfOneId) {
             << outcome.err;
         EXPECT_NE(outcome.err.find("[werror]"), std::string::npos) << outcome.err;
     }
-    for (const char* option : {"--werror=animation-ignored", "-Werror=animation-ignored"}) {
+    for (const char* option : {"--werror=animation-pointer", "-Werror=animation-pointer"}) {
         const Outcome outcome = plan({option});
         EXPECT_EQ(outcome.exit, 0) << option;
         EXPECT_NE(outcome.err.find(": warning: "), std::string::npos) << outcome.err;

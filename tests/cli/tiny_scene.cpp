@@ -69,6 +69,49 @@ void addQuad(Json& gltf, const Corners& corners, std::size_t offset, int materia
                                  {"material", material}}}}});
 }
 
+// Times, shifts, weights and a morph target, after the quads.
+std::string motionData() {
+    std::string bytes;
+    const std::array<float, 2> times{0, 1};
+    const std::array<float, 6> shifts{0, 0, 0, 1, 0, 0};
+    const Corners lifts{{{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}}};
+    append(bytes, times.data(), sizeof times);
+    append(bytes, shifts.data(), sizeof shifts);
+    append(bytes, lifts.data(), sizeof lifts);
+    return bytes;
+}
+
+constexpr std::size_t kMotionBytes = 8 + 24 + 48;
+
+void addMotion(Json& gltf) {
+    const std::size_t first = gltf["accessors"].size();
+    const auto accessor = [&](std::size_t start, std::size_t bytes, std::size_t count, const char* type) {
+        gltf["bufferViews"].push_back(
+            {{"buffer", 0}, {"byteOffset", 2 * kQuadBytes + start}, {"byteLength", bytes}});
+        gltf["accessors"].push_back({{"bufferView", gltf["bufferViews"].size() - 1},
+                                     {"componentType", kFloat},
+                                     {"count", count},
+                                     {"type", type}});
+    };
+    accessor(0, 8, 2, "SCALAR");
+    accessor(8, 24, 2, "VEC3");
+    accessor(32, 48, 4, "VEC3");
+    gltf["accessors"][first]["min"] = {0.0};
+    gltf["accessors"][first]["max"] = {1.0};
+    gltf["meshes"][1]["primitives"][0]["targets"] = {{{"POSITION", first + 2}}};
+    const auto channel = [](int sampler, int node, const char* path) {
+        return Json{{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}};
+    };
+    // Weights from 0 to 1 are the times themselves.
+    const Json shift{{"input", first}, {"output", first + 1}};
+    const Json weights{{"input", first}, {"output", first}};
+    gltf["animations"] = {
+        {{"name", "Slide"},
+         {"samplers", {shift, weights}},
+         {"channels", {channel(0, 1, "translation"), channel(1, 1, "weights")}}},
+        {{"name", "Look"}, {"samplers", {shift}}, {"channels", {channel(0, 2, "translation")}}}};
+}
+
 Json materials() {
     return Json::array(
         {{{"name", "Floor"},
@@ -84,7 +127,8 @@ Json materials() {
 std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options) {
     const Corners floor{{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}};
     const Corners wall{{{-2, 0, -2}, {2, 0, -2}, {2, 2, -2}, {-2, 2, -2}}};
-    writeText(folder / "scene.bin", quad(floor, {0, 1, 0}) + quad(wall, {0, 0, 1}));
+    writeText(folder / "scene.bin",
+              quad(floor, {0, 1, 0}) + quad(wall, {0, 0, 1}) + (options.animated ? motionData() : ""));
 
     Json gltf{{"asset", {{"version", "2.0"}}},
               {"scene", 0},
@@ -100,6 +144,10 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
             {{"name", "Front"}, {"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01}}}}};
         gltf["nodes"].push_back({{"name", "Front"}, {"camera", 0}, {"translation", {0, 1, 4}}});
         gltf["scenes"][0]["nodes"].push_back(2);
+    }
+    if (options.animated) {
+        gltf["buffers"][0]["byteLength"] = 2 * kQuadBytes + kMotionBytes;
+        addMotion(gltf);
     }
     if (options.unknownExtension) {
         gltf["extensionsUsed"].push_back("EXT_not_known_to_anyone");

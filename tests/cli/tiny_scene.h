@@ -9,6 +9,9 @@ struct TinyScene {
     bool unknownExtension = false;  // in extensionsUsed: a warning
     bool camera = true;
     bool variants = false;  // "Day" gives the floor "Spare"; "Floor" gets a clearcoat
+    // "Slide": the wall moves by 1 m along X in a second and its morph target lifts its top edge by 1 m;
+    // "Look": the camera moves by 1 m along X.
+    bool animated = false;
 };
 
 // A smooth metal floor ("Floor"), an unlit wall ("Wall") and a material that nothing uses ("Spare").

@@ -4,12 +4,15 @@
 #include "fuzz/fuzz_target.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
+#include "motion/deform.h"
+#include "motion/pose.h"
 #include "plan/plan.h"
 #include "support/temporary_folder.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glint::fuzz {
 
@@ -32,6 +35,54 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive) {
          {primitive.normals.size(), primitive.tangents.size(), primitive.texCoords0.size(),
           primitive.texCoords1.size(), primitive.colors.size()}) {
         require(count == 0 || count == vertices, "an attribute is there for all vertices or for none");
+    }
+    for (const MorphTarget& target : primitive.targets) {
+        for (const std::size_t count :
+             {target.positions.size(), target.normals.size(), target.tangents.size()}) {
+            require(count == 0 || count == vertices, "a target has differences for all vertices or for none");
+        }
+    }
+    require(primitive.influences.joints.size() == primitive.influences.count * vertices &&
+                primitive.influences.weights.size() == primitive.influences.joints.size(),
+            "every vertex follows as many joints");
+}
+
+void checkAnimation(const Scene& scene, const Animation& animation) {
+    for (const AnimationSampler& sampler : animation.samplers) {
+        const std::size_t parts = sampler.interpolation == Interpolation::CubicSpline ? 3 : 1;
+        require(!sampler.times.empty(), "a sampler has a keyframe");
+        require(sampler.values.size() == parts * sampler.width * sampler.times.size(),
+                "a sampler has the values of its keyframes");
+    }
+    for (const AnimationChannel& channel : animation.channels) {
+        require(static_cast<std::size_t>(channel.node) < scene.nodes.size(), "a channel's node exists");
+        require(static_cast<std::size_t>(channel.sampler) < animation.samplers.size(),
+                "a channel's sampler exists");
+    }
+}
+
+// Whatever the file holds, it can be played.
+void checkMotion(Scene scene) {
+    std::vector<std::size_t> all;
+    for (const Animation& animation : scene.animations) {
+        checkAnimation(scene, animation);
+        all.push_back(all.size());
+    }
+    for (const double time : {0.0, 0.4, 1e6}) {
+        applyPose(poseAt(scene, all, time), scene);
+        for (const Node& node : scene.nodes) {
+            if (!isDeformed(scene, node)) {
+                continue;
+            }
+            const std::vector<Matrix4> joints =
+                node.skin < 0 ? std::vector<Matrix4>()
+                              : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                require(
+                    deformedPositions(primitive, node.weights, joints).size() == primitive.positions.size(),
+                    "every vertex has a place");
+            }
+        }
     }
 }
 
@@ -82,6 +133,7 @@ void importBytes(std::span<const std::uint8_t> bytes, std::string_view name) {
         return;
     }
     checkScene(*scene);
+    checkMotion(*scene);
     const SceneList scenes(std::span(&*scene, 1));
     for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
         checkPlan(scenes, merge);

@@ -1,6 +1,8 @@
 #include "cli/camera.h"
 
 #include "base/suggest.h"
+#include "motion/deform.h"
+#include "motion/pose.h"
 
 #include <algorithm>
 #include <charconv>
@@ -197,6 +199,44 @@ Bounds worldBounds(const SceneViewData& scene) {
     return bounds;
 }
 
+Bounds united(const Bounds& a, const Bounds& b) {
+    Bounds both = kNothing;
+    for (const Bounds& bounds : {a, b}) {
+        if (!bounds.empty()) {
+            extend(both, bounds.min);
+            extend(both, bounds.max);
+        }
+    }
+    return both;
+}
+
+Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
+    SceneViewData rigid;
+    rigid.primitives = view.primitives;
+    Bounds bounds = kNothing;
+    for (std::size_t i = 0; i < view.instances.size(); ++i) {
+        const InstanceView& instance = view.instances[i];
+        const Node& node = scene.nodes[view.nodes[i]];
+        if (!isDeformed(scene, node)) {
+            rigid.instances.push_back(instance);
+            continue;
+        }
+        const std::vector<Matrix4> joints =
+            instance.joints.empty() ? std::vector<Matrix4>()
+                                    : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+        Bounds own = kNothing;
+        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+            for (const Double3& point : deformedPositions(primitive, node.weights, joints)) {
+                extend(own, point);
+            }
+        }
+        // Skinned vertices are in the world already.
+        const Bounds placed = own.empty() || !joints.empty() ? own : transformed(own, instance.objectToWorld);
+        bounds = isFinite(placed) ? united(bounds, placed) : bounds;
+    }
+    return united(bounds, worldBounds(rigid));
+}
+
 CameraView framingCamera(const Bounds& bounds, double aspect) {
     constexpr double kHalfHeight = 0.26794919243112270;  // tan(30° / 2)
     constexpr double kMargin = 1.05;
@@ -254,19 +294,25 @@ Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double asp
     return view;
 }
 
+bool framesEverything(const Scene& scene, const std::string& wanted) {
+    return wanted == "auto" || (wanted.empty() && scene.cameras.empty());
+}
+
 Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
                                   double aspect) {
-    std::optional<std::size_t> index;
-    if (wanted.empty()) {
-        index = scene.cameras.empty() ? std::nullopt : std::optional<std::size_t>(0);
-    } else if (wanted != "auto") {
-        index = findCamera(scene, wanted);
-        if (!index) {
-            return unknownCamera(scene, wanted);
-        }
+    const bool everything = framesEverything(scene, wanted);
+    return chooseCameraAround(scene, everything ? posedBounds(scene, view) : Bounds{}, wanted, aspect);
+}
+
+Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
+                                        double aspect) {
+    if (framesEverything(scene, wanted)) {
+        return CameraChoice{framingCamera(framed, aspect), "auto"};
     }
+    const std::optional<std::size_t> index =
+        wanted.empty() ? std::optional<std::size_t>(0) : findCamera(scene, wanted);
     if (!index) {
-        return CameraChoice{framingCamera(worldBounds(view), aspect), "auto"};
+        return unknownCamera(scene, wanted);
     }
     const Result<CameraView> camera = sceneCamera(scene, *index, aspect);
     if (!camera) {

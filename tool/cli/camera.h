@@ -1,6 +1,7 @@
 // Where a picture is taken from.
 #pragma once
 
+#include "cli/bounds.h"
 #include "cli/scene_view.h"
 #include "gltf/scene.h"
 
@@ -12,16 +13,16 @@
 
 namespace glint {
 
-// An axis-aligned box in world space; empty where any min is above its max.
-struct Bounds {
-    std::array<double, 3> min{};
-    std::array<double, 3> max{};
-    bool empty() const;
-};
-
 // Of the transformed boxes of all instances: at most as tight as the geometry. Instances whose box is not
 // finite are left out.
 Bounds worldBounds(const SceneViewData& scene);
+
+// The same at the pose of `scene`, from which `view` was made: of meshes that follow joints or morph targets
+// the vertices as they are.
+Bounds posedBounds(const Scene& scene, const SceneViewData& view);
+
+// Both; an empty one adds nothing.
+Bounds united(const Bounds& a, const Bounds& b);
 
 // Fills the image with `bounds` but for a margin of 5 %, from the front (+Z), a little above and to the
 // right; what is flat it shows nearly head-on. The vertical field of view is 30°. An empty box, or a point,
@@ -37,9 +38,15 @@ struct CameraChoice {
     std::string name;  // for people: "auto", or the camera's name or number
 };
 
+// Whether chooseCamera() frames everything instead of taking a camera of the scene.
+bool framesEverything(const Scene& scene, const std::string& wanted);
+
 // `wanted`: "auto", the number or the name of a camera of the scene; empty: its first, else "auto".
 // Error "camera-unknown".
 Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
                                   double aspect);
+// The same, with what an automatic camera is to frame.
+Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
+                                        double aspect);
 
 }  // namespace glint

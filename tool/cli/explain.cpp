@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/explain_motion.h"
 #include "cli/explain_plan.h"
 #include "cli/lock_option.h"
 #include "cli/plan_choice.h"
@@ -260,6 +261,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         if (arguments.wholePlan) {
             result["plan"] = planToJson(whole);
         } else {
+            result["motion"] = motionToJson(*scene);
             result["materials"] = Json::array();
             for (const int material : *materials) {
                 result["materials"].push_back(toJson(planned, material));
@@ -269,6 +271,9 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitDone;
     }
     console.print(variantsText(*scene));
+    if (arguments.material.empty()) {
+        console.print(motionText(*scene));
+    }
     for (const int material : *materials) {
         console.print(toText(planned, material));
     }

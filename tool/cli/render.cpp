@@ -5,13 +5,14 @@
 #include "cli/coverage.h"
 #include "cli/plan_choice.h"
 #include "cli/render_arguments.h"
+#include "cli/render_frames.h"
 #include "cli/render_input.h"
 #include "cli/render_profile.h"
 #include "cli/render_report.h"
 #include "cli/scene_view.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
-#include "image/tone.h"
+#include "motion/pose.h"
 
 #include <glint/context.h>
 #include <glint/package.h>
@@ -20,9 +21,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace glint {
 
@@ -116,71 +117,6 @@ RendererOptions rendererOptions(const RenderArguments& arguments, const RenderRe
     return options;
 }
 
-// Renders, and fills in what was measured.
-Result<LinearImage> renderFrame(Context& context, const Package& package, const SceneViewData& data,
-                                const Environment* environment, const RenderArguments& arguments,
-                                const CameraView& camera, RenderReport& report) {
-    const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(context, package, data.view());
-    if (!scene) {
-        return scene.error();
-    }
-    report.sceneStatistics = (*scene)->statistics();
-    const Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context, package, **scene, rendererOptions(arguments, report));
-    if (!renderer) {
-        return renderer.error();
-    }
-    report.tracer = std::string(package::nameOf((*renderer)->tracer()));
-    if ((strategyOf(arguments) & package::kOrderedStrategies) != 0) {
-        report.ordering = std::string(package::nameOf((*renderer)->ordering()));
-    }
-    report.pipelineCreationMs = (*renderer)->pipelineCreationMs();
-    report.footprint = (*renderer)->footprint();
-
-    FrameOptions frame;
-    frame.camera = camera;
-    arguments.frame.apply(frame);
-    arguments.effectFrame.apply(frame);
-    frame.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);
-    frame.environment = environment;
-    arguments.environment.apply(frame);
-    frame.seed = report.seed;
-    const Clock::time_point start = Clock::now();
-    const auto addHits = [&]() -> Status {
-        const Result<FrameCounters> counters = (*renderer)->counters();
-        if (!counters) {
-            return counters.error();
-        }
-        report.addHits(*counters);
-        return okStatus();
-    };
-    const bool countsHits = !arguments.profileOutput.empty();
-    Result<LinearImage> image =
-        (*renderer)->render(frame, report.samples, countsHits ? addHits : std::function<Status()>());
-    report.renderMs = millisecondsSince(start);
-    if (!image) {
-        return image;
-    }
-    Result<std::vector<PassTiming>> passes = (*renderer)->timings();
-    if (!passes) {
-        return passes.error();
-    }
-    Result<FrameCounters> counters = (*renderer)->counters();
-    if (!counters) {
-        return counters.error();
-    }
-    report.passes = std::move(*passes);
-    report.counters = std::move(*counters);
-    if (!arguments.coverage.empty()) {
-        Result<std::vector<PixelPath>> paths = (*renderer)->readCoverage();
-        if (!paths) {
-            return paths.error();
-        }
-        report.paths = std::move(*paths);
-    }
-    return image;
-}
-
 // Error "validation" with the number of messages, each of which is reported.
 Status checkValidation(const Console& console, const Context& context) {
     const std::vector<std::string> messages = context.validationMessages();
@@ -196,22 +132,14 @@ Status checkValidation(const Console& console, const Context& context) {
 
 // A number that is none says more of the scene's own numbers than of the shaders.
 void warnOfNonFinite(const Console& console, const RenderReport& report) {
-    if (report.counters.nonFinite > 0) {
-        console.report(makeWarning(
-            "non-finite", report.scene,
-            fmt::format("{} samples of pixels were no number and count as black", report.counters.nonFinite),
-            "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
-    }
+    console.report(makeWarning(
+        "non-finite", report.scene,
+        fmt::format("{} samples of pixels were no number and count as black", report.counters.nonFinite),
+        "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
 }
 
-Status writeResults(const RenderArguments& arguments, const LinearImage& image, RenderReport& report) {
-    report.exposure = automaticExposure(image);
-    if (arguments.exposure != "auto") {
-        parseReal(arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
-    }
-    if (Status written = writeImage(arguments.output, image, report.exposure); !written) {
-        return written;
-    }
+// What follows the pictures.
+Status writeResults(const RenderArguments& arguments, const RenderReport& report) {
     if (!arguments.coverage.empty()) {
         const DisplayImage map = coverageMap(report.paths, report.width, report.height);
         if (Status written = writeImage(arguments.coverage, map); !written) {
@@ -221,13 +149,41 @@ Status writeResults(const RenderArguments& arguments, const LinearImage& image, 
     return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
 }
 
+// Where the animated scene is looked at from: a camera that frames everything frames all that is to be seen
+// of it, and stands still.
+Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const RenderArguments& arguments,
+                                Scene& scene, SceneViewData& data, double aspect) {
+    if (!movement) {
+        return chooseCamera(scene, data, arguments.camera, aspect);
+    }
+    Bounds bounds = Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
+    if (framesEverything(scene, arguments.camera)) {
+        // Enough to see how far it goes.
+        constexpr std::size_t kMostMoments = 64;
+        const std::size_t step = (movement->moments.size() + kMostMoments - 1) / kMostMoments;
+        for (std::size_t i = 0; i < movement->moments.size(); i += step) {
+            applyPose(poseAt(scene, movement->animations, movement->moments[i].seconds), scene);
+            poseSceneView(scene, data);
+            bounds = united(bounds, posedBounds(scene, data));
+        }
+    }
+    applyPose(poseAt(scene, movement->animations, movement->moments.front().seconds), scene);
+    Result<CameraChoice> camera = chooseCameraAround(scene, bounds, arguments.camera, aspect);
+    // The package does not depend on which frames are looked at.
+    applyPose(restPose(scene), scene);
+    return camera;
+}
+
 // Everything between the scene and the files.
-Status render(const Console& console, const RenderArguments& arguments, const SceneList& scenes,
+Status render(const Console& console, const RenderArguments& arguments, Scene& scene, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
-    const Scene& scene = scenes.scenes().front();
+    const Result<std::optional<Movement>> movement = chooseMovement(arguments.motion, scene);
+    if (!movement) {
+        return movement.error();
+    }
     SceneViewData data = sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
-    const Result<CameraChoice> camera = chooseCamera(scene, data, arguments.camera, aspect);
+    const Result<CameraChoice> camera = chooseView(*movement, arguments, scene, data, aspect);
     if (!camera) {
         return camera.error();
     }
@@ -254,18 +210,29 @@ Status render(const Console& console, const RenderArguments& arguments, const Sc
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const Result<LinearImage> image =
-        renderFrame(**context, *package, data, environment->get(), arguments, camera->view, report);
-    Status valid = checkValidation(console, **context);
-    if (!image) {
-        return image.error();
+    const FrameSetup setup{
+        arguments, rendererOptions(arguments, report), environment->get(), *movement, camera->view, aspect};
+    bool warned = false;
+    const auto accept = [&]() -> Result<bool> {
+        if (Status valid = checkValidation(console, **context); !valid) {
+            return valid.error();
+        }
+        if (report.counters.nonFinite > 0 && !std::exchange(warned, true)) {
+            warnOfNonFinite(console, report);
+        }
+        if (console.refused()) {
+            return false;
+        }
+        const Status ordered = checkOrder(report);
+        return ordered ? Result<bool>(true) : Result<bool>(ordered.error());
+    };
+    if (Status rendered = renderFrames(**context, *package, setup, scene, data, accept, report); !rendered) {
+        return rendered;
     }
-    warnOfNonFinite(console, report);
     if (console.refused()) {
         return okStatus();
     }
-    valid = valid ? checkOrder(report) : valid;
-    Status done = valid ? writeResults(arguments, *image, report) : valid;
+    Status done = writeResults(arguments, report);
     if (!done || arguments.profileOutput.empty()) {
         return done;
     }
@@ -284,7 +251,9 @@ int run(const Console& console, const RenderArguments& arguments) {
     report.seed = static_cast<std::uint32_t>(arguments.seed);
     parseSize(arguments.size, report.width, report.height);
 
-    Status status = checkOutputFile(arguments.output);
+    const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
+    Status status =
+        checkOutputFile(frames ? numberedFile(arguments.output, frames->first).string() : arguments.output);
     for (const std::string& file : {arguments.stats, arguments.coverage, arguments.profileOutput}) {
         if (status && !file.empty()) {
             status = checkOutputFile(file);
@@ -298,7 +267,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     ImportOptions import;
     import.decodeImages = true;
     import.variant = arguments.variant;
-    const Result<Scene> scene = importScene(arguments.scene, import);
+    Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;
@@ -315,7 +284,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    status = render(console, arguments, scenes, plan->options, report);
+    status = render(console, arguments, *scene, scenes, plan->options, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;

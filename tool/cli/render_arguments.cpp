@@ -96,6 +96,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
                    "linear, 32-bit float")
         .required();
     addPictureOptions(command, *arguments);
+    addMotionOptions(command, arguments->motion);
     addEnvironmentOptions(command, arguments->environment);
     CLI::Option& effects = addEffectOptions(command, arguments->effects);
     addEffectFrameOptions(command, arguments->effectFrame);
@@ -124,6 +125,9 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         checkTracingChoice(arguments->tracing);
         checkEffects(arguments->effects);
         checkEffectFrame(arguments->effectFrame);
+        if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
+            throw CLI::ValidationError("--coverage", "is of one picture; leave out --frames, or use --time");
+        }
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,
                             arguments->plan);

@@ -3,6 +3,7 @@
 
 #include "cli/effect_options.h"
 #include "cli/environment.h"
+#include "cli/motion_options.h"
 #include "cli/options.h"
 #include "cli/tracing_options.h"
 
@@ -22,6 +23,7 @@ struct RenderArguments {
     TracingArguments tracing;
     FrameArguments frame;
     EnvironmentArguments environment;
+    MotionArguments motion;
     std::string variant;
     PlanArguments plan;
     AccuracyArguments accuracy;

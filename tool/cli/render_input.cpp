@@ -3,6 +3,7 @@
 #include "cli/held_signals.h"
 #include "cli/temporary_folder.h"
 #include "gltf/import.h"
+#include "motion/deform.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -87,6 +88,10 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
     if (known.materials.size() != scene.materials.size()) {
         return mismatch(folder, fmt::format("has {} materials, but the scene has {}", known.materials.size(),
                                             scene.materials.size()));
+    }
+    if (hasDeformedMesh(scene) && !package.shape().deforms) {
+        return mismatch(folder,
+                        "has no pass for meshes that follow joints or morph targets, as the scene has");
     }
     const KeyOptions keys{package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque};
     for (const PrimitiveInputs& inputs : planningInputs(scene)) {

@@ -25,6 +25,53 @@ Json toJson(const std::optional<EnvironmentReport>& environment) {
             {"halfFloat", statistics.halfFloat}, {"filterMs", statistics.filterMs}};
 }
 
+constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
+    switch (action) {
+        case MotionStatistics::TopLevel::Updated:
+            return "updated";
+        case MotionStatistics::TopLevel::Rebuilt:
+            return "rebuilt";
+        default:
+            return "kept";
+    }
+}
+
+Json toJson(const std::vector<FrameReport>& frames) {
+    Json list = Json::array();
+    for (const FrameReport& frame : frames) {
+        list.push_back({{"frame", frame.frame},
+                        {"seconds", frame.seconds},
+                        {"image", frame.image},
+                        {"deformed", frame.motion.deformed},
+                        {"refits", frame.motion.refits},
+                        {"rebuilds", frame.motion.rebuilds},
+                        {"topLevel", nameOf(frame.motion.topLevel)},
+                        {"poseMs", frame.poseMs},
+                        {"updateMs", frame.updateMs},
+                        {"deformMs", frame.motion.deformMs},
+                        {"blasMs", frame.motion.blasMs},
+                        {"tlasMs", frame.motion.tlasMs},
+                        {"renderMs", frame.renderMs},
+                        {"deviceMs", frame.deviceMs}});
+    }
+    return list;
+}
+
+std::string tableOf(const std::vector<FrameReport>& frames) {
+    std::vector<std::vector<std::string>> rows{{"frame", "seconds", "BLASes", "TLAS", "pose ms", "deform ms",
+                                                "BLAS ms", "TLAS ms", "render ms", "passes ms"}};
+    const auto number = [](double value) { return fmt::format("{:.3f}", value); };
+    for (const FrameReport& frame : frames) {
+        const MotionStatistics& motion = frame.motion;
+        rows.push_back({std::to_string(frame.frame), number(frame.seconds),
+                        fmt::format("{} refitted, {} rebuilt", motion.refits, motion.rebuilds),
+                        std::string(nameOf(motion.topLevel)), number(frame.poseMs), number(motion.deformMs),
+                        number(motion.blasMs), number(motion.tlasMs), number(frame.renderMs),
+                        number(frame.deviceMs)});
+    }
+    return formatTable(rows);
+}
+
 std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
@@ -141,6 +188,7 @@ Json toJson(const RenderReport& report) {
               {"tlasBuildMs", scene.tlasBuildMs}}},
             {"pipelineCreationMs", report.pipelineCreationMs},
             {"renderMs", report.renderMs},
+            {"frames", toJson(report.frames)},
             {"passes", passes},
             {"counters",
              {{"rays", counters.rays},
@@ -202,7 +250,8 @@ std::string toText(const RenderReport& report) {
     for (const PassTiming& pass : report.passes) {
         passes.push_back({pass.name, fmt::format("{:.3f}", pass.milliseconds)});
     }
-    return formatFields(rows) + "\n" + formatTable(passes);
+    const std::string frames = report.frames.empty() ? "" : tableOf(report.frames) + "\n";
+    return formatFields(rows) + "\n" + frames + formatTable(passes);
 }
 
 }  // namespace glint

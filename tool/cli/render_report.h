@@ -18,6 +18,19 @@ struct EnvironmentReport {
     Environment::Statistics statistics;
 };
 
+// One picture of a sequence.
+struct FrameReport {
+    std::int64_t frame = 0;
+    double seconds = 0.0;  // of the animation
+    std::string image;
+    MotionStatistics motion;
+    double poseMs = 0.0;  // wall clock: nodes, joints and weights on the CPU
+    double updateMs =
+        0.0;  // wall clock: the scene on the device; 0 for the first, which is uploaded in its pose
+    double renderMs = 0.0;  // wall clock: all samples and the read-back
+    double deviceMs = 0.0;  // the passes of the last sample
+};
+
 struct RenderReport {
     std::string scene;
     std::string image;
@@ -41,8 +54,9 @@ struct RenderReport {
     Renderer::Footprint footprint;
     double pipelineCreationMs = 0.0;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
-    std::vector<PassTiming> passes;   // of the last sample
-    FrameCounters counters;           // of the last sample; nonFinite: of all
+    std::vector<PassTiming> passes;   // of the last sample, of the last frame
+    FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all
+    std::vector<FrameReport> frames;  // with --frames
     std::vector<PixelPath> paths;     // of the last sample, row by row; for --coverage only
     std::vector<std::uint64_t> hits;  // by shader ID, of all samples that were given to addHits()
 

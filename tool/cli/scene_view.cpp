@@ -1,5 +1,8 @@
 #include "cli/scene_view.h"
 
+#include "motion/pose.h"
+
+#include <algorithm>
 #include <cmath>
 
 namespace glint {
@@ -30,6 +33,14 @@ LightView toView(const Light& light) {
     return view;
 }
 
+std::vector<MorphTargetView> toViews(const std::vector<MorphTarget>& targets) {
+    std::vector<MorphTargetView> views;
+    for (const MorphTarget& target : targets) {
+        views.push_back({target.positions, target.normals, target.tangents});
+    }
+    return views;
+}
+
 PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t index) {
     PrimitiveView view;
     view.mesh = static_cast<std::uint32_t>(mesh);
@@ -41,6 +52,8 @@ PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t i
     view.texCoords1 = primitive.texCoords1;
     view.colors = primitive.colors;
     view.indices = primitive.indices;
+    view.joints = primitive.influences.joints;
+    view.jointWeights = primitive.influences.weights;
     return view;
 }
 
@@ -59,10 +72,29 @@ std::vector<bool> placedMeshes(const Scene& scene) {
     return placed;
 }
 
+// Of the linear part.
+double determinantOf(const Matrix4& m) {
+    return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
+           m[8] * (m[1] * m[6] - m[5] * m[2]);
+}
+
+// Whether the node's mesh follows its skin; the node's own transform then counts for nothing (glTF 2.0,
+// section 3.7.3.2).
+bool isSkinned(const Scene& scene, const Node& node) {
+    const std::vector<Primitive>& primitives = scene.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+    return node.skin >= 0 && std::ranges::any_of(primitives, [](const Primitive& primitive) {
+               return primitive.influences.count > 0;
+           });
+}
+
 }  // namespace
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene};
+    return {primitives, instances, images, lights, packageScene, moves};
+}
+
+MotionView SceneViewData::motion() const {
+    return {instances, lights};
 }
 
 std::array<float, 12> toRows(const Matrix4& matrix) {
@@ -84,24 +116,57 @@ SceneViewData makeSceneView(const Scene& scene) {
         for (std::size_t index = 0; placed[mesh] && index < primitives.size(); ++index) {
             if (hasTriangles(primitives[index])) {
                 data.primitives.push_back(toView(primitives[index], mesh, index));
+                data.primitives.back().targets =
+                    data.targets.emplace_back(toViews(primitives[index].targets));
                 visible[mesh] = true;
             }
         }
     }
-    for (const Node& node : scene.nodes) {
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Node& node = scene.nodes[i];
         if (node.mesh >= 0 && visible[static_cast<std::size_t>(node.mesh)]) {
-            data.instances.push_back({static_cast<std::uint32_t>(node.mesh), toRows(node.world)});
+            data.instances.emplace_back().mesh = static_cast<std::uint32_t>(node.mesh);
+            data.nodes.push_back(i);
         }
     }
+    data.joints.resize(data.nodes.size());
+    data.weights.resize(data.nodes.size());
     for (const Image& image : scene.images) {
         data.images.push_back(
             {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
              image.format == PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8});
     }
-    for (const Light& light : scene.lights) {
-        data.lights.push_back(toView(light));
-    }
+    data.lights.resize(scene.lights.size());
+    poseSceneView(scene, data);
     return data;
+}
+
+void poseSceneView(const Scene& scene, SceneViewData& data) {
+    for (std::size_t i = 0; i < data.instances.size(); ++i) {
+        const Node& node = scene.nodes[data.nodes[i]];
+        InstanceView& instance = data.instances[i];
+        const bool skinned = isSkinned(scene, node);
+        // Of its transform only the sign counts, which says what the front of a triangle is (section 3.7.4):
+        // the instance mirrors X then, and so do its joints, before it.
+        const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
+        instance.objectToWorld = skinned ? InstanceView{}.objectToWorld : toRows(node.world);
+        data.joints[i].clear();
+        if (skinned) {
+            instance.objectToWorld[0] = mirror;
+            for (const Matrix4& joint :
+                 jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])) {
+                std::array<float, 12>& rows = data.joints[i].emplace_back(toRows(joint));
+                std::transform(rows.begin(), rows.begin() + 4, rows.begin(),
+                               [&](float element) { return mirror * element; });
+            }
+        }
+        data.weights[i].assign(node.weights.begin(), node.weights.end());
+        instance.joints = data.joints[i];
+        instance.morphWeights = data.weights[i];
+    }
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        data.lights[i] = toView(scene.lights[i]);
+    }
 }
 
 LightView sunLight() {

@@ -5,6 +5,9 @@
 
 #include <glint/scene_view.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace glint {
@@ -16,14 +19,34 @@ struct SceneViewData {
     std::vector<ImageView> images;
     std::vector<LightView> lights;
 
-    // Points into this object.
     std::uint32_t packageScene = 0;  // as in SceneView
+    bool moves = false;              // likewise
+    std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
+    // What the spans of primitives and instances point into.
+    std::vector<std::vector<MorphTargetView>> targets;
+    std::vector<std::vector<std::array<float, 12>>> joints;
+    std::vector<std::vector<float>> weights;
+
+    // Both point into this object.
     SceneView view() const;
+    MotionView motion() const;
+
+    SceneViewData() = default;
+    // A copy's spans would point into the original.
+    SceneViewData(const SceneViewData&) = delete;
+    SceneViewData& operator=(const SceneViewData&) = delete;
+    SceneViewData(SceneViewData&&) = default;
+    SceneViewData& operator=(SceneViewData&&) = default;
+    ~SceneViewData() = default;
 };
 
 // Every mesh that a node places, with the numbers of mesh and primitive that the Scene has. Primitives
 // without a triangle are left out, and so are instances of meshes that have no other.
 SceneViewData makeSceneView(const Scene& scene);
+
+// Takes the pose of `scene`, from which `data` was made: instances, joints, weights and lights. Lights that
+// were added after those of the scene stay.
+void poseSceneView(const Scene& scene, SceneViewData& data);
 
 // Three rows of four of a column-major matrix.
 std::array<float, 12> toRows(const Matrix4& matrix);

@@ -1,6 +1,7 @@
 #include "emit/interop_layouts.h"
 
 #include <cstddef>
+#include <interop/deform.h>
 #include <interop/frame.h>
 #include <interop/scene.h>
 
@@ -198,10 +199,37 @@ constexpr StructLayout kStructs[] = {
     GLINT_STRUCT(FrameConstants), GLINT_STRUCT(PushConstants),
 };
 
+constexpr MemberLayout kDeformRecord[] = {
+    GLINT_MEMBER(DeformRecord, vertexCount),       GLINT_MEMBER(DeformRecord, targetCount),
+    GLINT_MEMBER(DeformRecord, influenceCount),    GLINT_MEMBER(DeformRecord, flags),
+    GLINT_MEMBER(DeformRecord, positions),         GLINT_MEMBER(DeformRecord, normals),
+    GLINT_MEMBER(DeformRecord, tangents),          GLINT_MEMBER(DeformRecord, targetPositions),
+    GLINT_MEMBER(DeformRecord, targetNormals),     GLINT_MEMBER(DeformRecord, targetTangents),
+    GLINT_MEMBER(DeformRecord, targetWeights),     GLINT_MEMBER(DeformRecord, joints),
+    GLINT_MEMBER(DeformRecord, jointWeights),      GLINT_MEMBER(DeformRecord, jointRows),
+    GLINT_MEMBER(DeformRecord, deformedPositions), GLINT_MEMBER(DeformRecord, deformedNormals),
+    GLINT_MEMBER(DeformRecord, deformedTangents),
+};
+
+constexpr MemberLayout kDeformConstants[] = {
+    GLINT_MEMBER(DeformConstants, records),
+    GLINT_MEMBER(DeformConstants, record),
+    GLINT_MEMBER(DeformConstants, pad),
+};
+
+constexpr StructLayout kDeformStructs[] = {
+    GLINT_STRUCT(DeformRecord),
+    GLINT_STRUCT(DeformConstants),
+};
+
 }  // namespace
 
 std::span<const StructLayout> interopLayouts() {
     return kStructs;
+}
+
+std::span<const StructLayout> deformLayouts() {
+    return kDeformStructs;
 }
 
 }  // namespace glint

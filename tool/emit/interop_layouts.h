@@ -18,7 +18,9 @@ struct StructLayout {
     std::span<const MemberLayout> members;  // all of them, in order
 };
 
-// Every structure of shaders/interop. Static storage.
+// Every structure of shaders/interop but the following. Static storage.
 std::span<const StructLayout> interopLayouts();
+// Those of interop/deform.h, which the C++ header of a package leaves out: only the runtime fills them.
+std::span<const StructLayout> deformLayouts();
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/prune.h"
+#include "motion/deform.h"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitUnknown, "passes/hit_unknown.rchit"},
     {ModuleRole::HitMiss, "passes/hit_miss.rmiss"},
     {ModuleRole::RefractionWalk, "passes/refraction_walk.comp"},
+    {ModuleRole::Deform, "passes/deform.comp"},
 };
 
 ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
@@ -167,14 +169,15 @@ std::vector<std::uint32_t> retiredIds(const Plan& plan) {
 
 }  // namespace
 
-package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings) {
+package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     return {settings.strategies,
             settings.tracers,
             settings.shadows,
             plan.effects.effects,
             settings.plan.keys.alpha == AlphaPolicy::Tested,
             static_cast<std::uint32_t>(plan.cases.size()),
-            retiredIds(plan)};
+            retiredIds(plan),
+            std::ranges::any_of(scenes.scenes(), hasDeformedMesh)};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
@@ -182,7 +185,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     std::vector<ModuleSource> modules;
-    for (const package::ModuleKey& key : package::requiredModules(shapeOf(plan, settings))) {
+    for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const bool ofCase = package::findRole(key.role)->repeated == package::Repeated::ByCase;
         if (ofCase) {
             addCase(context, scenes, plan.cases[key.index]);

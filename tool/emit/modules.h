@@ -19,7 +19,7 @@ struct ModuleSource {
     std::vector<std::string> functionsApart{};  // see ShaderSource
 };
 
-package::PackageShape shapeOf(const Plan& plan, const CompileSettings& settings);
+package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
 
 // Those that the settings call for, in order of their keys. Errors as renderTemplate() and
 // flatten().

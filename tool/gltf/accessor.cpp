@@ -270,6 +270,24 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
     return toFloats(document, index, integers, *bytes);
 }
 
+Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        return document.error("accessor-type", pointerOf(index), "must have 4 x 4 matrices of floats",
+                              "export the scene again");
+    }
+    constexpr std::size_t kElements = std::tuple_size_v<Matrix4>;
+    const Result<Bytes> bytes = gather(document, index, kElements * sizeof(float));
+    if (!bytes) {
+        return bytes.error();
+    }
+    std::vector<Matrix4> matrices(accessor.count);
+    for (std::size_t i = 0; i < kElements * accessor.count; ++i) {
+        matrices[i / kElements][i % kElements] = load<float>(&(*bytes)[i * sizeof(float)]);
+    }
+    return matrices;
+}
+
 Result<IndexElements> readIndices(Document& document, int index) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     const std::uint32_t restart = largestUnsigned(accessor.componentType);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf/document.h"
+#include "gltf/scene.h"
 
 #include <glint/result.h>
 
@@ -37,6 +38,9 @@ FloatElements toFloats(const Document& document, int accessor, Integers integers
 // Reads an accessor that floatFormat() takes. Normalised integers map to
 // [0, 1] or [-1, 1]; floats come as stored, NaN and infinities too.
 Result<FloatElements> readFloats(Document& document, int accessor, Integers integers = Integers::AsValues);
+
+// Reads an accessor of 4 x 4 matrices of floats, as stored. Error "accessor-type" for others.
+Result<std::vector<Matrix4>> readMatrices(Document& document, int accessor);
 
 struct IndexElements {
     std::vector<std::uint32_t> values;

@@ -2,6 +2,7 @@
 
 #include "gltf/accessor.h"
 #include "gltf/draco.h"
+#include "gltf/skinning.h"
 
 #include <fmt/format.h>
 
@@ -129,6 +130,51 @@ Status readColors(const Reader& reader) {
     return readAttribute(reader, "COLOR_0", 3, Integers::Normalized, reader.primitive.colors);
 }
 
+bool hasJointNumbers(const Document& document, int accessor) {
+    const tinygltf::Accessor& source = document.model().accessors[static_cast<std::size_t>(accessor)];
+    return !source.normalized && (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                  source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+}
+
+Status readInfluences(const Reader& reader) {
+    std::vector<InfluenceSet> sets;
+    for (int set = 0;; ++set) {
+        const std::string joints = fmt::format("JOINTS_{}", set);
+        const std::string weights = fmt::format("WEIGHTS_{}", set);
+        const int jointAccessor = attributeAccessor(reader.source, joints.c_str());
+        const int weightAccessor = attributeAccessor(reader.source, weights.c_str());
+        if (jointAccessor < 0 && weightAccessor < 0) {
+            break;
+        }
+        if (jointAccessor < 0 || weightAccessor < 0) {
+            return reader.document().error("skin-attribute", reader.primitive.pointer + "/attributes",
+                                           fmt::format("has one of {} and {}, not both", joints, weights),
+                                           kExport);
+        }
+        if (!hasJointNumbers(reader.document(), jointAccessor)) {
+            return reader.document().error("attribute-type", reader.pointer(joints.c_str()),
+                                           "must have unsigned integers of 8 or 16 bits, not normalised",
+                                           kExport);
+        }
+        InfluenceSet& read = sets.emplace_back();
+        if (Status s = readAttribute(reader, joints.c_str(), 4, Integers::AsValues, read.joints); !s) {
+            return s;
+        }
+        if (Status s = readAttribute(reader, weights.c_str(), 4, Integers::Normalized, read.weights); !s) {
+            return s;
+        }
+    }
+    const std::string beyond = fmt::format("JOINTS_{}", sets.size());
+    if (find(reader.source.json["attributes"], beyond) != nullptr) {
+        reader.document().warn(
+            "skin-influences", reader.pointer(beyond.c_str()),
+            fmt::format("only {} sets of joints are read; the others are left out", sets.size()),
+            "export the mesh with fewer joints a vertex");
+    }
+    reader.primitive.influences = joinInfluences(reader.document(), reader.primitive.pointer, sets);
+    return okStatus();
+}
+
 Status readAttributes(const Reader& reader) {
     Primitive& primitive = reader.primitive;
     constexpr Integers kValues = Integers::AsValues;
@@ -145,6 +191,9 @@ Status readAttributes(const Reader& reader) {
         return s;
     }
     if (Status s = readColors(reader); !s) {
+        return s;
+    }
+    if (Status s = readInfluences(reader); !s) {
         return s;
     }
     if (primitive.normals.empty() && attributeAccessor(reader.source, "TANGENT") >= 0) {

@@ -1,13 +1,14 @@
 #include "gltf/import.h"
 
+#include "gltf/animations.h"
 #include "gltf/document.h"
 #include "gltf/expected_hits.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
+#include "gltf/morphs.h"
 #include "gltf/nodes.h"
+#include "gltf/skinning.h"
 #include "gltf/variants.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -18,33 +19,7 @@ namespace glint {
 
 namespace {
 
-using gltf::arrayMember;
 using gltf::Document;
-using gltf::Json;
-
-bool hasMorphTargets(const Json& mesh) {
-    const Json& primitives = arrayMember(mesh, "primitives");
-    return std::any_of(primitives.begin(), primitives.end(),
-                       [](const Json& primitive) { return !arrayMember(primitive, "targets").empty(); });
-}
-
-// One warning for each kind of movement that a still picture leaves out.
-void warnOfMotion(Document& document) {
-    const Json& root = document.json();
-    if (!arrayMember(root, "animations").empty()) {
-        document.warn("animation-ignored", "/animations",
-                      "animations are left out: nodes stay at their rest pose");
-    }
-    if (!arrayMember(root, "skins").empty()) {
-        document.warn("skin-ignored", "/skins", "skins are left out: meshes keep their bind pose");
-    }
-    const Json& meshes = arrayMember(root, "meshes");
-    const auto morphed = std::find_if(meshes.begin(), meshes.end(), hasMorphTargets);
-    if (morphed != meshes.end()) {
-        document.warn("morph-ignored", fmt::format("/meshes/{}", morphed - meshes.begin()),
-                      "morph targets are left out: meshes keep their base shape");
-    }
-}
 
 bool usesMaterial(const Scene& scene, std::size_t material) {
     return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
@@ -55,7 +30,6 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
 }
 
 Status fillScene(Document& document, Scene& scene) {
-    warnOfMotion(document);
     if (Status status = importMaterials(document, scene); !status) {
         return status;
     }
@@ -71,6 +45,11 @@ Status fillScene(Document& document, Scene& scene) {
     if (const Result<bool> imported = importMeshes(document, placed, scene); !imported) {
         return imported.error();
     }
+    importMorphWeights(document, scene);
+    if (Status status = importSkins(document, scene); !status) {
+        return status;
+    }
+    importAnimations(document, scene);
     if (Status status = applyVariant(document, scene); !status) {
         return status;
     }

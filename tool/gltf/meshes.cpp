@@ -1,6 +1,7 @@
 #include "gltf/meshes.h"
 
 #include "gltf/attributes.h"
+#include "gltf/morphs.h"
 #include "gltf/repair.h"
 #include "gltf/triangles.h"
 
@@ -62,6 +63,9 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
             fmt::format("the last {} vertices make no triangle and are dropped", list.leftOver));
     }
     primitive.indices = std::move(list.indices);
+    if (Status status = readTargets(source, primitive); !status) {
+        return status.error();
+    }
     repairPrimitive(source.document, primitive);
     primitive.colorContent = contentOf(primitive.colors);
     if (primitive.indices.empty()) {
@@ -107,7 +111,7 @@ Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, S
             warning.severity = Severity::Warning;
             warning.message += "; no node draws the mesh, and it is left empty";
             document.warnings().push_back(std::move(warning));
-            scene.meshes.push_back({document.model().meshes[i].name, {}});
+            scene.meshes.emplace_back().name = document.model().meshes[i].name;
             continue;
         }
         for (const Primitive& primitive : mesh->primitives) {

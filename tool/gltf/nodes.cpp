@@ -134,19 +134,22 @@ Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& j
     return matrix;
 }
 
-Matrix4 localTransform(Document& document, std::size_t index) {
+// Its local transform into `node`; returns that as a matrix.
+Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
     const tinygltf::Node& node = document.model().nodes[index];
     const Json& json = document.json()["nodes"][index];
     const std::string pointer = pointerOf(index);
     if (node.matrix.size() == 16) {
-        return readMatrix(document, node, json, pointer);
+        placed.matrix = readMatrix(document, node, json, pointer);
+        return *placed.matrix;
     }
     const auto triple = [](const std::vector<double>& values, double fallback) {
         return values.size() == 3 ? Double3{values[0], values[1], values[2]}
                                   : Double3{fallback, fallback, fallback};
     };
-    return compose(triple(node.translation, 0.0), readRotation(document, node.rotation, pointer),
-                   triple(node.scale, 1.0));
+    placed.rest = {triple(node.translation, 0.0), readRotation(document, node.rotation, pointer),
+                   triple(node.scale, 1.0)};
+    return compose(placed.rest.translation, placed.rest.rotation, placed.rest.scale);
 }
 
 Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {
@@ -175,8 +178,9 @@ Status appendNode(Document& document, std::size_t index, int parent, Scene& scen
     node.name = source.name;
     node.parent = parent;
     node.mesh = source.mesh;
+    node.source = static_cast<int>(index);
     const Matrix4 above = parent < 0 ? identity() : scene.nodes[static_cast<std::size_t>(parent)].world;
-    node.world = multiply(above, localTransform(document, index));
+    node.world = multiply(above, readTransform(document, index, node));
     if (!fitsFloat(node.world)) {
         return document.error("node-transform", pointerOf(index), "its transform in the world overflows",
                               "check the scales of the node and its parents");

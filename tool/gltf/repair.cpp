@@ -168,6 +168,11 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
+    for (MorphTarget& target : primitive.targets) {
+        replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
+        replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");
+        replaceNonFinite(document, primitive, target.tangents, 0.0F, "TANGENT of a morph target");
+    }
 }
 
 }  // namespace glint::gltf

@@ -1,6 +1,7 @@
 // A scene as plain data: what the importer makes of a glTF file. Knows nothing of tinygltf or Vulkan.
 #pragma once
 
+#include "gltf/animation.h"
 #include "plan/material.h"
 
 #include <glint/result.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,14 +34,25 @@ struct Primitive {
     std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
     ColorContent colorContent = ColorContent::None;
     std::vector<std::uint32_t> indices;  // 3 a triangle, each < positions.size()
+    std::vector<MorphTarget> targets;    // normals only if it has normals, tangents likewise
+    SkinInfluences influences;
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<double> weights{};  // of the morph targets, where a node gives none; one for each target
 };
 
-// A node of the default scene, parents before children.
+// T * R * S.
+struct Transform {
+    std::array<double, 3> translation{};
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};  // unit quaternion x, y, z, w
+    std::array<double, 3> scale{1.0, 1.0, 1.0};
+};
+
+// A node of the default scene, parents before children. Transforms are those of the rest pose until
+// applyPose() (motion/pose.h) puts the scene into another.
 struct Node {
     std::string name;
     int parent = -1;  // index into Scene::nodes
@@ -47,6 +60,12 @@ struct Node {
     int camera = -1;
     int light = -1;
     Matrix4 world{};
+    int source = -1;                  // its number in the file
+    int skin = -1;                    // index into Scene::skins: then the mesh follows that, and not `world`
+    std::optional<Matrix4> matrix{};  // where the file gives one; else `rest` is the local transform
+    Transform rest{};
+    std::vector<double> restWeights{};  // of the mesh's morph targets: one each, whoever gives them
+    std::vector<double> weights{};      // likewise, as posed
 };
 
 struct Camera {
@@ -129,6 +148,8 @@ struct Scene {
     std::vector<Node> nodes;
     std::vector<Camera> cameras;  // those that a node places
     std::vector<Light> lights;    // those that a node places
+    std::vector<Skin> skins;      // those of nodes of the scene
+    std::vector<Animation> animations;
     std::vector<Texture> textures;
     std::vector<Sampler> samplers;
     std::vector<Image> images;

@@ -75,8 +75,9 @@ std::optional<SchemaError> checkIndex(const Json& root, Json& value, const Rule&
 }
 
 std::optional<SchemaError> checkNumbers(Json& value, const Rule& rule, const std::string& pointer) {
-    if (!value.is_array() || value.size() != rule.length) {
-        return typeError(pointer, fmt::format("an array of {} numbers", rule.length));
+    if (!value.is_array() || (rule.length != 0 && value.size() != rule.length)) {
+        return typeError(pointer, rule.length == 0 ? std::string(describe(Kind::Numbers))
+                                                   : fmt::format("an array of {} numbers", rule.length));
     }
     for (std::size_t i = 0; i < value.size(); ++i) {
         const std::string element = fmt::format("{}/{}", pointer, i);

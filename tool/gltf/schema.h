@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 enum class Kind : std::uint8_t {
     Integer,
     Number,
-    Numbers,  // array of Rule::length numbers
+    Numbers,  // array of Rule::length numbers; of any number of them where that is 0
     Bool,
     Text,
     Index,    // integer that indexes the array at Rule::target

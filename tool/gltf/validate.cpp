@@ -33,17 +33,39 @@ constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
                                object("sparse", kSparse)};
 
 // Meshes
-constexpr std::array kAttributeRules{index("POSITION", "/accessors"),   index("NORMAL", "/accessors"),
-                                     index("TANGENT", "/accessors"),    index("TEXCOORD_0", "/accessors"),
-                                     index("TEXCOORD_1", "/accessors"), index("COLOR_0", "/accessors")};
+template <std::size_t N>
+constexpr std::array<Rule, N> accessorIndices(const char* const (&names)[N]) {
+    std::array<Rule, N> rules{};
+    for (std::size_t i = 0; i < N; ++i) {
+        rules[i] = index(names[i], "/accessors");
+    }
+    return rules;
+}
+constexpr std::array kAttributeRules = accessorIndices(kAttributes);
+constexpr std::array kTargetRules = accessorIndices(kTargetAttributes);
 constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
 constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
-constexpr std::array kPrimitive{object("attributes", kAttributeRules, true), index("indices", "/accessors"),
-                                index("material", "/materials"), integer("mode", 0.0, kMaxInt),
+constexpr std::array kPrimitive{object("attributes", kAttributeRules, true),
+                                index("indices", "/accessors"),
+                                index("material", "/materials"),
+                                integer("mode", 0.0, kMaxInt),
+                                objects("targets", kTargetRules),
                                 object("extensions", kPrimitiveExtensions)};
-constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive)};
+constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numbers("weights", 0)};
+
+// Animations and skins. Samplers are checked where the animation is read, as the index is into an array of
+// its own.
+constexpr std::array kAnimationTarget{index("node", "/nodes"), text("path", true)};
+constexpr std::array kChannel{integer("sampler", 0.0, kMaxInt, true),
+                              object("target", kAnimationTarget, true)};
+constexpr std::array kAnimationSampler{index("input", "/accessors", true),
+                                       index("output", "/accessors", true), text("interpolation")};
+constexpr std::array kAnimation{text("name"), objects("channels", kChannel, true),
+                                objects("samplers", kAnimationSampler, true)};
+constexpr std::array kSkin{text("name"), index("inverseBindMatrices", "/accessors"),
+                           index("skeleton", "/nodes"), indices("joints", "/nodes", true)};
 
 // Textures
 constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
@@ -57,6 +79,8 @@ constexpr std::array kNodeLight{index("light", "/extensions/KHR_lights_punctual/
 constexpr std::array kNodeExtensions{object("KHR_lights_punctual", kNodeLight)};
 constexpr std::array kNode{text("name"),
                            index("mesh", "/meshes"),
+                           index("skin", "/skins"),
+                           numbers("weights", 0),
                            index("camera", "/cameras"),
                            indices("children", "/nodes"),
                            numbers("matrix", 16),
@@ -92,24 +116,53 @@ constexpr std::array kRoot{
     objects("nodes", kNode),
     objects("scenes", kScene),
     objects("cameras", kCamera),
+    objects("animations", kAnimation),
+    objects("skins", kSkin),
     index("scene", "/scenes"),
 };
 
-// Calls `use(index, isIndices)` for every accessor that a primitive reads.
+// Calls `use(index, isIndices)` for every accessor that the member of that name refers to, if it is there.
+template <typename Use>
+void useAccessor(const Json& object, const char* name, bool isIndices, const Use& use) {
+    if (const Json* accessor = find(object, name)) {
+        use(accessor->get<std::size_t>(), isIndices);
+    }
+}
+
+// Likewise for every accessor that the importer reads.
 template <typename Use>
 void forEachAccessor(const Json& root, const Use& use) {
     for (const Json& mesh : arrayMember(root, "meshes")) {
         for (const Json& primitive : arrayMember(mesh, "primitives")) {
             for (const char* name : kAttributes) {
-                if (const Json* accessor = find(primitive["attributes"], name)) {
-                    use(accessor->get<std::size_t>(), false);
+                useAccessor(primitive["attributes"], name, false, use);
+            }
+            for (const Json& target : arrayMember(primitive, "targets")) {
+                for (const char* name : kTargetAttributes) {
+                    useAccessor(target, name, false, use);
                 }
             }
-            if (const Json* accessor = find(primitive, "indices")) {
-                use(accessor->get<std::size_t>(), true);
-            }
+            useAccessor(primitive, "indices", true, use);
         }
     }
+    for (const Json& animation : arrayMember(root, "animations")) {
+        for (const Json& sampler : arrayMember(animation, "samplers")) {
+            useAccessor(sampler, "input", false, use);
+            useAccessor(sampler, "output", false, use);
+        }
+    }
+    for (const Json& skin : arrayMember(root, "skins")) {
+        useAccessor(skin, "inverseBindMatrices", false, use);
+    }
+}
+
+bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
+    for (const std::string_view candidate : values) {
+        if (candidate == value) {
+            return true;
+        }
+    }
+    return false;
 }
 
 // Copies the members of `rules` from `from`, and those of the objects they hold: as deep as the tables.
@@ -117,8 +170,10 @@ Json project(const Json& from, std::span<const Rule> rules) {
     Json to = Json::object();
     for (const Rule& rule : rules) {
         const Json* member = find(from, rule.name);
-        // Extensions are read from the file's JSON: tinygltf narrows their integers.
-        if (member == nullptr || rule.name == "extensions") {
+        // These are read from the file's JSON; of extensions, tinygltf narrows the integers.
+        const bool apart =
+            isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
+        if (member == nullptr || apart) {
             continue;
         }
         if (rule.kind == Kind::Object) {
@@ -134,15 +189,6 @@ Json project(const Json& from, std::span<const Rule> rules) {
         }
     }
     return to;
-}
-
-bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
-    for (const std::string_view candidate : values) {
-        if (candidate == value) {
-            return true;
-        }
-    }
-    return false;
 }
 
 std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const std::string& pointer) {

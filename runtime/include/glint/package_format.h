@@ -77,6 +77,8 @@ struct PackageHeader {
     std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
     std::uint32_t effects;         // Effect bits
+    std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -129,6 +131,7 @@ enum class ModuleRole : std::uint32_t {
     HitUnknown = 23,  // closest hit of a geometry whose shader ID no case has
     HitMiss = 24,
     RefractionWalk = 25,
+    Deform = 26,  // skins and morphs vertices; of GpuScene, not of a renderer
 };
 
 struct ModuleEntry {
@@ -193,7 +196,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 72);
+static_assert(sizeof(PackageHeader) == 80);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

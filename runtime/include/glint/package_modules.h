@@ -20,6 +20,7 @@ struct PackageShape {
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
     std::vector<std::uint32_t> retired{};  // shader IDs below caseCount that have no modules, ascending
+    bool deforms = false;                  // a scene has meshes that follow skins or morph targets
 };
 
 // One module of a package; fields as in ModuleEntry.
@@ -53,6 +54,7 @@ enum class Purpose : std::uint8_t {
     Shadows,     // of those, with deferred shadow rays
     Refraction,  // with refraction
     Tracing,     // wherever a ray tracing pipeline traces
+    Motion,      // with meshes that follow skins or morph targets
 };
 
 struct RoleInfo {
@@ -146,6 +148,7 @@ inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::HitUnknown, kStrategyHitShaders, "HitUnknown", ShaderKind::ClosestHit},
     {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
     {ModuleRole::RefractionWalk, kAllStrategies, "RefractionWalk", ShaderKind::Tracing, Purpose::Refraction},
+    {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
 };
 
 // Null for a number that is no role.
@@ -189,6 +192,8 @@ constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
             return (shape.effects & kEffectRefraction) != 0;
         case Purpose::Tracing:
             return hits || tracesPrimary(shape.effects);
+        case Purpose::Motion:
+            return shape.deforms;
     }
     return false;
 }

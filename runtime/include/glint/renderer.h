@@ -20,6 +20,18 @@
 
 namespace glint {
 
+// What GpuScene::update() did last. Device times are 0 where the queue has no timestamps.
+struct MotionStatistics {
+    enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
+    std::uint32_t deformed = 0;  // instances whose vertices were computed anew
+    std::uint32_t refits = 0;    // bottom levels
+    std::uint32_t rebuilds = 0;  // likewise
+    TopLevel topLevel = TopLevel::Kept;
+    double deformMs = 0.0;
+    double blasMs = 0.0;
+    double tlasMs = 0.0;
+};
+
 // Geometry, acceleration structures, materials, textures and lights on the device.
 // The Context must outlive it.
 class GpuScene {
@@ -46,6 +58,29 @@ public:
         double tlasBuildMs = 0.0;
     };
     const Statistics& statistics() const;
+
+    // Records into a command buffer of the caller's, in the recording state, outside a render pass, what
+    // brings a scene with SceneView::moves to another pose: vertices that follow joints and morph weights are
+    // computed, their BLASes refitted, the TLAS updated, instance and light records replaced. BLASes of
+    // meshes that keep their shape stay as they are; what has not changed since the last call is not touched.
+    // Renderer::record() may follow in the same command buffer; its accumulation should start anew.
+    //
+    // A BLAS is built anew instead of refitted after 32 refits, or where the box around the mesh has twice
+    // the surface that it had at the last build; the TLAS after 32 updates, or where an instance has gone
+    // farther than its own box was long (docs/movement.md says why). A flattened instance is hidden until it
+    // is whole again.
+    //
+    // The spans are read here and not kept. One update may be in flight at a time: poses are written to
+    // host-visible memory here. What is recorded must be submitted before the next call, which builds upon it. Errors, with which nothing is recorded: "scene-still" (it was uploaded
+    // without `moves`), "scene-motion" (another number of instances, lights, joints or weights than at
+    // upload, another mesh, or a number that is not finite).
+    Status update(VkCommandBuffer commands, const MotionView& motion);
+
+    // Records, submits and waits; for tools and tests.
+    Status updateAndWait(const MotionView& motion);
+
+    // Of the last update that has completed on the device; the caller has waited for it.
+    Result<MotionStatistics> motion() const;
 
     struct State;
     State& state();

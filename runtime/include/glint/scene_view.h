@@ -7,6 +7,13 @@
 
 namespace glint {
 
+// Differences to the attributes of a primitive; each empty or as long as its positions.
+struct MorphTargetView {
+    std::span<const std::array<float, 3>> positions;
+    std::span<const std::array<float, 3>> normals;   // only if the primitive has normals
+    std::span<const std::array<float, 3>> tangents;  // likewise
+};
+
 // A triangle list. Attribute spans are empty or as long as positions; a missing span must agree with the
 // package's key for this primitive (upload reports where it does not).
 struct PrimitiveView {
@@ -19,12 +26,22 @@ struct PrimitiveView {
     std::span<const std::array<float, 2>> texCoords1;
     std::span<const std::array<float, 4>> colors;  // linear RGBA
     std::span<const std::uint32_t> indices;        // 3 a triangle
+    std::span<const MorphTargetView> targets{};
+    // Of a primitive that follows a skin: as many a vertex for all of them, vertex by vertex. The joints
+    // index InstanceView::joints; the weights of a vertex are at least 0 and sum to 1.
+    std::span<const std::uint16_t> joints{};
+    std::span<const float> jointWeights{};
 };
 
 // A mesh placed in the world.
 struct InstanceView {
     std::uint32_t mesh = 0;
     std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
+    // Of a mesh that follows a skin: from the mesh's space to that which objectToWorld starts from, three
+    // rows of four a joint. Empty: the mesh keeps its shape.
+    std::span<const std::array<float, 12>> joints{};
+    // Of a mesh with morph targets: one a target, missing ones are 0. Empty: likewise.
+    std::span<const float> morphWeights{};
 };
 
 // RGBA, first row on top, as stored: where the package reads an image as colour, it is taken to be in sRGB.
@@ -63,6 +80,22 @@ struct SceneView {
     std::span<const ImageView> images;  // by the package's TextureEntry::image
     std::span<const LightView> lights;
     std::uint32_t packageScene = 0;  // which of the package's scenes it is
+    // Whether GpuScene::update() will move it. What only that needs is there only if so.
+    bool moves = false;
+};
+
+// A scene that moved: instances and lights as at upload, in their order and number, each of the same mesh or
+// type, with as many joints and weights.
+struct MotionView {
+    // What becomes of acceleration structures that no longer fit.
+    enum class Builds : std::uint32_t {
+        ByRule,   // as GpuScene::update() says
+        Refit,    // refitted and updated, whatever that costs rays
+        Rebuild,  // built anew
+    };
+    std::span<const InstanceView> instances;
+    std::span<const LightView> lights;
+    Builds builds = Builds::ByRule;
 };
 
 // Where a frame is seen from, in world space, right-handed.

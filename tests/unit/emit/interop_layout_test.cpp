@@ -80,15 +80,12 @@ void expectEqual(const StructLayout& layout, const ReflectedStruct& reflected, c
     }
 }
 
-TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
-    CompileSettings settings;
-    settings.debugInfo = true;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
-    const CompiledPackage package = compileSample(settings);
+// Compares the layouts wherever a module has them; each must be in one.
+void expectInModules(const CompiledPackage& package, std::span<const StructLayout> layouts) {
     std::set<std::string_view> seen;
     for (const CompiledModule& module : package.modules) {
         const auto structs = reflect(module.spirv);
-        for (const StructLayout& layout : interopLayouts()) {
+        for (const StructLayout& layout : layouts) {
             for (const auto& [id, reflected] : structs) {
                 // The same structure in registers has no offsets.
                 if (reflected.name == layout.name && !reflected.offsets.empty()) {
@@ -98,9 +95,29 @@ TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
             }
         }
     }
-    for (const StructLayout& layout : interopLayouts()) {
+    for (const StructLayout& layout : layouts) {
         EXPECT_TRUE(seen.contains(layout.name)) << layout.name << " is in no module";
     }
+}
+
+TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
+    CompileSettings settings;
+    settings.debugInfo = true;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    expectInModules(compileSample(settings), interopLayouts());
+}
+
+TEST(InteropLayout, OfThePassThatDeformsLikewise) {
+    Scene scene = makeSampleScene();
+    scene.meshes[0].primitives[0].targets.resize(1);
+    Node node;
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    CompileSettings settings;
+    settings.debugInfo = true;
+    const Result<CompiledPackage> package = compilePackage(scene, settings);
+    ASSERT_TRUE(package) << toString(package.error());
+    expectInModules(*package, deformLayouts());
 }
 
 }  // namespace

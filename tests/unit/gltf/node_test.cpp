@@ -231,15 +231,5 @@ TEST(GltfLights, WarnOfWhatTheExtensionForbids) {
     EXPECT_EQ(lightAndWarnings(R"("spot": {"innerConeAngle": 0.4, "outerConeAngle": 0.5})").second, 0U);
 }
 
-TEST(GltfMotion, IsLeftOutWithOneWarningOfEachKind) {
-    const Scene scene = mustImport(R"("animations": [{}, {}], "skins": [{}, {}],
-        "nodes": [{"skin": 7}],
-        "meshes": [{"primitives": [{"attributes": {}, "mode": 0, "targets": [{"POSITION": 9}]}]},
-                   {"primitives": [{"attributes": {}, "mode": 0, "targets": [{}]}]}])");
-    EXPECT_EQ(countWarnings(scene, "animation-ignored"), 1U);
-    EXPECT_EQ(countWarnings(scene, "skin-ignored"), 1U);
-    EXPECT_EQ(countWarnings(scene, "morph-ignored"), 1U);
-}
-
 }  // namespace
 }  // namespace glint::test

@@ -1,0 +1,168 @@
+// glint render of scenes that move: which files there are, what they show, what is said of them.
+#include "cli/motion_options.h"
+#include "cli/render_command.h"
+#include "cli/schemas.h"
+#include "cli/tiny_scene.h"
+
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(MotionOptions, ReadFrames) {
+    const std::optional<FrameRange> range = parseFrames("3:17");
+    ASSERT_TRUE(range.has_value());
+    EXPECT_EQ(range->first, 3);
+    EXPECT_EQ(range->last, 17);
+    const std::optional<FrameRange> one = parseFrames("7");
+    ASSERT_TRUE(one.has_value());
+    EXPECT_EQ(one->first, one->last);
+    for (const char* text :
+         {"", ":", "1:", ":1", "2:1", "-1:3", "1:2:3", "a:b", "1.5", "0:1000001", "0x1", " 1"}) {
+        EXPECT_FALSE(parseFrames(text).has_value()) << text;
+    }
+}
+
+TEST(MotionOptions, NumberFiles) {
+    EXPECT_EQ(numberedFile("a/out.png", 7), "a/out.0007.png");
+    EXPECT_EQ(numberedFile("out.v2.exr", 12345), "out.v2.12345.exr");
+}
+
+class MovingScene : public RenderCommand {
+protected:
+    void SetUp() override {
+        RenderCommand::SetUp();
+        scene_ = writeTinyScene(path(""), {.animated = true}).string();
+    }
+    bool exists(const std::string& file) const {
+        return std::filesystem::exists(path(file));
+    }
+    void expectSame(const std::string& a, const std::string& b) const {
+        const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
+        EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
+    }
+    void expectOther(const std::string& a, const std::string& b) const {
+        EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
+    }
+};
+
+TEST_F(MovingScene, WritesASequence) {
+    const Outcome outcome = render("out.exr", {"--frames", "1:3", "--fps", "4", "--json", "--validate"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_FALSE(exists("out.exr"));
+    EXPECT_FALSE(exists("out.0000.exr"));
+    EXPECT_FALSE(exists("out.0004.exr"));
+    const Json frames = outcome.json().at("frames");
+    ASSERT_EQ(frames.size(), 3U);
+    expectFits("render", outcome.json());
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(frames[i].at("frame"), i + 1);
+        EXPECT_EQ(frames[i].at("seconds"), 0.25 * static_cast<double>(i + 1));
+        EXPECT_EQ(frames[i].at("image"), "out.000" + std::to_string(i + 1) + ".exr");
+        EXPECT_EQ(frames[i].at("deformed"), i == 0 ? 0 : 1);
+        EXPECT_EQ(frames[i].at("topLevel"), i == 0 ? "kept" : "updated");
+    }
+    // Each is what one picture of that moment shows.
+    ASSERT_EQ(render("time.exr", {"--time", "0.5"}).exit, 0);
+    expectSame("out.0002.exr", "time.exr");
+    expectOther("out.0001.exr", "out.0003.exr");
+    ASSERT_EQ(render("again.exr", {"--frames", "2", "--fps", "4"}).exit, 0);
+    expectSame("out.0002.exr", "again.0002.exr");
+}
+
+TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
+    ASSERT_EQ(render("a.exr", {"--frames", "0:1", "--fps", "2", "--refit", "always"}).exit, 0);
+    const Outcome outcome = render("b.exr", {"--frames", "0:1", "--fps", "2", "--refit", "never", "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_EQ(outcome.json().at("frames")[1].at("rebuilds"), 1);
+    EXPECT_EQ(outcome.json().at("frames")[1].at("topLevel"), "rebuilt");
+    expectSame("a.0001.exr", "b.0001.exr");
+}
+
+TEST_F(MovingScene, PlaysTheAnimationThatIsAskedFor) {
+    ASSERT_EQ(render("rest.exr").exit, 0);
+    ASSERT_EQ(render("start.exr", {"--time", "0"}).exit, 0);
+    expectSame("rest.exr", "start.exr");
+    ASSERT_EQ(render("slide.exr", {"--time", "1", "--animation", "Slide"}).exit, 0);
+    ASSERT_EQ(render("look.exr", {"--time", "1", "--animation", "Look"}).exit, 0);
+    ASSERT_EQ(render("one.exr", {"--time", "1", "--animation", "1"}).exit, 0);
+    ASSERT_EQ(render("all.exr", {"--time", "1", "--animation", "all"}).exit, 0);
+    expectOther("slide.exr", "rest.exr");
+    expectOther("look.exr", "rest.exr");
+    expectOther("all.exr", "slide.exr");
+    expectOther("all.exr", "look.exr");
+    expectSame("look.exr", "one.exr");
+    // The last pose holds.
+    ASSERT_EQ(render("later.exr", {"--time", "9"}).exit, 0);
+    expectSame("slide.exr", "later.exr");
+    const Outcome unknown = render("x.exr", {"--time", "1", "--animation", "Slid"});
+    EXPECT_EQ(unknown.exit, 1);
+    EXPECT_NE(unknown.err.find("did you mean Slide?"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("[animation-unknown]"), std::string::npos) << unknown.err;
+    EXPECT_FALSE(exists("x.exr"));
+}
+
+TEST_F(MovingScene, AnAutomaticCameraFramesAllOfIt) {
+    ASSERT_EQ(render("out.exr", {"--frames", "0:2", "--fps", "2", "--camera", "auto"}).exit, 0);
+    expectOther("out.0000.exr", "out.0002.exr");
+}
+
+TEST_F(MovingScene, UsesPackagesThatCanDeform) {
+    ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
+    const Outcome outcome = render("out.exr", {"--frames", "0:1", "--package", "package"});
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(run({"inspect", "package"}).out.find("deform.spv"), std::string::npos);
+    // One of the same scene without its morph target lacks the pass.
+    const std::string still = writeTinyScene(path("")).string();
+    ASSERT_EQ(run({"compile", still, "-o", "other"}).exit, 0);
+    EXPECT_EQ(run({"inspect", "other"}).out.find("deform.spv"), std::string::npos);
+    scene_ = writeTinyScene(path(""), {.animated = true}).string();
+    const Outcome refused = render("out.exr", {"--package", "other"});
+    EXPECT_EQ(refused.exit, 1);
+    EXPECT_NE(refused.err.find("[package-mismatch]"), std::string::npos) << refused.err;
+}
+
+TEST_F(MovingScene, IsExplained) {
+    const Outcome outcome = run({"explain", scene_, "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    expectFits("explain", outcome.json());
+    const Json motion = outcome.json().at("motion");
+    ASSERT_EQ(motion.at("animations").size(), 2U);
+    EXPECT_EQ(motion.at("animations")[0].at("name"), "Slide");
+    EXPECT_EQ(motion.at("animations")[0].at("duration"), 1.0);
+    EXPECT_EQ(motion.at("animations")[0].at("channels").at("weights"), 1);
+    ASSERT_EQ(motion.at("deformedMeshes").size(), 1U);
+    EXPECT_EQ(motion.at("deformedMeshes")[0].at("morphTargets"), 1);
+    EXPECT_EQ(motion.at("deformedMeshes")[0].at("node"), 1);
+    EXPECT_NE(run({"explain", scene_}).out.find("Slide"), std::string::npos);
+}
+
+TEST_F(RenderCommand, SaysThatNothingMoves) {
+    const Outcome outcome = render("out.png", {"--frames", "0:3"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_NE(outcome.err.find("[animation-missing]"), std::string::npos) << outcome.err;
+}
+
+TEST_F(MovingScene, BadOptionsAreUsageErrors) {
+    const std::vector<std::vector<std::string>> bad{
+        {"--frames", "3:1"},
+        {"--frames", "x"},
+        {"--frames", "0:1", "--fps", "0"},
+        {"--fps", "24"},
+        {"--refit", "never"},
+        {"--frames", "0:1", "--time", "1"},
+        {"--frames", "0:1", "--coverage", "c.png"},
+        {"--time", "-1"},
+        {"--time", "nan"},
+        {"--frames", "0:1", "--refit", "sometimes"},
+    };
+    for (const std::vector<std::string>& options : bad) {
+        EXPECT_EQ(render("out.png", options).exit, 2) << options.front() << " " << options[1];
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

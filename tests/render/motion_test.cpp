@@ -1,0 +1,453 @@
+// Scenes that move: each pose is the picture of the same scene uploaded in that pose.
+#include "cli/camera.h"
+#include "cli/scene_view.h"
+#include "gpu_scene_state.h"
+#include "motion/deform.h"
+#include "motion/pose.h"
+#include "render/harness.h"
+#include "render/scene_builder.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace glint::testing {
+namespace {
+
+constexpr std::uint32_t kWidth = 64;
+constexpr std::uint32_t kHeight = 36;
+
+// Where it is, turned about Z.
+Matrix4 placed(double x, double y, double z, double angle = 0.0) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    return {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1};
+}
+
+Material coloured(Float3 color) {
+    Material material;
+    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
+    material.metallicFactor = 0.0F;
+    material.roughnessFactor = 0.5F;
+    return material;
+}
+
+// A mirror below, that shows in reflections what the TLAS has.
+void addRoom(Scene& scene) {
+    addCamera(scene);
+    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8})));
+}
+
+// A strip of 1 x 2 m of `segments` rows above (0, 0, 0), all of whose vertices have normals and tangents.
+Primitive makeStrip(int material, std::uint32_t segments) {
+    Primitive strip;
+    strip.pointer = "/meshes/1/primitives/0";
+    strip.material = material;
+    for (std::uint32_t row = 0; row <= segments; ++row) {
+        const float y = 2.0F * static_cast<float>(row) / static_cast<float>(segments);
+        for (const float x : {-0.5F, 0.5F}) {
+            strip.positions.push_back({x, y, 0});
+        }
+        if (row < segments) {
+            const std::uint32_t i = 2 * row;
+            strip.indices.insert(strip.indices.end(), {i, i + 1, i + 3, i, i + 3, i + 2});
+        }
+    }
+    strip.normals.assign(strip.positions.size(), {0, 0, 1});
+    strip.tangents.assign(strip.positions.size(), {1, 0, 0, 1});
+    return strip;
+}
+
+// An uploaded scene that moves.
+struct Moving {
+    explicit Moving(Scene posed, bool moves = true) : scene(std::move(posed)), package(scene, PlanOptions{}) {
+        data = makeSceneView(scene);
+        data.moves = moves;
+        if (!package.ok()) {
+            return;
+        }
+        Result<std::unique_ptr<GpuScene>> uploaded =
+            GpuScene::upload(sharedContext(), package.package(), data.view());
+        EXPECT_TRUE(uploaded.ok()) << (uploaded ? "" : toString(uploaded.error()));
+        gpuScene = uploaded ? std::move(*uploaded) : nullptr;
+    }
+
+    bool ok() const {
+        return gpuScene != nullptr;
+    }
+
+    // To where `scene` is now.
+    MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule) {
+        poseSceneView(scene, data);
+        MotionView motion = data.motion();
+        motion.builds = builds;
+        const Status updated = gpuScene->updateAndWait(motion);
+        EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
+        const Result<MotionStatistics> statistics = gpuScene->motion();
+        return statistics ? *statistics : MotionStatistics{};
+    }
+
+    LinearImage render() const {
+        RendererOptions options;
+        options.width = kWidth;
+        options.height = kHeight;
+        Result<std::unique_ptr<Renderer>> renderer =
+            Renderer::create(sharedContext(), package.package(), *gpuScene, options);
+        if (!renderer) {
+            ADD_FAILURE() << toString(renderer.error());
+            return {};
+        }
+        FrameOptions frame;
+        const Result<CameraView> camera =
+            sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
+        frame.camera = *camera;
+        Result<LinearImage> image = (*renderer)->render(frame, 2);
+        EXPECT_TRUE(image.ok()) << (image ? "" : toString(image.error()));
+        expectNoValidationMessages();
+        return image ? std::move(*image) : LinearImage{};
+    }
+
+    Scene scene;
+    LoadedScene package;
+    SceneViewData data;
+    std::unique_ptr<GpuScene> gpuScene;
+};
+
+LinearImage renderStill(const Scene& scene) {
+    const Moving still(scene, false);
+    return still.ok() ? still.render() : LinearImage{};
+}
+
+// Vertices that the host rounds otherwise than the device move edges: of a few pixels the colour is another.
+void expectAlike(const LinearImage& image, const LinearImage& reference, const std::string& what) {
+    ASSERT_EQ(image.pixels.size(), reference.pixels.size()) << what;
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        float worst = 0.0F;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            worst = std::max(worst, std::abs(image.pixels[i][channel] - reference.pixels[i][channel]));
+        }
+        off += worst > 2e-3F ? 1 : 0;
+    }
+    EXPECT_LE(off, image.pixels.size() / 200) << what << ": more pixels differ than edges have";
+}
+
+// A difference that must be there: 1 in 40 pixels.
+void expectUnlike(const LinearImage& image, const LinearImage& other, const std::string& what) {
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        off += std::abs(image.pixels[i][0] - other.pixels[i][0]) > 0.02F ? 1 : 0;
+    }
+    EXPECT_GE(off, image.pixels.size() / 40) << what;
+}
+
+Scene rigidScene() {
+    Scene scene = emptyScene();
+    addRoom(scene);
+    const int red = addMaterial(scene, coloured({0.9F, 0.1F, 0.1F}));
+    const int quad = addMesh(scene, makeQuad(red, {-0.5F, -0.5F, 0}, {1, 0, 0}, {0, 1, 0}));
+    addInstance(scene, quad, placed(-1, 0, -3));
+    addInstance(scene, quad, placed(1, 0, -3));
+    return scene;
+}
+
+TEST(Motion, NodesCamerasAndLightsMove) {
+    Moving moving(rigidScene());
+    ASSERT_TRUE(moving.ok());
+    const LinearImage first = moving.render();
+    expectSameImage(first, renderStill(moving.scene), "as uploaded");
+    moving.scene.nodes[1].world = placed(0, 0.5, -2.5, 0.6);
+    Matrix4 mirrored = placed(1.2, -0.2, -4);
+    mirrored[0] = -2.0;
+    moving.scene.nodes[2].world = mirrored;
+    moving.scene.lights[0].direction = {0.6F, 0.0F, -0.8F};
+    moving.scene.cameras[0].world[12] = 0.25;
+    const MotionStatistics statistics = moving.update();
+    EXPECT_EQ(statistics.refits + statistics.rebuilds + statistics.deformed, 0U) << "meshes keep their shape";
+    const LinearImage second = moving.render();
+    expectSameImage(second, renderStill(moving.scene), "moved");
+    expectUnlike(second, first, "moved");
+}
+
+TEST(Motion, TheTopLevelFollowsItsRule) {
+    Moving moving(rigidScene());
+    ASSERT_TRUE(moving.ok());
+    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept) << "nothing has moved";
+    moving.scene.nodes[1].world = placed(-1, 0.5, -3);
+    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Updated);
+    // The quad is 1.41 m from corner to corner.
+    moving.scene.nodes[1].world = placed(-1, 1.5, -3);
+    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Rebuilt);
+    moving.scene.nodes[1].world = placed(-1, 1.6, -3);
+    EXPECT_EQ(moving.update(MotionView::Builds::Rebuild).topLevel, MotionStatistics::TopLevel::Rebuilt);
+    moving.scene.nodes[1].world = placed(-1, -0.5, -9);
+    EXPECT_EQ(moving.update(MotionView::Builds::Refit).topLevel, MotionStatistics::TopLevel::Updated);
+    expectSameImage(moving.render(), renderStill(moving.scene), "updated, though it went far");
+}
+
+TEST(Motion, FlattenedInstancesHideAndComeBack) {
+    Moving moving(rigidScene());
+    ASSERT_TRUE(moving.ok());
+    const LinearImage whole = moving.render();
+    moving.scene.nodes[1].world = scaling(0.0, 0.0, 0.0);
+    moving.update();
+    const LinearImage hidden = moving.render();
+    expectUnlike(hidden, whole, "hidden");
+    expectSameImage(hidden, renderStill(moving.scene), "hidden");
+    moving.scene.nodes[1].world = placed(-1, 0, -3);
+    moving.update();
+    expectSameImage(moving.render(), whole, "back again");
+    // One that is flat at upload appears later.
+    Scene flat = moving.scene;
+    flat.nodes[2].world = scaling(0.0, 0.0, 0.0);
+    Moving later(flat);
+    ASSERT_TRUE(later.ok());
+    later.scene.nodes[2].world = moving.scene.nodes[2].world;
+    later.update();
+    expectSameImage(later.render(), whole, "appeared");
+}
+
+// The strip follows two joints at its ends; the second turns.
+Scene skinnedScene(double angle) {
+    Scene scene = emptyScene();
+    addRoom(scene);
+    Primitive strip = makeStrip(addMaterial(scene, coloured({0.1F, 0.6F, 0.9F})), 16);
+    strip.influences.count = 2;
+    for (const Float3& position : strip.positions) {
+        const float up = position[1] / 2.0F;
+        strip.influences.joints.insert(strip.influences.joints.end(), {0, 1});
+        strip.influences.weights.insert(strip.influences.weights.end(), {1.0F - up, up});
+    }
+    // The node's own place counts for nothing.
+    addInstance(scene, addMesh(scene, std::move(strip)), placed(40, 40, 40));
+    Node joint;
+    joint.world = placed(0, -0.8, -2.5);
+    scene.nodes.push_back(joint);
+    joint.world = placed(0, 0.2, -2.5, angle);
+    scene.nodes.push_back(joint);
+    Skin skin;
+    skin.joints = {2, 3};
+    skin.inverseBinds = {placed(0, 0, 0), placed(0, -1, 0)};
+    scene.skins.push_back(skin);
+    scene.nodes[1].skin = 0;
+    return scene;
+}
+
+// The same with vertices that the host has moved.
+Scene bakedScene(const Scene& scene) {
+    Scene baked = scene;
+    Node& node = baked.nodes[1];
+    Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
+    const std::vector<Matrix4> joints =
+        node.skin >= 0 ? jointMatrices(scene, scene.skins[0]) : std::vector<Matrix4>();
+    const auto positions = deformedPositions(primitive, node.weights, joints);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        primitive.positions[i] = {static_cast<float>(positions[i][0]), static_cast<float>(positions[i][1]),
+                                  static_cast<float>(positions[i][2])};
+    }
+    primitive.influences = {};
+    primitive.targets.clear();
+    node.weights.clear();
+    node.world = node.skin >= 0 ? placed(0, 0, 0) : node.world;
+    node.skin = -1;
+    return baked;
+}
+
+TEST(Motion, SkinsBendMeshes) {
+    Moving moving(skinnedScene(0.0));
+    ASSERT_TRUE(moving.ok());
+    const LinearImage straight = moving.render();
+    expectAlike(straight, renderStill(bakedScene(moving.scene)), "at the pose of the upload");
+    moving.scene = skinnedScene(1.2);
+    const MotionStatistics statistics = moving.update();
+    EXPECT_EQ(statistics.deformed, 1U);
+    EXPECT_EQ(statistics.refits, 1U);
+    EXPECT_EQ(statistics.rebuilds, 0U);
+    EXPECT_EQ(statistics.topLevel, MotionStatistics::TopLevel::Updated);
+    const LinearImage bent = moving.render();
+    expectAlike(bent, renderStill(bakedScene(moving.scene)), "bent");
+    expectAlike(bent, renderStill(moving.scene), "uploaded as bent");
+    expectUnlike(bent, straight, "bent");
+    EXPECT_EQ(moving.update().deformed, 0U) << "the same pose again";
+}
+
+TEST(Motion, RefitsSeeWhatRebuildsSee) {
+    Moving refitted(skinnedScene(0.0));
+    Moving rebuilt(skinnedScene(0.0));
+    ASSERT_TRUE(refitted.ok() && rebuilt.ok());
+    for (const double angle : {0.5, -1.0, 2.5}) {
+        refitted.scene = skinnedScene(angle);
+        rebuilt.scene = skinnedScene(angle);
+        EXPECT_EQ(refitted.update(MotionView::Builds::Refit).refits, 1U);
+        EXPECT_EQ(rebuilt.update(MotionView::Builds::Rebuild).rebuilds, 1U);
+        expectSameImage(refitted.render(), rebuilt.render(), "at " + std::to_string(angle));
+    }
+}
+
+// A mesh that follows one joint alone is that mesh in the joint's place: normals and tangents, too, where the
+// joint stretches and mirrors.
+TEST(Motion, OneJointIsATransform) {
+    for (const double stretch : {1.5, -1.5}) {
+        Scene scene = skinnedScene(0.0);
+        Primitive& strip = scene.meshes[1].primitives[0];
+        strip.influences = {1, std::vector<std::uint16_t>(strip.positions.size(), 0),
+                            std::vector<float>(strip.positions.size(), 1.0F)};
+        for (std::size_t i = 0; i < strip.normals.size(); ++i) {
+            const float lean = 0.6F * (strip.positions[i][1] - 1.0F);
+            const float length = std::sqrt(1.0F + lean * lean);
+            strip.normals[i] = {0.0F, lean / length, 1.0F / length};
+        }
+        scene.materials.back().roughnessFactor = 0.2F;
+        scene.materials.back().anisotropy = {true, 0.8F, 0.0F};
+        Matrix4 place = placed(0.2, -0.9, -2.5, 0.4);
+        for (std::size_t row = 0; row < 3; ++row) {
+            place[row] *= stretch;
+        }
+        scene.skins[0] = {"", {2}, {placed(0, 0, 0)}};
+        scene.nodes[2].world = place;
+        // Its own transform says which side is the front.
+        scene.nodes[1].world = place;
+        Scene rigid = scene;
+        rigid.nodes[1].skin = -1;
+        rigid.meshes[1].primitives[0].influences = {};
+        expectAlike(renderStill(scene), renderStill(rigid), "stretched by " + std::to_string(stretch));
+    }
+}
+
+Scene morphedScene(std::vector<double> weights) {
+    Scene scene = emptyScene();
+    addRoom(scene);
+    Primitive strip = makeStrip(addMaterial(scene, coloured({0.9F, 0.7F, 0.1F})), 8);
+    strip.targets.resize(2);
+    for (const Float3& position : strip.positions) {
+        strip.targets[0].positions.push_back({0.5F * position[1] * position[1], 0, 0});
+        strip.targets[1].positions.push_back({0, -0.25F * position[1], 0.2F});
+    }
+    addInstance(scene, addMesh(scene, std::move(strip)), placed(0, -0.8, -2.5, 0.1));
+    scene.meshes[1].weights = {0.0, 0.0};
+    scene.nodes[1].weights = std::move(weights);
+    return scene;
+}
+
+TEST(Motion, TargetsMorphMeshes) {
+    Moving moving(morphedScene({0.0, 0.0}));
+    ASSERT_TRUE(moving.ok());
+    const LinearImage rest = moving.render();
+    expectAlike(rest, renderStill(bakedScene(moving.scene)), "at rest");
+    moving.scene = morphedScene({0.5, 1.0});
+    EXPECT_EQ(moving.update().deformed, 1U);
+    const LinearImage morphed = moving.render();
+    expectAlike(morphed, renderStill(bakedScene(moving.scene)), "morphed");
+    expectUnlike(morphed, rest, "morphed");
+}
+
+// Differences of normals turn them as if the mesh had others from the start.
+TEST(Motion, TargetsTurnNormals) {
+    Scene scene = morphedScene({1.0, 0.0});
+    Primitive& strip = scene.meshes[1].primitives[0];
+    Scene baked = scene;
+    strip.targets[0] = {};
+    strip.targets[0].normals.assign(strip.positions.size(), {1.0F, 0.0F, 0.0F});
+    Primitive& turned = baked.meshes[1].primitives[0];
+    turned.targets.clear();
+    const float half = static_cast<float>(std::numbers::sqrt2 / 2.0);
+    turned.normals.assign(turned.positions.size(), {half, 0.0F, half});
+    baked.nodes[1].weights.clear();
+    expectAlike(renderStill(scene), renderStill(baked), "turned");
+    Scene straight = scene;
+    straight.nodes[1].weights = {0.0, 0.0};
+    expectUnlike(renderStill(scene), renderStill(straight), "turned");
+}
+
+TEST(Motion, WornStructuresAreBuiltAnew) {
+    Moving moving(morphedScene({0.0, 0.0}));
+    ASSERT_TRUE(moving.ok());
+    moving.scene.nodes[1].weights = {0.1, 0.0};
+    EXPECT_EQ(moving.update().refits, 1U);
+    moving.scene.nodes[1].weights = {8.0, 0.0};
+    const MotionStatistics grown = moving.update();
+    EXPECT_EQ(grown.refits, 0U);
+    EXPECT_EQ(grown.rebuilds, 1U);
+    for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
+        moving.scene.nodes[1].weights = {8.0 - 0.01 * i, 0.01};
+        ASSERT_EQ(moving.update().refits, 1U) << i;
+    }
+    moving.scene.nodes[1].weights = {7.0, 0.0};
+    EXPECT_EQ(moving.update().rebuilds, 1U) << "after as many refits as there may be";
+}
+
+bool hasDeformModule(const Package& package) {
+    for (const package::ModuleEntry& module : package.modules()) {
+        if (module.role == package::ModuleRole::Deform) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(Motion, NothingOfItIsThereInScenesThatStay) {
+    const Moving still(rigidScene(), false);
+    ASSERT_TRUE(still.ok());
+    EXPECT_FALSE(hasDeformModule(still.package.package()));
+    EXPECT_EQ(still.gpuScene->state().motion, nullptr);
+    EXPECT_TRUE(still.gpuScene->state().deformed.buffers.empty());
+    // Nodes that move need no pass that deforms.
+    const Moving rigid(rigidScene());
+    ASSERT_TRUE(rigid.ok());
+    EXPECT_FALSE(hasDeformModule(rigid.package.package()));
+    EXPECT_EQ(rigid.gpuScene->state().motion->deformer, nullptr);
+    EXPECT_EQ(rigid.gpuScene->state().motion->blases, nullptr);
+    EXPECT_EQ(rigid.gpuScene->statistics().blasBytes, still.gpuScene->statistics().blasBytes);
+    // A picture of a pose is deformed once and built as if it had no other.
+    const Moving posed(skinnedScene(0.3), false);
+    ASSERT_TRUE(posed.ok());
+    EXPECT_TRUE(hasDeformModule(posed.package.package()));
+    EXPECT_EQ(posed.gpuScene->state().motion, nullptr);
+    EXPECT_EQ(posed.gpuScene->state().blases.size(), 2U);
+}
+
+std::string errorId(const Status& status) {
+    return status ? "done" : status.error().id;
+}
+
+TEST(Motion, RefusesWhatIsNotItsScene) {
+    Moving still(rigidScene(), false);
+    ASSERT_TRUE(still.ok());
+    EXPECT_EQ(errorId(still.gpuScene->updateAndWait(still.data.motion())), "scene-still");
+    EXPECT_FALSE(still.gpuScene->motion().ok());
+    Moving moving(skinnedScene(0.0));
+    ASSERT_TRUE(moving.ok());
+    const MotionView good = moving.data.motion();
+    MotionView motion = good;
+    motion.lights = {};
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion");
+    motion = good;
+    motion.instances = good.instances.subspan(1);
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion");
+    std::vector<InstanceView> instances(good.instances.begin(), good.instances.end());
+    motion.instances = instances;
+    instances[1].joints = instances[1].joints.subspan(1);
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion");
+    instances[1] = good.instances[0];
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion") << "another mesh";
+    instances[1] = good.instances[1];
+    std::vector<std::array<float, 12>> joints(2);
+    joints[1][3] = NAN;
+    instances[1].joints = joints;
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion");
+    joints[1][3] = 0.0F;
+    EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "done");
+    // A package of the scene without its skin has no pass for it.
+    Scene rigid = skinnedScene(0.0);
+    rigid.nodes[1].skin = -1;
+    const LoadedScene other(rigid, PlanOptions{});
+    ASSERT_TRUE(other.ok());
+    const Result<std::unique_ptr<GpuScene>> uploaded =
+        GpuScene::upload(sharedContext(), other.package(), moving.data.view());
+    EXPECT_EQ(uploaded ? "uploaded" : uploaded.error().id, "scene-package");
+}
+
+}  // namespace
+}  // namespace glint::testing

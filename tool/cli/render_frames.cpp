@@ -1,0 +1,209 @@
+#include "cli/render_frames.h"
+
+#include "cli/camera.h"
+#include "image/image_file.h"
+#include "image/tone.h"
+#include "motion/pose.h"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Renders picture after picture with one scene on the device and one renderer.
+class FrameLoop {
+public:
+    FrameLoop(const FrameSetup& setup, Scene& scene, SceneViewData& data, RenderReport& report)
+        : setup_(setup), scene_(scene), data_(data), report_(report), camera_(setup.camera) {}
+
+    // The scene goes to the device in the pose of the first moment.
+    Status start(Context& context, const Package& package) {
+        if (setup_.movement) {
+            if (Status posed = pose(setup_.movement->moments.front()); !posed) {
+                return posed;
+            }
+            data_.moves = setup_.movement->moments.size() > 1;
+        }
+        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
+        if (!uploaded) {
+            return uploaded.error();
+        }
+        gpuScene_ = std::move(*uploaded);
+        report_.sceneStatistics = gpuScene_->statistics();
+        Result<std::unique_ptr<Renderer>> renderer =
+            Renderer::create(context, package, *gpuScene_, setup_.renderer);
+        if (!renderer) {
+            return renderer.error();
+        }
+        renderer_ = std::move(*renderer);
+        report_.tracer = std::string(package::nameOf(renderer_->tracer()));
+        if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
+            report_.ordering = std::string(package::nameOf(renderer_->ordering()));
+        }
+        report_.pipelineCreationMs = renderer_->pipelineCreationMs();
+        report_.footprint = renderer_->footprint();
+        return okStatus();
+    }
+
+    // To a later moment; the scene is on the device.
+    Status advance(const Moment& moment, FrameReport& frame) {
+        const Clock::time_point begin = Clock::now();
+        if (Status posed = pose(moment); !posed) {
+            return posed;
+        }
+        frame.poseMs = millisecondsSince(begin);
+        MotionView motion = data_.motion();
+        motion.builds = setup_.movement->builds;
+        const Clock::time_point updated = Clock::now();
+        if (Status status = gpuScene_->updateAndWait(motion); !status) {
+            return status;
+        }
+        frame.updateMs = millisecondsSince(updated);
+        const Result<MotionStatistics> statistics = gpuScene_->motion();
+        if (!statistics) {
+            return statistics.error();
+        }
+        frame.motion = *statistics;
+        return okStatus();
+    }
+
+    Result<LinearImage> render(FrameReport& frame) {
+        FrameOptions options;
+        options.camera = camera_;
+        setup_.arguments.frame.apply(options);
+        setup_.arguments.effectFrame.apply(options);
+        options.maxReflectionRoughness = static_cast<float>(setup_.arguments.effects.maxRoughness);
+        options.environment = setup_.environment;
+        setup_.arguments.environment.apply(options);
+        options.seed = report_.seed;
+        const Clock::time_point begin = Clock::now();
+        const bool countsHits = !setup_.arguments.profileOutput.empty();
+        Result<LinearImage> image = renderer_->render(
+            options, report_.samples, countsHits ? [this] { return addHits(); } : std::function<Status()>());
+        frame.renderMs = millisecondsSince(begin);
+        report_.renderMs += frame.renderMs;
+        if (!image) {
+            return image;
+        }
+        if (Status measured = measure(frame); !measured) {
+            return measured.error();
+        }
+        return image;
+    }
+
+private:
+    Status pose(const Moment& moment) {
+        applyPose(poseAt(scene_, setup_.movement->animations, moment.seconds), scene_);
+        poseSceneView(scene_, data_);
+        setup_.arguments.effectFrame.apply(data_);
+        if (framesEverything(scene_, setup_.arguments.camera)) {
+            return okStatus();  // that one stands still
+        }
+        const Result<CameraChoice> moved =
+            chooseCameraAround(scene_, Bounds{}, setup_.arguments.camera, setup_.aspect);
+        if (!moved) {
+            return moved.error();
+        }
+        camera_ = moved->view;
+        return okStatus();
+    }
+
+    Status addHits() {
+        const Result<FrameCounters> counters = renderer_->counters();
+        if (!counters) {
+            return counters.error();
+        }
+        report_.addHits(*counters);
+        return okStatus();
+    }
+
+    // What the last sample took and counted.
+    Status measure(FrameReport& frame) {
+        Result<std::vector<PassTiming>> passes = renderer_->timings();
+        if (!passes) {
+            return passes.error();
+        }
+        Result<FrameCounters> counters = renderer_->counters();
+        if (!counters) {
+            return counters.error();
+        }
+        for (const PassTiming& pass : *passes) {
+            frame.deviceMs += pass.milliseconds;
+        }
+        report_.passes = std::move(*passes);
+        report_.counters = std::move(*counters);
+        if (!setup_.arguments.coverage.empty()) {
+            Result<std::vector<PixelPath>> paths = renderer_->readCoverage();
+            if (!paths) {
+                return paths.error();
+            }
+            report_.paths = std::move(*paths);
+        }
+        return okStatus();
+    }
+
+    const FrameSetup& setup_;
+    Scene& scene_;
+    SceneViewData& data_;
+    RenderReport& report_;
+    CameraView camera_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace
+
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+                    SceneViewData& data, const std::function<Result<bool>()>& accept, RenderReport& report) {
+    FrameLoop loop(setup, scene, data, report);
+    if (Status started = loop.start(context, package); !started) {
+        return started;
+    }
+    const bool isSequence = setup.movement && setup.movement->isSequence;
+    const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+        FrameReport frame;
+        frame.frame = moments[i].frame;
+        frame.seconds = moments[i].seconds;
+        const std::string& output = setup.arguments.output;
+        frame.image = isSequence ? numberedFile(output, frame.frame).string() : output;
+        if (i > 0) {
+            if (Status advanced = loop.advance(moments[i], frame); !advanced) {
+                return advanced;
+            }
+        }
+        const Result<LinearImage> image = loop.render(frame);
+        if (!image) {
+            return image.error();
+        }
+        const Result<bool> accepted = accept();
+        if (!accepted || !*accepted) {
+            return accepted ? okStatus() : Status(accepted.error());
+        }
+        // A sequence keeps the exposure of its first picture: it would flicker otherwise.
+        if (i == 0) {
+            report.exposure = automaticExposure(*image);
+            if (setup.arguments.exposure != "auto") {
+                parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
+            }
+        }
+        if (Status written = writeImage(frame.image, *image, report.exposure); !written) {
+            return written;
+        }
+        if (isSequence) {
+            report.frames.push_back(std::move(frame));
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace glint

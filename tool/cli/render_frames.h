@@ -1,0 +1,34 @@
+// The pictures of glint render: one, or a sequence in which the scene moves.
+#pragma once
+
+#include "cli/motion_options.h"
+#include "cli/render_arguments.h"
+#include "cli/render_report.h"
+#include "cli/scene_view.h"
+#include "gltf/scene.h"
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+#include <functional>
+#include <optional>
+
+namespace glint {
+
+struct FrameSetup {
+    const RenderArguments& arguments;
+    RendererOptions renderer;
+    const Environment* environment = nullptr;  // null: none
+    const std::optional<Movement>& movement;   // nothing: the rest pose
+    CameraView camera;                         // of the first picture
+    double aspect = 1.0;                       // width / height
+};
+
+// Renders and writes every picture, and fills in what was measured. `scene` and `data`, which was made from
+// it, are left in the last pose. Before each picture is written, `accept` is asked: its error ends the work,
+// and so does its refusal, without one.
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+                    SceneViewData& data, const std::function<Result<bool>()>& accept, RenderReport& report);
+
+}  // namespace glint
