@@ -82,6 +82,16 @@ TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
     expectSame("a.0001.exr", "b.0001.exr");
 }
 
+TEST_F(MovingScene, IsTheSameToEveryStrategyAndTracer) {
+    ASSERT_EQ(render("query.exr", {"--frames", "0:1", "--fps", "2"}).exit, 0);
+    for (const char* strategy : {"uber", "hit-shaders"}) {
+        const Outcome outcome = render("pipeline.exr", {"--frames", "0:1", "--fps", "2", "--strategy",
+                                                        strategy, "--tracer", "ray-pipeline", "--validate"});
+        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        expectSame("query.0001.exr", "pipeline.0001.exr");
+    }
+}
+
 TEST_F(MovingScene, PlaysTheAnimationThatIsAskedFor) {
     ASSERT_EQ(render("rest.exr").exit, 0);
     ASSERT_EQ(render("start.exr", {"--time", "0"}).exit, 0);

@@ -47,6 +47,7 @@ Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std:
         return std::vector{static_cast<std::size_t>(*number)};
     }
     std::vector<std::string> names;
+    names.reserve(all.size() + 1);
     for (const std::size_t index : all) {
         names.push_back(animationName(scene, index));
     }
