@@ -73,6 +73,12 @@ TEST_F(MovingScene, WritesASequence) {
     expectSame("out.0002.exr", "again.0002.exr");
 }
 
+TEST_F(MovingScene, NamesTheFilesOfASequence) {
+    const Outcome outcome = render("out.png", {"--frames", "0:1"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("out.0000.png to out.0001.png"), std::string::npos) << outcome.out;
+}
+
 TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
     ASSERT_EQ(render("a.exr", {"--frames", "0:1", "--fps", "2", "--refit", "always"}).exit, 0);
     const Outcome outcome = render("b.exr", {"--frames", "0:1", "--fps", "2", "--refit", "never", "--json"});
@@ -163,6 +169,7 @@ TEST_F(MovingScene, BadOptionsAreUsageErrors) {
         {"--frames", "0:1", "--fps", "0"},
         {"--fps", "24"},
         {"--refit", "never"},
+        {"--animation", "Slide"},
         {"--frames", "0:1", "--time", "1"},
         {"--frames", "0:1", "--coverage", "c.png"},
         {"--time", "-1"},
