@@ -72,7 +72,8 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
                                            "0:23, of 0 to 1000000";
         },
         ""));
-    addReal(command, "--fps", arguments.fps, 0.001, 10000.0, "frames a second, with --frames")
+    addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
+            "frames a second (0.001 to 10000, default: 24; needs\n--frames)")
         .needs(&frames)
         ->group(group);
     addText(command, "--time", arguments.time, "SECONDS",
