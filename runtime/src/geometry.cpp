@@ -197,9 +197,10 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
 }
 
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
-    const auto own = std::ranges::equal_range(primitives, mesh, {}, &PrimitiveView::mesh);
-    return {static_cast<std::uint32_t>(own.begin() - primitives.begin()),
-            static_cast<std::uint32_t>(own.end() - primitives.begin())};
+    const auto first = std::ranges::lower_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    const auto end = std::ranges::upper_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    return {static_cast<std::uint32_t>(first - primitives.begin()),
+            static_cast<std::uint32_t>(end - primitives.begin())};
 }
 
 Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,

@@ -154,11 +154,11 @@ bool place(SceneMotion& motion, std::span<const InstanceView> instances, std::ve
         VkAccelerationStructureInstanceKHR& placed = motion.placed[i];
         const std::uint32_t instance = motion.partInstances[i].instance;
         const std::uint32_t mask = whole[instance] ? 0xFF : 0;
-        const void* const rows = instances[instance].objectToWorld.data();
+        const std::array<float, 12>& rows = instances[instance].objectToWorld;
         changed = changed || mask != placed.mask;
         placed.mask = mask & 0xFFU;
-        if (whole[instance] && std::memcmp(&placed.transform, rows, sizeof(placed.transform)) != 0) {
-            std::memcpy(&placed.transform, rows, sizeof(placed.transform));
+        if (whole[instance] && !std::equal(rows.begin(), rows.end(), &placed.transform.matrix[0][0])) {
+            std::memcpy(&placed.transform, rows.data(), sizeof(placed.transform));
             changed = true;
         }
     }

@@ -87,6 +87,9 @@ void PassRecorder::drawScene() {
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
     bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
     for (const Draw& draw : state_.scene.draws) {
+        if (draw.hidden) {
+            continue;
+        }
         vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
         // glTF's fronts are counter-clockwise on screen, unless a mirroring transform turns them.
         vk_.CmdSetFrontFace(commands_,

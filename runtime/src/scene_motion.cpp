@@ -67,7 +67,7 @@ Status createTlas(GpuScene::State& state) {
         return s;
     }
     Result<AccelerationStructure> tlas =
-        createStructure(state.context, motion.pool, build.sizes.accelerationStructureSize,
+        createStructure(state.context, state.pool, build.sizes.accelerationStructureSize,
                         VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
     if (!tlas) {
         return tlas.error();

@@ -73,6 +73,12 @@ TEST_F(MovingScene, WritesASequence) {
     expectSame("out.0002.exr", "again.0002.exr");
 }
 
+TEST_F(MovingScene, NamesTheFilesOfASequence) {
+    const Outcome outcome = render("out.png", {"--frames", "0:1"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("out.0000.png to out.0001.png"), std::string::npos) << outcome.out;
+}
+
 TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
     ASSERT_EQ(render("a.exr", {"--frames", "0:1", "--fps", "2", "--refit", "always"}).exit, 0);
     const Outcome outcome = render("b.exr", {"--frames", "0:1", "--fps", "2", "--refit", "never", "--json"});
@@ -80,6 +86,16 @@ TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
     EXPECT_EQ(outcome.json().at("frames")[1].at("rebuilds"), 1);
     EXPECT_EQ(outcome.json().at("frames")[1].at("topLevel"), "rebuilt");
     expectSame("a.0001.exr", "b.0001.exr");
+}
+
+TEST_F(MovingScene, IsTheSameToEveryStrategyAndTracer) {
+    ASSERT_EQ(render("query.exr", {"--frames", "0:1", "--fps", "2"}).exit, 0);
+    for (const char* strategy : {"uber", "hit-shaders"}) {
+        const Outcome outcome = render("pipeline.exr", {"--frames", "0:1", "--fps", "2", "--strategy",
+                                                        strategy, "--tracer", "ray-pipeline", "--validate"});
+        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        expectSame("query.0001.exr", "pipeline.0001.exr");
+    }
 }
 
 TEST_F(MovingScene, PlaysTheAnimationThatIsAskedFor) {
@@ -153,6 +169,7 @@ TEST_F(MovingScene, BadOptionsAreUsageErrors) {
         {"--frames", "0:1", "--fps", "0"},
         {"--fps", "24"},
         {"--refit", "never"},
+        {"--animation", "Slide"},
         {"--frames", "0:1", "--time", "1"},
         {"--frames", "0:1", "--coverage", "c.png"},
         {"--time", "-1"},

@@ -47,6 +47,7 @@ Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std:
         return std::vector{static_cast<std::size_t>(*number)};
     }
     std::vector<std::string> names;
+    names.reserve(all.size() + 1);
     for (const std::size_t index : all) {
         names.push_back(animationName(scene, index));
     }
@@ -71,7 +72,8 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
                                            "0:23, of 0 to 1000000";
         },
         ""));
-    addReal(command, "--fps", arguments.fps, 0.001, 10000.0, "frames a second, with --frames")
+    addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
+            "frames a second (0.001 to 10000, default: 24; needs\n--frames)")
         .needs(&frames)
         ->group(group);
     addText(command, "--time", arguments.time, "SECONDS",

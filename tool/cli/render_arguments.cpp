@@ -125,6 +125,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         checkTracingChoice(arguments->tracing);
         checkEffects(arguments->effects);
         checkEffectFrame(arguments->effectFrame);
+        const bool plays = !arguments->motion.frames.empty() || !arguments->motion.time.empty();
+        if (!plays && command.get_option("--animation")->count() > 0) {
+            throw CLI::ValidationError("--animation", "plays with --frames or --time; give one of them");
+        }
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
             throw CLI::ValidationError("--coverage", "is of one picture; leave out --frames, or use --time");
         }

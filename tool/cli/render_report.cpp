@@ -72,6 +72,16 @@ std::string tableOf(const std::vector<FrameReport>& frames) {
     return formatTable(rows);
 }
 
+// The picture, or the first and last of a sequence.
+std::string filesOf(const RenderReport& report) {
+    const std::vector<FrameReport>& frames = report.frames;
+    if (frames.empty()) {
+        return report.image;
+    }
+    const std::string& first = frames.front().image;
+    return frames.size() == 1 ? first : fmt::format("{} to {}", first, frames.back().image);
+}
+
 std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
@@ -210,7 +220,7 @@ std::string toText(const RenderReport& report) {
     const FrameCounters& counters = report.counters;
     std::vector<std::vector<std::string>> rows{
         {"image",
-         fmt::format("{}, {} x {}, {} spp", report.image, report.width, report.height, report.samples)},
+         fmt::format("{}, {} x {}, {} spp", filesOf(report), report.width, report.height, report.samples)},
         {"device", fmt::format("{} ({})", report.device, report.driver)},
         {"strategy", fmt::format("{}, {}, {} case{}", report.strategy, report.tracer, report.cases,
                                  report.cases == 1 ? "" : "s")},

@@ -35,6 +35,7 @@ LightView toView(const Light& light) {
 
 std::vector<MorphTargetView> toViews(const std::vector<MorphTarget>& targets) {
     std::vector<MorphTargetView> views;
+    views.reserve(targets.size());
     for (const MorphTarget& target : targets) {
         views.push_back({target.positions, target.normals, target.tangents});
     }

@@ -83,12 +83,10 @@ Quaternion weighted(const Quaternion& a, double weightA, const Quaternion& b, do
 }  // namespace
 
 Quaternion slerp(const Quaternion& from, Quaternion to, double amount) {
-    double cosine = dot(from, to);
-    if (cosine < 0.0) {
-        cosine = -cosine;
+    if (dot(from, to) < 0.0) {
         to = {-to[0], -to[1], -to[2], -to[3]};
     }
-    // The sine of the angle, by the chord: the arc cosine of a number near 1 has half the digits.
+    // The angle by its chord: the arc cosine of a number near 1 has half the digits.
     const Quaternion chord = weighted(from, -1.0, to, 1.0);
     const double angle = 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(dot(chord, chord))));
     const double sine = std::sin(angle);

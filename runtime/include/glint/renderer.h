@@ -71,9 +71,10 @@ public:
     // is whole again.
     //
     // The spans are read here and not kept. One update may be in flight at a time: poses are written to
-    // host-visible memory here. What is recorded must be submitted before the next call, which builds upon it. Errors, with which nothing is recorded: "scene-still" (it was uploaded
-    // without `moves`), "scene-motion" (another number of instances, lights, joints or weights than at
-    // upload, another mesh, or a number that is not finite).
+    // host-visible memory here. What is recorded must be submitted before the next call, which builds upon
+    // it. Errors, with which nothing is recorded: "scene-still" (it was uploaded without `moves`),
+    // "scene-motion" (another number of instances, lights, joints or weights than at upload, another mesh, or
+    // a number that is not finite).
     Status update(VkCommandBuffer commands, const MotionView& motion);
 
     // Records, submits and waits; for tools and tests.

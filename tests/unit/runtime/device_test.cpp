@@ -34,6 +34,20 @@ TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
     EXPECT_NE(other.error().hint.find(context().deviceName()), std::string::npos);
 }
 
+// A device may have one type of memory for everything.
+TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
+    Context::State& state = context().state();
+    MemoryPool pool(state);
+    const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    const auto device = createBuffer(state, pool, 256, usage);
+    ASSERT_TRUE(device) << toString(device.error());
+    for (const MemoryUse use : {MemoryUse::Upload, MemoryUse::Readback}) {
+        const auto buffer = createBuffer(state, pool, 256, usage, use);
+        ASSERT_TRUE(buffer) << toString(buffer.error());
+        EXPECT_NE(buffer->mapped, nullptr);
+    }
+}
+
 class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};
 
 // Devices with ray queries, and with pipelines beside them.
