@@ -47,6 +47,7 @@ kNeeds=(
     "file /usr/include/xxhash.h|libxxhash-dev"
     "file /usr/include/stb/stb_image.h|libstb-dev"
     "file /usr/include/OpenEXR/ImfHeader.h|libopenexr-dev"
+    "file /usr/include/embree*/rtcore.h|libembree-dev"
     "file /usr/include/gtest/gtest.h|libgtest-dev"
     "file /usr/include/valijson/schema.hpp|libvalijson-dev"
     "file /usr/lib/python3/dist-packages/numpy/__init__.py|python3-numpy"

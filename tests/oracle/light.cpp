@@ -1,0 +1,141 @@
+#include "oracle/light.h"
+
+#include <algorithm>
+#include <array>
+
+namespace glint::oracle {
+namespace {
+
+Vec3 toVec(const Float3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+double clampedArcCosine(double cosine) {
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+// Angle at C of the spherical triangle with sides a, b and c.
+double angleOf(double a, double b, double c) {
+    return clampedArcCosine((std::cos(c) - std::cos(a) * std::cos(b)) / (std::sin(a) * std::sin(b)));
+}
+
+}  // namespace
+
+double LightCap::distanceAlong(const Vec3& toLight) const {
+    if (centerDistance == kInfinity || radius == 0.0) {
+        return centerDistance;
+    }
+    const double along = centerDistance * glm::dot(direction, toLight);
+    const double across2 = std::max(centerDistance * centerDistance - along * along, 0.0);
+    return along - std::sqrt(std::max(radius * radius - across2, 0.0));
+}
+
+LightCap lightCap(const Light& light, const LightSizes& sizes, const Vec3& position) {
+    LightCap cap;
+    if (light.type == LightType::Directional) {
+        cap.direction = -toVec(light.direction);
+        cap.halfAngle = 0.5 * sizes.sunDiameter;
+        return cap;
+    }
+    const Vec3 toLight = toVec(light.position) - position;
+    cap.centerDistance = glm::length(toLight);
+    cap.direction = toLight / cap.centerDistance;
+    cap.radius = sizes.radius;
+    cap.halfAngle = std::asin(std::min(sizes.radius / cap.centerDistance, 1.0));
+    return cap;
+}
+
+Vec3 irradianceFrom(const Light& light, const Vec3& position) {
+    const Vec3 emitted = toVec(light.color) * static_cast<double>(light.intensity);
+    if (light.type == LightType::Directional) {
+        return emitted;
+    }
+    const Vec3 toLight = toVec(light.position) - position;
+    const double distance = glm::length(toLight);
+    double attenuation = 1.0 / (distance * distance);
+    if (light.range > 0.0F) {
+        attenuation *= std::clamp(1.0 - std::pow(distance / light.range, 4.0), 0.0, 1.0);
+    }
+    if (light.type == LightType::Spot) {
+        const double cosine = glm::dot(toVec(light.direction), -toLight / distance);
+        const double inner = std::cos(light.innerConeAngle);
+        const double outer = std::cos(light.outerConeAngle);
+        const double cone = std::clamp((cosine - outer) / std::max(inner - outer, 0.001), 0.0, 1.0);
+        attenuation *= cone * cone;
+    }
+    return emitted * attenuation;
+}
+
+Estimate visibleShare(const World& world, const LightCap& cap, const Vec3& position, const Vec3& normal,
+                      const Strata& strata, Random& random) {
+    const glm::dmat3 frame = frameAbout(cap.direction);
+    return average(strata, random, [&](Vec2 point) {
+        const Vec3 direction = frame * capDirection(point, cap.halfAngle);
+        const bool seen = glm::dot(normal, direction) > 0.0 &&
+                          world.visible({position, direction}, cap.distanceAlong(direction));
+        return Vec3(seen ? 1.0 : 0.0);
+    });
+}
+
+double shareBesidesEdge(double halfAngle, double elevation) {
+    const double height = std::abs(elevation);
+    if (height >= halfAngle) {
+        return elevation > 0.0 ? 0.0 : 1.0;
+    }
+    const double segment =
+        2.0 * (clampedArcCosine(std::sin(height) / std::sin(halfAngle)) -
+               std::cos(halfAngle) * clampedArcCosine(std::tan(height) / std::tan(halfAngle)));
+    const double share = segment / (2.0 * kPi * (1.0 - std::cos(halfAngle)));
+    return elevation > 0.0 ? share : 1.0 - share;
+}
+
+double shareBesidesCap(double halfAngle, double hiding, double apart) {
+    const double whole = 2.0 * kPi * (1.0 - std::cos(halfAngle));
+    if (apart >= halfAngle + hiding) {
+        return 1.0;
+    }
+    if (apart <= std::abs(halfAngle - hiding)) {
+        return hiding >= halfAngle ? 0.0 : 1.0 - 2.0 * kPi * (1.0 - std::cos(hiding)) / whole;
+    }
+    // Half angles of the lens at either axis, and that between the circles where they cross.
+    const double atLight = angleOf(halfAngle, apart, hiding);
+    const double atHiding = angleOf(hiding, apart, halfAngle);
+    const double between = angleOf(halfAngle, hiding, apart);
+    // Two triangles and the two sectors, by Girard's theorem.
+    const double lens = 2.0 * (kPi - between - atLight * std::cos(halfAngle) - atHiding * std::cos(hiding));
+    return 1.0 - lens / whole;
+}
+
+double shareBesidesDisk(double halfAngle, double radius, double aside) {
+    // On the plane at height 1 a direction of tangent r is hidden where a circle of radius r runs through the
+    // disk.
+    const auto hidden = [&](double tangent) {
+        if (tangent <= radius - aside) {
+            return 1.0;
+        }
+        if (tangent <= aside - radius || tangent >= aside + radius) {
+            return 0.0;
+        }
+        const double cosine = (tangent * tangent + aside * aside - radius * radius) / (2.0 * tangent * aside);
+        return clampedArcCosine(cosine) / kPi;
+    };
+    // The arc has roots at the ends of where it is partly hidden: Simpson's rule between them, with points
+    // that crowd there as those of Chebyshev.
+    std::array<double, 4> ends{0.0, std::atan(std::abs(radius - aside)), std::atan(radius + aside),
+                               halfAngle};
+    constexpr int kSteps = 48;
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const double from = std::min(ends[i], halfAngle);
+        const double to = std::min(ends[i + 1], halfAngle);
+        for (int step = 0; step <= kSteps; ++step) {
+            const double phase = kPi * step / kSteps;
+            const double angle = from + (to - from) * 0.5 * (1.0 - std::cos(phase));
+            const double weight = step == 0 || step == kSteps ? 1.0 : (step % 2 == 1 ? 4.0 : 2.0);
+            sum += weight * hidden(std::tan(angle)) * std::sin(angle) * (to - from) * 0.5 * std::sin(phase);
+        }
+    }
+    return 1.0 - sum * kPi / (3.0 * kSteps) / (1.0 - std::cos(halfAngle));
+}
+
+}  // namespace glint::oracle

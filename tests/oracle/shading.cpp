@@ -1,0 +1,98 @@
+#include "oracle/shading.h"
+
+#include "numerics/shaders_double.h"
+
+#include <algorithm>
+
+namespace glint::oracle {
+namespace {
+
+Vec3 toVec(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+double squared(double x) {
+    return x * x;
+}
+
+// glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular.
+struct Base {
+    Vec3 diffuse;
+    Vec3 f0;
+    double f90;
+};
+
+Base baseOf(const Material& material, const Vec3& color) {
+    const double ior = material.ior.ior;
+    const double metallic = material.metallicFactor;
+    const double specular = material.specular.factor;
+    const Vec3 dielectric =
+        glm::min(squared((ior - 1.0) / (ior + 1.0)) * toVec(material.specular.colorFactor), Vec3(1.0)) *
+        specular;
+    return {color * (1.0 - metallic), glm::mix(dielectric, color, metallic),
+            glm::mix(specular, 1.0, metallic)};
+}
+
+glsl::Features featuresOf(const Material& material) {
+    glsl::uint lobes = 0;
+    lobes |= material.clearcoat.factor > 0.0F ? GLINT_CLEARCOAT : 0U;
+    lobes |= toVec(material.sheen.colorFactor) != Vec3(0.0) ? GLINT_SHEEN : 0U;
+    return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+}
+
+glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view) {
+    const Base base = baseOf(material, color);
+    glsl::Bsdf bsdf{};
+    bsdf.diffuse = base.diffuse;
+    bsdf.f0 = base.f0;
+    bsdf.f90 = base.f90;
+    bsdf.alpha = glm::dvec2(std::max(squared(material.roughnessFactor), glsl::kMinAlpha));
+    bsdf.eta = Vec3(1.0);
+    bsdf.clearcoat = material.clearcoat.factor;
+    bsdf.clearcoatAlpha = std::max(squared(material.clearcoat.roughnessFactor), glsl::kMinAlpha);
+    bsdf.clearcoatNormal = {0.0, 0.0, 1.0};
+    bsdf.sheenColor = toVec(material.sheen.colorFactor);
+    bsdf.sheenAlpha = std::max(squared(material.sheen.roughnessFactor), glsl::kMinSheenAlpha);
+    glsl::prepareBsdf(bsdf, featuresOf(material), view);
+    return bsdf;
+}
+
+}  // namespace
+
+Shading::Shading(const Material& material, const Hit& hit, const Vec3& incoming)
+    : material_(material),
+      color_(hit.color),
+      frame_(frameAbout(hit.front ? hit.normal : -hit.normal)),
+      geometricNormal_(hit.front ? hit.geometricNormal : -hit.geometricNormal),
+      view_(glm::transpose(frame_) * -incoming) {}
+
+Vec3 Shading::baseColor() const {
+    const auto& factor = material_.baseColorFactor;
+    return Vec3(factor[0], factor[1], factor[2]) * color_;
+}
+
+Vec3 Shading::emission() const {
+    // KHR_materials_clearcoat: the coat lets through of emission what it does not reflect.
+    const double coat = material_.clearcoat.factor * reflectedByCoat();
+    return toVec(material_.emissiveFactor) * static_cast<double>(material_.emissiveStrength) * (1.0 - coat);
+}
+
+Vec3 Shading::scattered(const Vec3& toLight) const {
+    const Vec3 light = glm::transpose(frame_) * toLight;
+    if (light.z * glm::dot(geometricNormal_, toLight) <= 0.0) {
+        return Vec3(0.0);
+    }
+    return glsl::evaluateBsdf(bsdfOf(material_, baseColor(), view_), featuresOf(material_), light);
+}
+
+Vec3 Shading::mirrored(Vec3& direction) const {
+    direction = frame_ * Vec3(-view_.x, -view_.y, view_.z);
+    const Base base = baseOf(material_, baseColor());
+    return base.f0 + (Vec3(base.f90) - base.f0) * std::pow(1.0 - std::clamp(view_.z, 0.0, 1.0), 5.0);
+}
+
+double Shading::reflectedByCoat() const {
+    return 0.04 + 0.96 * std::pow(1.0 - std::clamp(view_.z, 0.0, 1.0), 5.0);
+}
+
+}  // namespace glint::oracle

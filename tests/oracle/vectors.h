@@ -1,0 +1,23 @@
+// Vectors of the oracle: double precision throughout.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace glint::oracle {
+
+using Vec2 = glm::dvec2;
+using Vec3 = glm::dvec3;
+
+inline constexpr double kPi = std::numbers::pi;
+
+// Columns: two tangents and the axis, which is unit.
+inline glm::dmat3 frameAbout(const Vec3& axis) {
+    const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    const Vec3 tangent = glm::normalize(helper - axis * glm::dot(helper, axis));
+    return {tangent, glm::cross(axis, tangent), axis};
+}
+
+}  // namespace glint::oracle
