@@ -32,14 +32,16 @@ void expectNoValidationMessages() {
 LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan)
     : LoadedScene(scene, CompileSettings{.plan = plan}) {}
 
-LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings) {
-    const Status loaded = load(scene, settings);
+LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
+                         const std::function<void(SceneViewData&)>& change) {
+    const Status loaded = load(scene, settings, change);
     if (!loaded) {
         ADD_FAILURE() << toString(loaded.error());
     }
 }
 
-Status LoadedScene::load(const Scene& scene, const CompileSettings& settings) {
+Status LoadedScene::load(const Scene& scene, const CompileSettings& settings,
+                         const std::function<void(SceneViewData&)>& change) {
     Result<CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {
         return compiled.error();
@@ -62,6 +64,9 @@ Status LoadedScene::load(const Scene& scene, const CompileSettings& settings) {
     SceneViewData data = makeSceneView(scene);
     if (scene.lights.empty()) {
         data.lights.push_back(sunLight());
+    }
+    if (change) {
+        change(data);
     }
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), *package_, data.view());
     if (!uploaded) {

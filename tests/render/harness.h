@@ -1,6 +1,7 @@
 // Renders scenes in process, with the validation layers always on.
 #pragma once
 
+#include "cli/scene_view.h"
 #include "emit/compile.h"
 #include "gltf/scene.h"
 
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -33,7 +35,9 @@ class LoadedScene {
 public:
     // Compiles into a temporary folder of its own. On failure ok() is false and the test has failed.
     LoadedScene(const Scene& scene, const PlanOptions& plan);
-    LoadedScene(const Scene& scene, const CompileSettings& settings);
+    // `change`, if there is one, is called on what is uploaded.
+    LoadedScene(const Scene& scene, const CompileSettings& settings,
+                const std::function<void(SceneViewData&)>& change = {});
     ~LoadedScene();
 
     bool ok() const {
@@ -57,7 +61,8 @@ public:
                        FrameCounters* counters = nullptr) const;
 
 private:
-    Status load(const Scene& scene, const CompileSettings& settings);
+    Status load(const Scene& scene, const CompileSettings& settings,
+                const std::function<void(SceneViewData&)>& change);
 
     CompiledPackage compiled_;
     std::unique_ptr<Package> package_;

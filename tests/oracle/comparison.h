@@ -1,0 +1,80 @@
+// Pictures of the device against truths of pixels.
+#pragma once
+
+#include "oracle/quadrature.h"
+#include "oracle/view.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace glint::oracle {
+
+struct PixelTruth {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    Estimate light;
+};
+
+// The light along a ray.
+using RayLight = std::function<Estimate(const Ray&, Random&)>;
+// Whether a pixel with this ray is to be compared.
+using Selector = std::function<bool(const Ray&)>;
+
+// Truths of the pixels of which every ray is selected: of a grid of 17 × 17 that reaches a little beyond the
+// pixel, so that what is finer than a sixteenth of a pixel may be missed. Each has random numbers of its own.
+std::vector<PixelTruth> pixelTruths(const View& view, const Strata& strata, const Selector& selected,
+                                    const RayLight& light);
+
+// A row of the table in docs/effects_accuracy.md.
+struct Subject {
+    std::string effect;
+    std::string what;            // scene and setting
+    std::string truth;           // "quadrature", or the closed form
+    std::uint32_t channels = 1;  // 1 where red, green and blue are the same
+    std::uint32_t samples = 1;
+    // Largest value of a single sample. 0: the ray of a sample decides its light, and the pixel and those
+    // around it tell how far apart samples may be.
+    double range = 1.0;
+    // What the mean signed error may be above its standard error, and any pixel above its own bound: of the
+    // stated causes.
+    double bias = 0.0;
+};
+
+struct Comparison {
+    std::size_t pixels = 0;
+    double mean = 0.0;     // of the truth
+    double largest = 0.0;  // |error|
+    double rootMeanSquare = 0.0;
+    double expected = 0.0;  // root mean square of independent samples, and of the truth's own error
+    // Of device - truth in the channel where it is largest, and its standard error.
+    double signedMean = 0.0;
+    double signedError = 0.0;
+    double worst = 0.0;      // largest |error| over the bound of its pixel
+    double worstTile = 0.0;  // largest |mean signed error| of a tile over its bound
+    // Why the picture is not that of the truth; empty: it is.
+    std::vector<std::string> objections;
+};
+
+// Objects where
+// - the pixel that is worst is off by more than Bernstein's inequality allows the mean of independent samples
+// of the truth's
+//   variance, one time in 10⁵, plus five standard errors of the truth, plus the bias (scrambled sequences
+//   spread less than independent samples);
+// - the root mean square error exceeds that of independent samples by more than a fifth, plus the bias;
+// - the mean signed error exceeds four of its standard errors, plus the bias. That error is of the pixels'
+// spread: their
+//   random numbers are independent;
+// - that of a tile of 6 × 6 pixels, with at least 18 that are compared, exceeds six of its standard errors,
+// plus the bias:
+//   what is too bright here and too dark there, as a penumbra that is too wide.
+// `truths` is not empty.
+Comparison compare(const LinearImage& image, const std::vector<PixelTruth>& truths, const Subject& subject);
+
+// Fails the test for each objection, or if there is nothing to compare. Adds a row to the table.
+void expectAgrees(const LinearImage& image, const std::vector<PixelTruth>& truths, const Subject& subject);
+
+}  // namespace glint::oracle

@@ -1,0 +1,34 @@
+// Pictures that the device makes of a scene of the oracle's tests.
+#pragma once
+
+#include "oracle/irradiance.h"
+#include "oracle/light.h"
+#include "oracle/occlusion.h"
+#include "render/harness.h"
+
+#include <cstdint>
+
+namespace glint::oracle {
+
+// Samples of a test times GLINT_ORACLE_SAMPLES, which is 1 if it is not set.
+std::uint32_t samplesOf(std::uint32_t samples);
+
+// What of the effects a picture is made with.
+struct EffectOptions {
+    std::uint32_t effects = 0;  // package::kEffect bits
+    OcclusionSettings occlusion;
+    std::uint32_t occlusionRays = 1;  // a sample
+    LightSizes lights;
+    std::uint32_t shadowRays = 1;  // a light and sample
+    float maxRoughness = 0.0F;     // of surfaces that reflect
+};
+
+// Compiles the scene with these effects and no other. An empty picture where anything failed; the test has
+// failed then.
+LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testing::RenderSetup setup);
+
+// By the scene's first camera.
+testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height,
+                             std::uint32_t samples, const GradientSky& sky);
+
+}  // namespace glint::oracle

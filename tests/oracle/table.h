@@ -1,0 +1,13 @@
+// The table of docs/effects_accuracy.md.
+#pragma once
+
+namespace glint::oracle {
+
+struct Subject;
+struct Comparison;
+
+// Printed at once. When the program ends, all rows are written as Markdown into effects_accuracy.md beside
+// it.
+void addRow(const Subject& subject, const Comparison& comparison);
+
+}  // namespace glint::oracle
