@@ -24,7 +24,7 @@ SceneFile diskOverFloor() {
     const int white = file.addMaterial(diffuseMaterial(Vec3(1.0), true));
     file.addQuad(white, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
     file.addDisk(white, {0, kDiskHeight, 0}, {0, 1, 0}, kDisk, 128);
-    file.addCamera({0.2, 1.2, 3.0}, {0, 0.2, 0}, 35);
+    file.addCamera({0.2, 1.2, 3.0}, {0.3, 0.0, 0.25}, 15);
     return file;
 }
 
@@ -145,7 +145,7 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
     file.addQuad(white, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
     constexpr Vec3 kCenter(0, 1.2, 0);
     file.addSphere(white, kCenter, 0.4, 96);
-    file.addCamera({0.2, 1.2, 3.0}, {0, 0.2, 0}, 35);
+    file.addCamera({0.2, 1.2, 3.0}, {-0.2, 0.0, 0.0}, 18);
     const Vec3 toSun = glm::normalize(Vec3(0.3, 1.0, 0.2));
     file.addLight({{"type", "directional"}, {"intensity", kPi}}, toSun, {0, 0, 0});
     const Scene scene = file.import();
