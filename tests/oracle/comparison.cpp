@@ -111,6 +111,26 @@ std::vector<PixelTruth> pixelTruths(const View& view, const Strata& strata, cons
     return truths;
 }
 
+std::vector<PixelTruth> centreTruths(const View& view, const std::function<Vec3(const Ray&)>& light) {
+    constexpr double kNear = 1.0 / 128.0;
+    std::vector<PixelTruth> truths;
+    for (std::uint32_t y = 0; y < view.height(); ++y) {
+        for (std::uint32_t x = 0; x < view.width(); ++x) {
+            const Vec3 value = light(view.ray(x + 0.5, y + 0.5));
+            bool steady = true;
+            for (const Vec2& offset :
+                 {Vec2(kNear, kNear), Vec2(-kNear, kNear), Vec2(kNear, -kNear), Vec2(-kNear, -kNear)}) {
+                const Vec3 change = glm::abs(light(view.ray(x + 0.5 + offset.x, y + 0.5 + offset.y)) - value);
+                steady = steady && glm::all(glm::lessThan(change, 0.01 * glm::max(value, Vec3(1.0))));
+            }
+            if (steady) {
+                truths.push_back({x, y, {value, Vec3(0.0), value * value}});
+            }
+        }
+    }
+    return truths;
+}
+
 Comparison compare(const LinearImage& image, const std::vector<PixelTruth>& truths, const Subject& subject) {
     Comparison result;
     result.pixels = truths.size();

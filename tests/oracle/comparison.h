@@ -29,6 +29,11 @@ using Selector = std::function<bool(const Ray&)>;
 std::vector<PixelTruth> pixelTruths(const View& view, const Strata& strata, const Selector& selected,
                                     const RayLight& light);
 
+// Of the rays through the pixels' centres, on which a first sample lies; for light that a ray decides. Pixels
+// are left out in which the light changes by more than a hundredth, of itself or of 1, within 1/128 of a
+// pixel: the rasteriser rounds to half of that.
+std::vector<PixelTruth> centreTruths(const View& view, const std::function<Vec3(const Ray&)>& light);
+
 // A row of the table in docs/effects_accuracy.md.
 struct Subject {
     std::string effect;

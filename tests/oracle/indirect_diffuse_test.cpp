@@ -100,8 +100,8 @@ TEST(IndirectDiffuse, OfAClosedWhiteBoxUnderTheSkyIsExact) {
                                         return Estimate{Vec3(0.64), Vec3(0.0), Vec3(0.64 * 0.64)};
                                     });
     RenderSetup setup = setupOf(scene, kWidth, kHeight, kSamples, {Vec3(1.0), Vec3(1.0), Vec3(1.0)});
-    // However many samples the others take: about one ray in 10⁵ slips through an edge where two walls meet,
-    // each a mesh of its own, and brings the sky.
+    // However many samples the others take: of about 10⁵ rays one that starts where two walls meet leaves the
+    // box.
     setup.samples = 16;
     expectAgrees(renderEffect(scene, indirectDiffuse(), setup), truths,
                  {"indirect-diffuse", "a closed box of albedo 0.8 under a sky of 1", "albedo²", 1,
