@@ -14,7 +14,8 @@ using namespace glint::testing;
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 36;
 constexpr std::uint32_t kSamples = 256;
-// What single precision of positions and normals makes of highlights and silhouettes: 3e-4 at most when measured.
+// What single precision of positions and normals makes of highlights and silhouettes: 3e-4 at most when
+// measured.
 constexpr double kSinglePrecision = 5e-4;
 
 Json material(const Vec3& color, double metallic, double roughness) {
