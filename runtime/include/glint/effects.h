@@ -25,23 +25,24 @@ enum class EffectKind : std::uint8_t {
 
 struct EffectInfo {
     Effect effect;
-    std::string_view name;  // on the command line, in the manifest, of passes
     EffectKind kind;
+    bool screenStart;       // its rays have a beginning of their own: FILE_start.glsl
+    std::string_view name;  // on the command line, in the manifest, of passes
     // In the names of files (shaders/effects/) and of functions.
     std::string_view file;
     std::string_view function;
-    bool screenStart = false;  // its rays have a beginning of their own: FILE_start.glsl
 };
 
 // In order of their bits. To add an effect: a row here, its bit in shaders/interop/frame.h, a rule in
 // tool/plan/effects.cpp, and its files of shaders/effects; docs/effects.md shows one.
 inline constexpr EffectInfo kEffects[] = {
-    {kEffectShadow, "shadow", EffectKind::Light, "shadow", "Shadow"},
-    {kEffectAmbientOcclusion, "ambient-occlusion", EffectKind::Surface, "ambient_occlusion",
+    {kEffectShadow, EffectKind::Light, false, "shadow", "shadow", "Shadow"},
+    {kEffectAmbientOcclusion, EffectKind::Surface, false, "ambient-occlusion", "ambient_occlusion",
      "AmbientOcclusion"},
-    {kEffectReflection, "reflection", EffectKind::Rays, "reflection", "Reflection", true},
-    {kEffectRefraction, "refraction", EffectKind::Rays, "refraction", "Refraction"},
-    {kEffectIndirectDiffuse, "indirect-diffuse", EffectKind::Rays, "indirect_diffuse", "IndirectDiffuse"},
+    {kEffectReflection, EffectKind::Rays, true, "reflection", "reflection", "Reflection"},
+    {kEffectRefraction, EffectKind::Rays, false, "refraction", "refraction", "Refraction"},
+    {kEffectIndirectDiffuse, EffectKind::Rays, false, "indirect-diffuse", "indirect_diffuse",
+     "IndirectDiffuse"},
 };
 inline constexpr std::uint32_t kEffectCount = 5;
 
