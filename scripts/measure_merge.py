@@ -61,7 +61,7 @@ class Measurer:
         shutil.rmtree(package, ignore_errors=True)
         made = run_json(
             [self.glint, "compile", scene, "-o", package, "--merge", merge, "--strategy", strategy]
-            + ["--emit", "glsl,header", "--cache", "none", "--json"]
+            + ["--effects", "shadow,reflection", "--emit", "glsl,header", "--cache", "none", "--json"]
         )
         counts = made["counts"]
         return {

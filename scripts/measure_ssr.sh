@@ -69,8 +69,8 @@ for scene in "$@"; do
             "$(field mean "$work/compare.txt")" "$(field 'largest error' "$work/compare.txt")"
     }
     for ssr in "${settings[@]}"; do
-        rays=$(awk '$1 == "rays" { print $2 }' "$work/$name-$ssr.txt")
-        found=$(awk '$1 == "rays" { for (i = 2; i < NF; ++i) if ($(i + 1) == "in") print $i }' "$work/$name-$ssr.txt")
+        rays=$(awk '$1 == "reflection" && $3 == "rays:" { print $2 }' "$work/$name-$ssr.txt")
+        found=$(awk '$1 == "reflection" { for (i = 2; i < NF; ++i) if ($(i + 1) == "found") print $i }' "$work/$name-$ssr.txt")
         row "$ssr" "$work/$name-$ssr.exr" "$rays" "$found"
         for pass in march uber sum; do
             printf ' %s |' "$(quartiles < "$work/$name-$ssr-$pass.ms")"

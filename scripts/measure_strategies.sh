@@ -35,7 +35,8 @@ render() {
     local name=$1 scene=$2 strategy=$3 tracer=$4
     local stem=$work/$name-$strategy-$tracer
     if [[ ! -d $work/$name.glint ]]; then
-        "$bin/glint" compile "$scene" -o "$work/$name.glint" --strategy all --tracer all --merge family > /dev/null
+        "$bin/glint" compile "$scene" -o "$work/$name.glint" --strategy all --tracer all --merge family \
+            --effects shadow,reflection > /dev/null
     fi
     "$bin/glint" render "$scene" -o "$work/image.exr" --package "$work/$name.glint" --strategy "$strategy" \
         --tracer "$tracer" --size 320x180 --spp 3 --max-roughness 1 2> /dev/null |

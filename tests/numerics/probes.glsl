@@ -140,7 +140,7 @@ PROBE(ConeGradients) {
 
 PROBE(SampleLight) {
     LightSample light =
-        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12]), VEC3(13));
+        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12], 0.0), VEC3(13));
     WRITE3(0, light.irradiance);
     // What the intensity becomes at the distance, before window and cone, which end at 0.
     o[3] = uint(i[3]) == kLightDirectional ? 1.0 : 1.0 / max(light.distance * light.distance, 1e-6);
@@ -148,7 +148,7 @@ PROBE(SampleLight) {
 
 PROBE(SampleLightDirection) {
     LightSample light =
-        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12]), VEC3(13));
+        sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12], 0.0), VEC3(13));
     WRITE3(0, light.direction);
     o[3] = light.distance / (length(VEC3(0) - VEC3(13)) + 1.0);
 }
