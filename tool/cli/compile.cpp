@@ -21,6 +21,7 @@
 #include "emit/json.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -101,6 +102,16 @@ Json toJson(const Outcome& outcome) {
             {"plan", planToJson(outcome)}};
 }
 
+std::string chosenEffects(const EffectPlan& effects) {
+    std::vector<std::string_view> names;
+    for (const EffectDecision& decision : effects.decisions) {
+        if (decision.chosen) {
+            names.push_back(package::nameOf(decision.effect));
+        }
+    }
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
 // The package's folder and the source, those that are written.
 std::string outputsOf(const CompileArguments& arguments) {
     const bool both = !arguments.output.empty() && !arguments.embed.empty();
@@ -114,6 +125,9 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
         {"keys present", fmt::format("{}", plan.keys.size())},
         {"cases", fmt::format("{}", caseCount(plan))}};
+    if (outcome.package != nullptr) {
+        rows.push_back({"effects", chosenEffects(plan.effects)});
+    }
     if (outcome.package != nullptr) {
         rows.push_back({"unique SPIR-V", fmt::format("{}", outcome.package->uniqueSpirv)});
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});

@@ -1,5 +1,6 @@
 #include "cli/effect_options.h"
 
+#include "cli/table.h"
 #include "emit/effects.h"
 
 #include <fmt/format.h>
@@ -79,6 +80,21 @@ std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSet
         }
     }
     return warnings;
+}
+
+EffectPlan automaticEffects(const SceneList& scenes) {
+    CompileSettings settings;
+    EffectArguments{}.apply(settings);
+    return planEffects(scenes, settings);
+}
+
+std::string effectsText(const EffectPlan& plan) {
+    std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
+    for (const EffectDecision& decision : plan.decisions) {
+        rows.push_back({std::string(package::nameOf(decision.effect)), decision.chosen ? "yes" : "no",
+                        decision.reason});
+    }
+    return formatTable(rows);
 }
 
 void EffectFrameArguments::apply(RendererOptions& options) const {

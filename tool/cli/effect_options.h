@@ -26,6 +26,11 @@ void checkEffects(const EffectArguments& arguments);
 // One for each effect that is asked for and that the scenes can't use.
 std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings);
 
+// The decisions of --effects auto, with the lights that the scenes have.
+EffectPlan automaticEffects(const SceneList& scenes);
+// A line for each effect: whether it is chosen, and why.
+std::string effectsText(const EffectPlan& plan);
+
 // What a renderer chooses.
 struct EffectFrameArguments {
     double skipBelow = 0.0;

@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/effect_options.h"
 #include "cli/explain_motion.h"
 #include "cli/explain_plan.h"
 #include "cli/lock_option.h"
@@ -261,6 +262,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         if (arguments.wholePlan) {
             result["plan"] = planToJson(whole);
         } else {
+            result["effects"] = effectsToJson(automaticEffects(scenes));
             result["motion"] = motionToJson(*scene);
             result["materials"] = Json::array();
             for (const int material : *materials) {
@@ -272,6 +274,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     }
     console.print(variantsText(*scene));
     if (arguments.material.empty()) {
+        console.print(effectsText(automaticEffects(scenes)));
         console.print(motionText(*scene));
     }
     for (const int material : *materials) {

@@ -1,6 +1,8 @@
 // What several files say alike in JSON.
 #pragma once
 
+#include "plan/effects.h"
+
 #include <glint/package_modules.h>
 
 #include <nlohmann/json.hpp>
@@ -29,6 +31,18 @@ constexpr std::string_view stageName(const package::ModuleKey& key) {
         return "hit-shaders";
     }
     return key.tracer == package::kTracerRayPipeline ? "visibility, ray-pipeline" : "visibility";
+}
+
+// Every effect that there is, chosen or not.
+inline nlohmann::ordered_json effectsToJson(const EffectPlan& plan) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const EffectDecision& decision : plan.decisions) {
+        list.push_back({{"name", package::nameOf(decision.effect)},
+                        {"chosen", decision.chosen},
+                        {"usable", decision.usable},
+                        {"reason", decision.reason}});
+    }
+    return list;
 }
 
 }  // namespace glint

@@ -180,17 +180,6 @@ Json dropped(const SceneList& scenes, const CompiledPackage& package) {
     return list;
 }
 
-Json effects(const EffectPlan& plan) {
-    Json list = Json::array();
-    for (const EffectDecision& decision : plan.decisions) {
-        list.push_back({{"name", package::nameOf(decision.effect)},
-                        {"chosen", decision.chosen},
-                        {"usable", decision.usable},
-                        {"reason", decision.reason}});
-    }
-    return list;
-}
-
 Json counts(const SceneList& scenes, const CompiledPackage& package) {
     return {
         {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
@@ -233,7 +222,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["settings"] = settingsOf(settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
-    manifest["effects"] = effects(package.plan.effects);
+    manifest["effects"] = effectsToJson(package.plan.effects);
     manifest["features"] = features();
     manifest["shaders"] = shaders(scenes, package);
     manifest["passes"] = passes(package);
