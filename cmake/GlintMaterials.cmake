@@ -54,9 +54,9 @@ function(_glint_check_name name folder)
 endfunction()
 
 function(glint_add_materials)
-  set(passed STRATEGY TRACER MERGE MAX_SHADERS ALPHA)
+  set(passed STRATEGY TRACER MERGE MAX_SHADERS ALPHA EFFECTS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "EMBED" "TARGET;NAME;MERGE;MAX_SHADERS;ALPHA;LOCK;OUTPUT_DIRECTORY"
-                        "SCENES;STRATEGY;TRACER;OPTIONS")
+                        "SCENES;STRATEGY;TRACER;EFFECTS;OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "glint_add_materials: unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()

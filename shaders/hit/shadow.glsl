@@ -1,5 +1,6 @@
 // Shadow rays of hits: traced at once, or put on a list.
 #include "hit/bindings.glsl"
+#include "hit/count.glsl"
 #include "hit/trace.glsl"
 
 struct ShadowRay {
@@ -20,6 +21,8 @@ vec3 lightOrDefer(uint target, ShadowRay shadow) {
         ShadowRecord(shadow.origin, target, shadow.direction, shadow.distance, shadow.light, 0u);
     return vec3(0.0);
 #else
-    return isVisible(shadow.origin, shadow.direction, shadow.distance) ? shadow.light : vec3(0.0);
+    bool visible = isVisible(shadow.origin, shadow.direction, shadow.distance);
+    countRays(kEffectShadow, 1u, visible ? 1u : 0u);
+    return visible ? shadow.light : vec3(0.0);
 #endif
 }

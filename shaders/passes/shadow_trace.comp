@@ -1,5 +1,6 @@
 #version 460
 // Traces the deferred shadow rays of hits: light that nothing blocks joins what their samples bring.
+#include "hit/count.glsl"
 #include "hit/list.glsl"
 #include "hit/trace.glsl"
 
@@ -11,7 +12,9 @@ void main() {
         return;
     }
     ShadowRecord shadow = GLINT_FRAME.shadows.data[index];
-    if (isVisible(shadow.origin, shadow.direction, shadow.distance)) {
+    bool visible = isVisible(shadow.origin, shadow.direction, shadow.distance);
+    countRays(kEffectShadow, 1u, visible ? 1u : 0u);
+    if (visible) {
         // A sample has one ray, and its hit one shadow ray: nobody else writes here.
         vec4 radiance = GLINT_FRAME.radiance.data[shadow.target];
         GLINT_FRAME.radiance.data[shadow.target] = vec4(radiance.rgb + shadow.light, radiance.w);

@@ -51,6 +51,7 @@ public:
         }
         report_.pipelineCreationMs = renderer_->pipelineCreationMs();
         report_.footprint = renderer_->footprint();
+        report_.countsLight = !setup_.arguments.stats.empty();
         return okStatus();
     }
 
@@ -81,6 +82,8 @@ public:
         options.camera = camera_;
         setup_.arguments.frame.apply(options);
         setup_.arguments.effectFrame.apply(options);
+        // Costs time, which would count for the passes' own: only where the counts are asked for.
+        options.countsLight = !setup_.arguments.stats.empty();
         options.maxReflectionRoughness = static_cast<float>(setup_.arguments.effects.maxRoughness);
         options.environment = setup_.environment;
         setup_.arguments.environment.apply(options);

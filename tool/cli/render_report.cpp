@@ -240,6 +240,9 @@ std::string toText(const RenderReport& report) {
     rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
     rows.push_back({"render", milliseconds(report.renderMs)});
     for (const EffectCounters& effect : counters.effects) {
+        if (!report.countsLight && package::effectInfo(effect.effect).kind != package::EffectKind::Rays) {
+            continue;  // not counted
+        }
         rows.push_back({std::string(package::nameOf(effect.effect)), effectText(effect)});
     }
     rows.push_back(

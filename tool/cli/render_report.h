@@ -52,6 +52,7 @@ struct RenderReport {
     std::optional<EnvironmentReport> environment;
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
+    bool countsLight = false;  // rays of shadow and ambient-occlusion are counted
     double pipelineCreationMs = 0.0;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample, of the last frame

@@ -155,8 +155,6 @@ void FrameArguments::apply(FrameOptions& frame) const {
     if (clamp > 0.0) {
         frame.maxSampleRadiance = static_cast<float>(clamp);
     }
-    // For reports; a renderer of one's own may leave it off.
-    frame.countsLight = true;
     frame.binning = binning == "sign"         ? Binning::Sign
                     : binning == "octahedral" ? Binning::Octahedral
                                               : Binning::None;

@@ -145,7 +145,7 @@ struct FrameOptions {
     bool occlusionFalloff = false;
     // Surfaces that a refracted ray meets at most.
     std::uint32_t maxInterfaces = 8;
-    // Counts rays of lights and of ambient occlusion, too; costs time.
+    // Counts rays to lights and of ambient occlusion, too; costs time, most with ray tracing pipelines.
     bool countsLight = false;
     // Luminance that a ray of an effect brings at most in one sample; infinite: no limit, which is exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
