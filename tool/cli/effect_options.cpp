@@ -91,8 +91,8 @@ EffectPlan automaticEffects(const SceneList& scenes) {
 std::string effectsText(const EffectPlan& plan) {
     std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
     for (const EffectDecision& decision : plan.decisions) {
-        rows.push_back({std::string(package::nameOf(decision.effect)), decision.chosen ? "yes" : "no",
-                        decision.reason});
+        rows.push_back(
+            {std::string(package::nameOf(decision.effect)), decision.chosen ? "yes" : "no", decision.reason});
     }
     return formatTable(rows);
 }

@@ -136,8 +136,8 @@ enum class ModuleRole : std::uint32_t {
 
 struct ModuleEntry {
     ModuleRole role;
-    std::uint32_t index;  // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
-                          // EffectRays: effectNumber(); 0 otherwise
+    std::uint32_t index;   // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
+                           // EffectRays: effectNumber(); 0 otherwise
     std::uint32_t tracer;  // Tracer that it traces with; 0: it traces nothing
     std::uint32_t pad;
     StringRef file;  // relative to the package's folder; several entries may name one file

@@ -25,6 +25,7 @@ Material rough() {
 std::uint32_t effectsOf(const std::vector<Material>& materials, const SceneLights& lights = kLit,
                         const EffectRequest& request = kAuto) {
     std::vector<const Material*> pointers;
+    pointers.reserve(materials.size());
     for (const Material& material : materials) {
         pointers.push_back(&material);
     }

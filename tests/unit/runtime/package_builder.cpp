@@ -49,8 +49,7 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     spec.interopHash = interopHash();
     spec.caseCount = 1;
     for (const package::ModuleKey& key :
-         package::requiredModules(
-             {spec.strategies, spec.tracers, {}, kEffects, false, 1, {}})) {
+         package::requiredModules({spec.strategies, spec.tracers, {}, kEffects, false, 1, {}})) {
         const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
         spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
     }
