@@ -174,7 +174,8 @@ uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
     vec3 outside = around > 0u ? media.ior[around - 1u] : vec3(1.0);
     b.eta = hit.frontFace ? own / outside : outside / own;
     if (around > 0u) {
-        b.f0 = vec3(dielectricF0(b.eta.y));
+        // Of the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
+        b.f0 = vec3(dielectricF0(b.eta.y) * b.f90);
     }
     return place;
 }

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -167,6 +170,98 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     const LinearImage image = traced.render(package::kStrategyUber, setup, &counters);
     expectSameImage(image, sky.render(package::kStrategyUber, setup), "traced");
     EXPECT_EQ(counters.of(package::kEffectIndirectDiffuse).misses, 32U * 32U);
+}
+
+// Glass that reflects nothing, so that a path is no matter of chance.
+Material clearGlass(float ior) {
+    Material glass;
+    glass.metallicFactor = 0.0F;
+    glass.roughnessFactor = 0.0F;
+    glass.transmission.factor = 1.0F;
+    glass.volume.thicknessFactor = 1.0F;
+    glass.ior = {true, ior};
+    glass.specular.given = true;
+    glass.specular.factor = 0.0F;
+    return glass;
+}
+
+// A block before the camera, as wide as it sees, from `near` to `far` along its axis; fronts outside.
+void addBlock(Scene& scene, int material, float near, float far, float half) {
+    const auto face = [&](Float3 corner, Float3 right, Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+    };
+    const float size = 2.0F * half;
+    const float depth = far - near;
+    face({-half, -half, -near}, {size, 0, 0}, {0, size, 0});
+    face({half, -half, -far}, {-size, 0, 0}, {0, size, 0});
+    face({half, -half, -near}, {0, 0, -depth}, {0, size, 0});
+    face({-half, -half, -far}, {0, 0, depth}, {0, size, 0});
+    face({-half, half, -near}, {size, 0, 0}, {0, 0, -depth});
+    face({-half, -half, -far}, {size, 0, 0}, {0, 0, depth});
+}
+
+// A wall of coloured squares, which shows where a ray goes.
+Scene squaresBehind() {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    std::vector<std::uint8_t> texels;
+    for (int i = 0; i < 16 * 16; ++i) {
+        const auto across = static_cast<std::uint8_t>(i % 16 * 16);
+        const auto down = static_cast<std::uint8_t>(i / 16 * 16);
+        texels.insert(texels.end(),
+                      {across, down, (i + i / 16) % 2 != 0 ? std::uint8_t{255} : std::uint8_t{0}, 255});
+    }
+    Material squares = unlitMaterial({1, 1, 1});
+    squares.texture(TextureSlot::BaseColor).texture = addTexture(scene, 16, 16, std::move(texels));
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, squares), {-8, -8, -6}, {16, 0, 0}, {0, 16, 0})));
+    return scene;
+}
+
+LinearImage refracted(const Scene& scene) {
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.effects.named = package::kEffectRefraction;
+    const LoadedScene loaded(scene, settings);
+    RenderSetup setup = defaultSetup(scene, 64, 64);
+    return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+}
+
+// Share of the pixels that differ by more than the edge of a square may.
+double differingShare(const LinearImage& a, const LinearImage& b) {
+    EXPECT_EQ(a.pixels.size(), b.pixels.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        float largest = 0.0F;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            largest = std::max(largest, std::abs(a.pixels[i][channel] - b.pixels[i][channel]));
+        }
+        count += largest > 0.01F ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(a.pixels.size());
+}
+
+TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
+    Scene whole = squaresBehind();
+    addBlock(whole, addMaterial(whole, clearGlass(1.5F)), 1.0F, 4.0F, 12.0F);
+    const LinearImage block = refracted(whole);
+
+    // A block of the same index within is not to be seen.
+    Scene matched = whole;
+    addBlock(matched, addMaterial(matched, clearGlass(1.5F)), 2.0F, 3.0F, 11.0F);
+    EXPECT_LT(differingShare(refracted(matched), block), 0.02);
+
+    // A block of air within leaves two panes.
+    Scene hollow = whole;
+    addBlock(hollow, addMaterial(hollow, clearGlass(1.0F)), 2.0F, 3.0F, 11.0F);
+    const LinearImage hole = refracted(hollow);
+    Scene panes = squaresBehind();
+    const int glass = addMaterial(panes, clearGlass(1.5F));
+    addBlock(panes, glass, 1.0F, 2.0F, 12.0F);
+    addBlock(panes, glass, 3.0F, 4.0F, 12.0F);
+    EXPECT_LT(differingShare(hole, refracted(panes)), 0.02);
+    EXPECT_GT(differingShare(hole, block), 0.2) << "the scene tells nothing";
+    EXPECT_GT(differingShare(block, refracted(squaresBehind())), 0.2) << "nor does glass";
 }
 
 // A weight below the bound sends no ray, and is counted.
