@@ -28,13 +28,15 @@ quartiles() {
 for ((run = 0; run < runs; ++run)); do
     for merge in none family all; do
         for jobs in 1 2; do
-            "$bin/glint" compile "$scene" -o "$work/package-$merge" --merge "$merge" --jobs "$jobs" --cache none |
+            "$bin/glint" compile "$scene" -o "$work/package-$merge" --merge "$merge" --jobs "$jobs" --cache none \
+                --effects shadow,reflection |
                 awk '$1 == "time" { print $2 }' >> "$work/compile-$merge-$jobs.txt"
         done
         paste "$work/compile-$merge-1.txt" "$work/compile-$merge-2.txt" | awk '{ print $1 / $2 }' > "$work/ratio-$merge.txt"
     done
     for strategy in uber visibility; do
-        "$bin/glint" render "$scene" -o "$work/$strategy.png" --strategy "$strategy" --merge none --size 640x360 --spp 2 |
+        "$bin/glint" render "$scene" -o "$work/$strategy.png" --strategy "$strategy" --merge none --size 640x360 --spp 2 \
+            --effects shadow,reflection |
             awk -v prefix="$work/pass-$strategy" '/^pass of the last sample/ { on = 1; next }
                 on && NF > 1 { ms = $NF; $NF = ""; sub(/ +$/, ""); total += ms
                     name = /^shade/ && $0 != "shade miss" ? "shade cases" : $0; sum[name] += ms
