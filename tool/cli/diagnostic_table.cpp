@@ -55,6 +55,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"draco-count", kWarning, "An accessor and the Draco data disagree on the number of indices."},
     {"draco-decode", kError, "Draco data can't be decoded."},
     {"draco-size", kError, "Draco data claims more triangles than its bytes can hold."},
+    {"effect-absent", kNote, "The picture has a light, and the package no effect `shadow`."},
     {"effect-missing", kError, "The runtime was asked for the rays of an effect that the package lacks."},
     {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
     {"environment-aspect", kWarning, "An environment map is not twice as wide as high."},

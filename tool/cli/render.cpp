@@ -56,6 +56,12 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
                                    !arguments.environment.file.empty()};
         Status checked = checkPackage(*package, arguments.package, demand, scene);
+        const bool isLit = arguments.addsSun(scene) || !scene.lights.empty();
+        if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
+            console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
+                                      "has no effect shadow: the lights of the picture cast none",
+                                      "compile it with --effects auto,shadow, or render with --sun off"});
+        }
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
