@@ -82,28 +82,23 @@ private:
         const std::uint32_t withRays = package::rayEffects(effects);
         std::vector<std::uint32_t>& rounds = state_.rounds;
         rounds.clear();
-        if (state_.choice.batchEffects && withRays != 0) {
-            for (const package::EffectInfo& info : package::kEffects) {
-                if ((withRays & info.effect) != 0) {
-                    recordRays(info);
-                }
-            }
-            recordHits();
-            finishRound(0);
-            rounds.push_back(withRays);
-            return;
-        }
+        std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const package::EffectInfo& info : package::kEffects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
-            if (!rounds.empty()) {
+            if (listed == 0 && !rounds.empty()) {
                 startRound();
             }
             recordRays(info);
+            listed |= info.effect;
+            if (state_.choice.batchEffects && listed != withRays) {
+                continue;
+            }
             recordHits();
             finishRound(static_cast<std::uint32_t>(rounds.size()));
-            rounds.push_back(info.effect);
+            rounds.push_back(listed);
+            listed = 0;
         }
     }
 

@@ -277,10 +277,6 @@ package::Ordering Renderer::ordering() const {
     return state_->choice.ordering;
 }
 
-std::uint32_t Renderer::effects() const {
-    return state_->size.effects;
-}
-
 Renderer::Footprint Renderer::footprint() const {
     Footprint footprint;
     footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());

@@ -254,8 +254,6 @@ public:
     // What it runs, where RendererOptions left the choice.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
-    // Effect bits: those of the package.
-    std::uint32_t effects() const;
     // Pipelines, images and buffers that there are, for tests and reports.
     struct Footprint {
         std::uint32_t pipelines = 0;
