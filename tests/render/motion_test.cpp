@@ -2,9 +2,8 @@
 #include "cli/camera.h"
 #include "cli/scene_view.h"
 #include "gpu_scene_state.h"
-#include "motion/deform.h"
-#include "motion/pose.h"
 #include "render/harness.h"
+#include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 
 #include <array>
@@ -16,49 +15,6 @@ namespace {
 
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 36;
-
-// Where it is, turned about Z.
-Matrix4 placed(double x, double y, double z, double angle = 0.0) {
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    return {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1};
-}
-
-Material coloured(Float3 color) {
-    Material material;
-    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = 0.5F;
-    return material;
-}
-
-// A mirror below, that shows in reflections what the TLAS has.
-void addRoom(Scene& scene) {
-    addCamera(scene);
-    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
-    const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8})));
-}
-
-// A strip of 1 x 2 m of `segments` rows above (0, 0, 0), all of whose vertices have normals and tangents.
-Primitive makeStrip(int material, std::uint32_t segments) {
-    Primitive strip;
-    strip.pointer = "/meshes/1/primitives/0";
-    strip.material = material;
-    for (std::uint32_t row = 0; row <= segments; ++row) {
-        const float y = 2.0F * static_cast<float>(row) / static_cast<float>(segments);
-        for (const float x : {-0.5F, 0.5F}) {
-            strip.positions.push_back({x, y, 0});
-        }
-        if (row < segments) {
-            const std::uint32_t i = 2 * row;
-            strip.indices.insert(strip.indices.end(), {i, i + 1, i + 3, i, i + 3, i + 2});
-        }
-    }
-    strip.normals.assign(strip.positions.size(), {0, 0, 1});
-    strip.tangents.assign(strip.positions.size(), {1, 0, 0, 1});
-    return strip;
-}
 
 // An uploaded scene that moves.
 struct Moving {
@@ -143,16 +99,6 @@ void expectUnlike(const LinearImage& image, const LinearImage& other, const std:
     EXPECT_GE(off, image.pixels.size() / 40) << what;
 }
 
-Scene rigidScene() {
-    Scene scene = emptyScene();
-    addRoom(scene);
-    const int red = addMaterial(scene, coloured({0.9F, 0.1F, 0.1F}));
-    const int quad = addMesh(scene, makeQuad(red, {-0.5F, -0.5F, 0}, {1, 0, 0}, {0, 1, 0}));
-    addInstance(scene, quad, placed(-1, 0, -3));
-    addInstance(scene, quad, placed(1, 0, -3));
-    return scene;
-}
-
 TEST(Motion, NodesCamerasAndLightsMove) {
     Moving moving(rigidScene());
     ASSERT_TRUE(moving.ok());
@@ -207,52 +153,6 @@ TEST(Motion, FlattenedInstancesHideAndComeBack) {
     later.scene.nodes[2].world = moving.scene.nodes[2].world;
     later.update();
     expectSameImage(later.render(), whole, "appeared");
-}
-
-// The strip follows two joints at its ends; the second turns.
-Scene skinnedScene(double angle) {
-    Scene scene = emptyScene();
-    addRoom(scene);
-    Primitive strip = makeStrip(addMaterial(scene, coloured({0.1F, 0.6F, 0.9F})), 16);
-    strip.influences.count = 2;
-    for (const Float3& position : strip.positions) {
-        const float up = position[1] / 2.0F;
-        strip.influences.joints.insert(strip.influences.joints.end(), {0, 1});
-        strip.influences.weights.insert(strip.influences.weights.end(), {1.0F - up, up});
-    }
-    // The node's own place counts for nothing.
-    addInstance(scene, addMesh(scene, std::move(strip)), placed(40, 40, 40));
-    Node joint;
-    joint.world = placed(0, -0.8, -2.5);
-    scene.nodes.push_back(joint);
-    joint.world = placed(0, 0.2, -2.5, angle);
-    scene.nodes.push_back(joint);
-    Skin skin;
-    skin.joints = {2, 3};
-    skin.inverseBinds = {placed(0, 0, 0), placed(0, -1, 0)};
-    scene.skins.push_back(skin);
-    scene.nodes[1].skin = 0;
-    return scene;
-}
-
-// The same with vertices that the host has moved.
-Scene bakedScene(const Scene& scene) {
-    Scene baked = scene;
-    Node& node = baked.nodes[1];
-    Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
-    const std::vector<Matrix4> joints =
-        node.skin >= 0 ? jointMatrices(scene, scene.skins[0]) : std::vector<Matrix4>();
-    const auto positions = deformedPositions(primitive, node.weights, joints);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        primitive.positions[i] = {static_cast<float>(positions[i][0]), static_cast<float>(positions[i][1]),
-                                  static_cast<float>(positions[i][2])};
-    }
-    primitive.influences = {};
-    primitive.targets.clear();
-    node.weights.clear();
-    node.world = node.skin >= 0 ? placed(0, 0, 0) : node.world;
-    node.skin = -1;
-    return baked;
 }
 
 TEST(Motion, SkinsBendMeshes) {
@@ -314,21 +214,6 @@ TEST(Motion, OneJointIsATransform) {
         rigid.meshes[1].primitives[0].influences = {};
         expectAlike(renderStill(scene), renderStill(rigid), "stretched by " + std::to_string(stretch));
     }
-}
-
-Scene morphedScene(std::vector<double> weights) {
-    Scene scene = emptyScene();
-    addRoom(scene);
-    Primitive strip = makeStrip(addMaterial(scene, coloured({0.9F, 0.7F, 0.1F})), 8);
-    strip.targets.resize(2);
-    for (const Float3& position : strip.positions) {
-        strip.targets[0].positions.push_back({0.5F * position[1] * position[1], 0, 0});
-        strip.targets[1].positions.push_back({0, -0.25F * position[1], 0.2F});
-    }
-    addInstance(scene, addMesh(scene, std::move(strip)), placed(0, -0.8, -2.5, 0.1));
-    scene.meshes[1].weights = {0.0, 0.0};
-    scene.nodes[1].weights = std::move(weights);
-    return scene;
 }
 
 TEST(Motion, TargetsMorphMeshes) {
