@@ -9,6 +9,7 @@
 #include "cli/render_input.h"
 #include "cli/render_profile.h"
 #include "cli/render_report.h"
+#include "cli/render_setup.h"
 #include "cli/scene_view.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
@@ -35,15 +36,6 @@ double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
-    SceneViewData data = makeSceneView(scene);
-    if (arguments.addsSun(scene)) {
-        data.lights.push_back(sunLight());
-    }
-    arguments.effectFrame.apply(data);
-    return data;
-}
-
 // The package that is asked for, checked, or one that is made now; fills in what the report says of it.
 Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
                               const PlanOptions& plan, std::uint32_t tracers, const Scene& scene,
@@ -65,13 +57,7 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
-    CompileSettings settings;
-    arguments.tracing.apply(settings, tracers);
-    settings.environmentMap = !arguments.environment.file.empty();
-    settings.plan = plan;
-    arguments.accuracy.apply(settings);
-    arguments.effects.apply(settings);
-    settings.addsLight = arguments.addsSun(scene);
+    const CompileSettings settings = compileSettings(arguments, plan, tracers, scene);
     console.report(effectWarnings(SceneList({&scene, 1}), settings));
     Result<Package> package = compileTemporary(scene, settings);
     report.compileMs = millisecondsSince(start);
@@ -109,18 +95,6 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
         report.environment = {file, (*environment)->statistics()};
     }
     return environment;
-}
-
-RendererOptions rendererOptions(const RenderArguments& arguments, const RenderReport& report) {
-    RendererOptions options;
-    options.strategy = strategyOf(arguments);
-    options.width = report.width;
-    options.height = report.height;
-    options.tracer = tracerOf(arguments);
-    options.checkOrder = arguments.validate;
-    arguments.frame.apply(options);
-    arguments.effectFrame.apply(options);
-    return options;
 }
 
 // Error "validation" with the number of messages, each of which is reported.
@@ -216,8 +190,8 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const FrameSetup setup{
-        arguments, rendererOptions(arguments, report), environment->get(), *movement, camera->view, aspect};
+    const FrameSetup setup{arguments, rendererOptions(arguments), environment->get(), *movement, camera->view,
+                           aspect};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = checkValidation(console, **context); !valid) {

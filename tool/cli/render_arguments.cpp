@@ -52,6 +52,9 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
             "checks the order\nof hits")
         .group("Device");
+}
+
+void addRenderReports(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
                    "write how each pixel of the last sample came to its\n"
@@ -87,44 +90,54 @@ bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
     return second.ec == std::errc() && second.ptr == end && checkImageSize(width, height, "").ok();
 }
 
-void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
-                      const std::function<void()>& then) {
-    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
-    addVariant(command, arguments->variant);
-    addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
-                   "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
-                   "linear, 32-bit float")
-        .required();
-    addPictureOptions(command, *arguments);
-    addMotionOptions(command, arguments->motion);
-    addEnvironmentOptions(command, arguments->environment);
-    CLI::Option& effects = addEffectOptions(command, arguments->effects);
-    addEffectFrameOptions(command, arguments->effectFrame);
-    addFrameOptions(command, arguments->frame);
-    const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments->tracing);
-    std::vector<CLI::Option*> decided = addPlanOptions(command, arguments->plan);
-    for (CLI::Option* option : addAccuracyOptions(command, arguments->accuracy)) {
+std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments) {
+    addText(command, "SCENE", arguments.scene, "FILE", "the scene, .gltf or .glb").required();
+    addVariant(command, arguments.variant);
+    addPictureOptions(command, arguments);
+    addEnvironmentOptions(command, arguments.environment);
+    CLI::Option& effects = addEffectOptions(command, arguments.effects);
+    addEffectFrameOptions(command, arguments.effectFrame);
+    addFrameOptions(command, arguments.frame);
+    const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments.tracing);
+    std::vector<CLI::Option*> decided = addPlanOptions(command, arguments.plan);
+    for (CLI::Option* option : addAccuracyOptions(command, arguments.accuracy)) {
         decided.push_back(option);
     }
     decided.insert(decided.end(), placed.begin(), placed.end());
     decided.push_back(&effects);
+    addDeviceOptions(command, arguments);
+    return decided;
+}
+
+void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments) {
+    checkEnvironmentOptions(command);
+    checkTracingChoice(arguments.tracing);
+    checkEffects(arguments.effects);
+    checkEffectFrame(arguments.effectFrame);
+}
+
+void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
+                      const std::function<void()>& then) {
+    addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
+                   "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
+                   "linear, 32-bit float")
+        .required();
+    const std::vector<CLI::Option*> decided = addSceneOptions(command, *arguments);
+    addMotionOptions(command, arguments->motion);
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
             "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
             "--shadows,\n--hit-record, --effects and --profile)")
         .group("Shaders");
-    addDeviceOptions(command, *arguments);
+    addRenderReports(command, *arguments);
     command.callback([arguments, decided, then, &command] {
-        checkEnvironmentOptions(command);
         for (const CLI::Option* option : decided) {
             if (option->count() > 0 && !arguments->package.empty()) {
                 throw CLI::ValidationError(option->get_name(),
                                            "is decided by --package; leave out one of them");
             }
         }
-        checkTracingChoice(arguments->tracing);
-        checkEffects(arguments->effects);
-        checkEffectFrame(arguments->effectFrame);
+        checkSceneOptions(command, *arguments);
         const bool plays = !arguments->motion.frames.empty() || !arguments->motion.time.empty();
         if (!plays && command.get_option("--animation")->count() > 0) {
             throw CLI::ValidationError("--animation", "plays with --frames or --time; give one of them");

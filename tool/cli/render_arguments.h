@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glint {
 
@@ -56,7 +57,13 @@ std::optional<package::Tracer> tracerOf(const RenderArguments& arguments);
 // "960x540"; false unless it is two numbers that checkImageSize() takes.
 bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
 
-// Declares every option; once the line is parsed and found whole, `then` is called.
+// Declares what makes a picture, whatever becomes of it: the scene, size, effects, shaders, the device.
+// Returns the options that --package decides, --merge first.
+std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments);
+// Throws a CLI::ParseError where some of them disagree.
+void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments);
+
+// Declares every option of glint render; once the line is parsed and found whole, `then` is called.
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
                       const std::function<void()>& then);
 

@@ -1,6 +1,7 @@
 #include "cli/render_frames.h"
 
 #include "cli/camera.h"
+#include "cli/render_setup.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "motion/pose.h"
@@ -78,15 +79,9 @@ public:
     }
 
     Result<LinearImage> render(FrameReport& frame) {
-        FrameOptions options;
-        options.camera = camera_;
-        setup_.arguments.frame.apply(options);
-        setup_.arguments.effectFrame.apply(options);
+        FrameOptions options = frameOptions(setup_.arguments, camera_, setup_.environment);
         // Costs time, which would count for the passes' own: only where the counts are asked for.
         options.countsLight = !setup_.arguments.stats.empty();
-        options.maxReflectionRoughness = static_cast<float>(setup_.arguments.effects.maxRoughness);
-        options.environment = setup_.environment;
-        setup_.arguments.environment.apply(options);
         options.seed = report_.seed;
         const Clock::time_point begin = Clock::now();
         const bool countsHits = !setup_.arguments.profileOutput.empty();

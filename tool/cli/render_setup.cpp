@@ -1,0 +1,50 @@
+#include "cli/render_setup.h"
+
+namespace glint {
+
+SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
+    SceneViewData data = makeSceneView(scene);
+    if (arguments.addsSun(scene)) {
+        data.lights.push_back(sunLight());
+    }
+    arguments.effectFrame.apply(data);
+    return data;
+}
+
+CompileSettings compileSettings(const RenderArguments& arguments, const PlanOptions& plan,
+                                std::uint32_t tracers, const Scene& scene) {
+    CompileSettings settings;
+    arguments.tracing.apply(settings, tracers);
+    settings.environmentMap = !arguments.environment.file.empty();
+    settings.plan = plan;
+    arguments.accuracy.apply(settings);
+    arguments.effects.apply(settings);
+    settings.addsLight = arguments.addsSun(scene);
+    return settings;
+}
+
+RendererOptions rendererOptions(const RenderArguments& arguments) {
+    RendererOptions options;
+    options.strategy = strategyOf(arguments);
+    parseSize(arguments.size, options.width, options.height);
+    options.tracer = tracerOf(arguments);
+    options.checkOrder = arguments.validate;
+    arguments.frame.apply(options);
+    arguments.effectFrame.apply(options);
+    return options;
+}
+
+FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera,
+                          const Environment* environment) {
+    FrameOptions options;
+    options.camera = camera;
+    arguments.frame.apply(options);
+    arguments.effectFrame.apply(options);
+    options.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);
+    options.environment = environment;
+    arguments.environment.apply(options);
+    options.seed = static_cast<std::uint32_t>(arguments.seed);
+    return options;
+}
+
+}  // namespace glint

@@ -1,0 +1,27 @@
+// What the arguments of glint render ask of the compiler and of the runtime.
+#pragma once
+
+#include "cli/render_arguments.h"
+#include "cli/scene_view.h"
+#include "emit/compile.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+
+namespace glint {
+
+// The scene as it goes to the device, with the light that it may lack and the sizes of lights.
+SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene);
+
+// Of the package that is compiled where none is given. `tracers`: those of the device.
+CompileSettings compileSettings(const RenderArguments& arguments, const PlanOptions& plan,
+                                std::uint32_t tracers, const Scene& scene);
+
+RendererOptions rendererOptions(const RenderArguments& arguments);
+
+// `environment` may be null.
+FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera,
+                          const Environment* environment);
+
+}  // namespace glint
