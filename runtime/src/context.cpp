@@ -72,6 +72,7 @@ void queryLimits(Context::State& state) {
     if (state.handles.samplerAnisotropy && vulkan12.driverID != VK_DRIVER_ID_MESA_LLVMPIPE) {
         limits.samplerAnisotropy = std::min(kMaxAnisotropy, limits.core.maxSamplerAnisotropy);
     }
+    limits.deviceType = properties.properties.deviceType;
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
     state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
@@ -225,6 +226,10 @@ std::string Context::deviceName() const {
 
 std::string Context::driverName() const {
     return state_->limits.driverName;
+}
+
+VkPhysicalDeviceType Context::deviceType() const {
+    return state_->limits.deviceType;
 }
 
 std::vector<std::string> Context::validationMessages() const {

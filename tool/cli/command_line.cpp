@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/diagnostics_options.h"
 #include "cli/help_formatter.h"
+#include "cli/settings_file.h"
 #include "cli/slips.h"
 #include "gltf/basisu.h"
 
@@ -14,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glint {
 
@@ -78,6 +80,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addDiff(app, chosen);
     addLint(app, chosen);
     addRender(app, chosen);
+    addBench(app, chosen);
     addCompare(app, chosen);
     ReportArguments report;
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -91,12 +94,23 @@ int runCommandLine(int argc, const char* const* argv) {
         return refuse(*slip);
     }
     const std::string command = arguments[0][0] == '-' ? "" : arguments[0];
+    const Result<CompletedLine> line = completeLine(app, arguments);
+    if (!line) {
+        Console().report(line.error());
+        return kExitFailed;
+    }
     try {
-        app.parse(argc, argv);
+        // CLI11 takes words from the back.
+        std::vector<std::string> words(line->words.rbegin(), line->words.rend());
+        app.parse(words);
         report.check();
     } catch (const CLI::Success& request) {
         return app.exit(request, std::cout, std::cerr);
     } catch (const CLI::ParseError& error) {
+        if (const std::optional<Diagnostic> ofFile = blameFile(*line, error.what())) {
+            Console().report(*ofFile);
+            return kExitFailed;
+        }
         return refuse({command, error.what()});
     }
     return act(chosen, report);

@@ -14,6 +14,7 @@ void addInspect(CLI::App& app, Action& chosen);
 void addDiff(CLI::App& app, Action& chosen);
 void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
+void addBench(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
 // After all others and their options, of which it makes the script.
 void addCompletion(CLI::App& app, Action& chosen);

@@ -1,5 +1,6 @@
 #include "cli/compile_arguments.h"
 
+#include "cli/settings_file.h"
 #include "emit/embed_source.h"
 
 #include <CLI/CLI.hpp>
@@ -99,6 +100,7 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
              "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
         .required();
     addVariant(command, arguments.variant);
+    addSettingsFile(command, arguments.settings);
     addOutputOptions(command, arguments);
     addShaderOptions(command, arguments);
 }
@@ -114,7 +116,8 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
                                                                 : planFile(arguments)};
     }
     arguments.options = describeOptions(command);
-    constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules};
+    // What the file of settings says stands among the words.
+    constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules, "--settings"};
     constexpr std::string_view kReport[] = {"--werror", "-W"};
     for (const CLI::Option* const option : command.get_options()) {
         const std::string name = option->get_name();
@@ -169,7 +172,7 @@ CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) 
 
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
     std::vector<std::filesystem::path> files;
-    for (const std::string& file : {arguments.plan.profile, arguments.lock.file}) {
+    for (const std::string& file : {arguments.plan.profile, arguments.lock.file, arguments.settings}) {
         if (!file.empty()) {
             files.emplace_back(file);
         }

@@ -32,6 +32,7 @@ struct CompileArguments {
     std::int64_t jobs = 0;
     CacheArguments cache;
     DepfileArguments depfile;
+    std::string settings;                  // the file that completeLine() has read; empty: none
     std::string options;                   // all that are given, see describeOptions()
     std::vector<std::string> words;        // those that decide about the package, one a word
     std::vector<std::string> reportWords;  // those that decide which diagnostics are errors

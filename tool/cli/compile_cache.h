@@ -28,6 +28,10 @@ public:
     ModuleCache* modules() {
         return modules_.get();
     }
+    // Likewise.
+    CacheStore* store() {
+        return store_.get();
+    }
     // An earlier run with these options, if its inputs and its outputs are as it left them.
     std::optional<ActionRecord> findUpToDate();
     void keep(const ActionRecord& record);

@@ -11,6 +11,7 @@
 #include "cli/render_report.h"
 #include "cli/render_setup.h"
 #include "cli/scene_view.h"
+#include "cli/validation_messages.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
 #include "motion/pose.h"
@@ -95,19 +96,6 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
         report.environment = {file, (*environment)->statistics()};
     }
     return environment;
-}
-
-// Error "validation" with the number of messages, each of which is reported.
-Status checkValidation(const Console& console, const Context& context) {
-    const std::vector<std::string> messages = context.validationMessages();
-    for (const std::string& message : messages) {
-        console.report(makeWarning("validation", "", message));
-    }
-    if (messages.empty()) {
-        return okStatus();
-    }
-    return makeError("validation", "", fmt::format("the validation layers have {} messages", messages.size()),
-                     "this is a defect of Glint or of the driver: please report it");
 }
 
 // A number that is none says more of the scene's own numbers than of the shaders.

@@ -1,6 +1,7 @@
 #include "cli/render_arguments.h"
 
 #include "cli/render_profile.h"
+#include "cli/settings_file.h"
 #include "image/image_file.h"
 
 #include <charconv>
@@ -93,6 +94,7 @@ bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
 std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, "SCENE", arguments.scene, "FILE", "the scene, .gltf or .glb").required();
     addVariant(command, arguments.variant);
+    addSettingsFile(command, arguments.settings);
     addPictureOptions(command, arguments);
     addEnvironmentOptions(command, arguments.environment);
     CLI::Option& effects = addEffectOptions(command, arguments.effects);

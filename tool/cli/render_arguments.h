@@ -31,6 +31,7 @@ struct RenderArguments {
     EffectArguments effects;
     EffectFrameArguments effectFrame;
     std::string package;
+    std::string settings;  // the file that completeLine() has read
     std::string size = "960x540";
     std::int64_t samples = 1;
     std::int64_t seed = 0;

@@ -116,9 +116,9 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
     return okStatus();
 }
 
-Result<Package> compileTemporary(const Scene& scene, CompileSettings settings) {
+Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, ModuleCache* cache) {
     settings.emitHeader = false;
-    const Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    const Result<CompiledPackage> compiled = compilePackage(scene, settings, cache);
     if (!compiled) {
         return compiled.error();
     }

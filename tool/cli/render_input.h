@@ -31,7 +31,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
                     const Scene& scene);
 
 // Compiles `scene` into a temporary folder, which is gone on return; leaves out what the runtime does not
-// read.
-Result<Package> compileTemporary(const Scene& scene, CompileSettings settings);
+// read. Modules that `cache` has are not compiled; null: there is none.
+Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, ModuleCache* cache = nullptr);
 
 }  // namespace glint

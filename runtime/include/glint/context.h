@@ -94,6 +94,7 @@ public:
     const DeviceHandles& handles() const;
     std::string deviceName() const;
     std::string driverName() const;
+    VkPhysicalDeviceType deviceType() const;
     // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
     std::vector<std::string> validationMessages() const;
 

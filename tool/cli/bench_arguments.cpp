@@ -1,0 +1,171 @@
+#include "cli/bench_arguments.h"
+
+#include "bench/settings.h"
+#include "cli/bench_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace glint {
+
+namespace {
+
+constexpr std::int64_t kRounds = 11;
+constexpr std::int64_t kQuickRounds = 6;  // the fewest with a confidence interval of 95 %
+constexpr double kReferenceError = 0.005;
+constexpr double kQuickReferenceError = 0.02;
+constexpr std::int64_t kReferenceSamples = 16384;
+constexpr std::int64_t kQuickReferenceSamples = 512;
+constexpr const char* kQuickSize = "96x54";
+
+// The option as it would be given again, a name and its value.
+void addWords(const CLI::Option& option, std::vector<std::string>& words) {
+    const std::string name = option.get_name();
+    if (option.get_positional()) {
+        words.insert(words.end(), option.results().begin(), option.results().end());
+    } else if (option.get_items_expected_max() == 0) {
+        words.push_back(name);
+    } else if (option.get_delimiter() == ',') {
+        words.insert(words.end(), {name, fmt::format("{}", fmt::join(option.results(), ","))});
+    } else {
+        for (const std::string& value : option.results()) {
+            words.insert(words.end(), {name, value});
+        }
+    }
+}
+
+// What decides about the picture but is swept by no bench: of these a point's command has those that were
+// given.
+bool isView(const CLI::Option& option) {
+    constexpr std::string_view kViews[] = {"--size",
+                                           "--camera",
+                                           "--exposure",
+                                           "--sun",
+                                           "--environment",
+                                           "--environment-rotation",
+                                           "--environment-intensity",
+                                           "--light-radius",
+                                           "--sun-angle",
+                                           "--ao-radius",
+                                           "--ao-falloff",
+                                           "--ssr-thickness",
+                                           "--tracer",
+                                           "--max-shaders",
+                                           "--variant",
+                                           "--device"};
+    return std::ranges::find(kViews, option.get_name()) != std::end(kViews);
+}
+
+// NAME=DIR of --candidate.
+Candidate parseCandidate(const std::string& text) {
+    const std::size_t sign = text.find('=');
+    if (sign == std::string::npos || sign == 0 || sign + 1 == text.size()) {
+        throw CLI::ValidationError("--candidate",
+                                   "\"" + text + "\" is not NAME=DIR, such as mine=out/package");
+    }
+    return {text.substr(0, sign), text.substr(sign + 1)};
+}
+
+}  // namespace
+
+void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
+    arguments.render.size = "480x270";
+    arguments.render.samples = 4;
+    addText(command, "-o,--output", arguments.output, "DIR",
+            "folder for index.html, bench.json, settings.json and\nimages/")
+        .required();
+    addSceneOptions(command, arguments.render);
+    const std::string sweep = "Sweep";
+    addFlag(
+        command, "--quick", arguments.quick,
+        fmt::format("fewer values, pairs and rounds, a less certain\nreference, and {} unless --size says "
+                    "else",
+                    kQuickSize))
+        .group(sweep);
+    addChoice(command, "--depth", arguments.depth, {"singles", "pairs", "search"},
+              "how far; singles: one setting at a time; pairs: then\nthose that matter; search: then for the "
+              "Pareto front")
+        .group(sweep);
+    addChoices(command, "--only", arguments.only, bench::settingNames(),
+               "sweep these settings alone, separated by commas")
+        .type_name("LIST")
+        ->group(sweep);
+    addInteger(command, "--rounds", arguments.rounds, 0, 1000,
+               fmt::format("pictures of each configuration, each with other random\nnumbers; 0: {}, with "
+                           "--quick {}",
+                           kRounds, kQuickRounds))
+        .group(sweep);
+    addInteger(command, "--batch", arguments.batch, 1, 64,
+               "configurations on the device at a time, besides the\ndefault")
+        .group(sweep);
+    addTexts(command, "--candidate", arguments.candidateWords, "NAME=DIR",
+             "measure this package of the scene, too; may be repeated")
+        .allow_extra_args(false)
+        ->group(sweep);
+    const std::string errors = "Errors";
+    addChoice(command, "--metric", arguments.metric, {"relMse", "trimmed", "rmse", "flip"},
+              "the error that configurations are ordered by; trimmed:\nrelMSE without the 0.1 % of pixels "
+              "that are worst, which\nfireflies decide otherwise")
+        .group(errors);
+    addReal(
+        command, "--reference-error", arguments.referenceError, 0.0, 1.0,
+        fmt::format("root of the relMSE that the reference itself may have;\n0: {}, with --quick {} (0 to "
+                    "1, default: 0)",
+                    kReferenceError, kQuickReferenceError))
+        .group(errors);
+    addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
+               fmt::format("samples a pixel of the reference at most; 0: {}, with\n--quick {}",
+                           kReferenceSamples, kQuickReferenceSamples))
+        .group(errors);
+    const std::string advice = "Advice";
+    addReal(command, "--budget-ms", arguments.budgetMs, 0.0, 1e9,
+            "write the most exact settings whose pictures take at\nmost this long to DIR/settings.json (0 to "
+            "1e9)")
+        .group(advice);
+    addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
+            "write the fastest settings with at most this error, in\nthe metric (0 to 1e9)")
+        .group(advice);
+    addCacheOptions(command, arguments.cache);
+}
+
+void settleBench(const CLI::App& command, BenchArguments& arguments) {
+    checkSceneOptions(command, arguments.render);
+    settleProfile(arguments.render.plan);
+    for (const char* const name : {"--budget-ms", "--max-error"}) {
+        const CLI::Option* const option = command.get_option(name);
+        if (option->count() > 0 && !(option->as<double>() > 0.0)) {
+            throw CLI::ValidationError(name, "0 is within no setting's reach: give more");
+        }
+    }
+    for (const std::string& text : arguments.candidateWords) {
+        arguments.candidates.push_back(parseCandidate(text));
+    }
+    if (arguments.rounds == 0) {
+        arguments.rounds = arguments.quick ? kQuickRounds : kRounds;
+    }
+    if (arguments.referenceError == 0.0) {
+        arguments.referenceError = arguments.quick ? kQuickReferenceError : kReferenceError;
+    }
+    if (arguments.referenceSamples == 0) {
+        arguments.referenceSamples = arguments.quick ? kQuickReferenceSamples : kReferenceSamples;
+    }
+    std::vector<std::string> words{"glint", "bench"};
+    for (const CLI::Option* const option : command.get_options()) {
+        if (option->count() == 0 || !hasEffect(*option)) {
+            continue;
+        }
+        addWords(*option, words);
+        if (isView(*option)) {
+            addWords(*option, arguments.viewWords);
+        }
+    }
+    arguments.command = shellWords(words);
+    if (command.get_option("--size")->count() == 0) {
+        arguments.render.size = arguments.quick ? kQuickSize : arguments.render.size;
+        arguments.viewWords.insert(arguments.viewWords.end(), {"--size", arguments.render.size});
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,193 @@
+#include "cli/bench_bed.h"
+
+#include "cli/bench_point.h"
+#include "cli/camera.h"
+#include "cli/environment.h"
+#include "cli/plan_choice.h"
+#include "cli/render_input.h"
+#include "cli/render_setup.h"
+#include "gltf/scene_list.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+// The device with position fetch where it has that.
+Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, bool& positionFetch) {
+    HeadlessOptions options;
+    options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
+    options.deviceName = arguments.device;
+    options.positionFetch = true;
+    Result<std::unique_ptr<Context>> context = Context::createHeadless(options);
+    positionFetch = context.ok();
+    if (context || arguments.tracing.positionFetch) {
+        return context;
+    }
+    options.positionFetch = false;
+    return Context::createHeadless(options);
+}
+
+SceneSize sizeOf(const SceneViewData& data) {
+    std::map<std::uint32_t, std::uint64_t> triangles;  // by mesh
+    for (const PrimitiveView& primitive : data.primitives) {
+        triangles[primitive.mesh] += primitive.indices.size() / 3;
+    }
+    SceneSize size;
+    for (const InstanceView& instance : data.instances) {
+        size.triangles += triangles[instance.mesh];
+        ++size.instances;
+    }
+    return size;
+}
+
+// A pass of a case counts with those of the others.
+std::string nameOfPass(const std::string& name) {
+    const bool isCase = name.starts_with("shade ") && name != "shade miss";
+    return isCase ? std::string(kShadeCases) : name;
+}
+
+}  // namespace
+
+Result<Exposure> Mount::expose(std::uint32_t seed) const {
+    FrameOptions frame = frame_;
+    frame.seed = seed;
+    Exposure exposure;
+    const auto add = [&]() -> Status {
+        const Result<std::vector<PassTiming>> passes = renderer_->timings();
+        if (!passes) {
+            return passes.error();
+        }
+        for (const PassTiming& pass : *passes) {
+            exposure.passes[nameOfPass(pass.name)] += pass.milliseconds;
+            exposure.milliseconds += pass.milliseconds;
+        }
+        return okStatus();
+    };
+    Result<LinearImage> image = renderer_->render(frame, samples_, add);
+    if (!image) {
+        return image.error();
+    }
+    Result<FrameCounters> counters = renderer_->counters();
+    if (!counters) {
+        return counters.error();
+    }
+    exposure.image = std::move(*image);
+    exposure.counters = std::move(*counters);
+    return exposure;
+}
+
+Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t samples) const {
+    FrameOptions frame = frame_;
+    frame.seed = seed;
+    return renderer_->render(frame, samples);
+}
+
+Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const RenderArguments& base,
+                                                   const Scene& scene, ModuleCache* cache) {
+    std::unique_ptr<BenchBed> bed(new BenchBed(console, base, scene, cache));
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    parseSize(base.size, width, height);
+    const SceneViewData data = sceneView(base, scene);
+    const Result<CameraChoice> camera =
+        chooseCamera(scene, data, base.camera, static_cast<double>(width) / height);
+    if (!camera) {
+        return camera.error();
+    }
+    bed->camera_ = camera->view;
+    bed->cameraName_ = camera->name;
+    bed->size_ = sizeOf(data);
+    bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
+    Result<std::unique_ptr<Context>> context = openDevice(base, bed->positionFetch_);
+    if (!context) {
+        return context.error();
+    }
+    bed->context_ = std::move(*context);
+    bed->onCpu_ = bed->context_->deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    if (!base.environment.file.empty()) {
+        std::vector<Diagnostic> notes;
+        Result<std::unique_ptr<Environment>> environment =
+            loadEnvironment(*bed->context_, base.environment.file, notes);
+        console.report(notes);
+        if (!environment) {
+            return environment.error();
+        }
+        bed->environment_ = std::move(*environment);
+    }
+    return bed;
+}
+
+Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderArguments& arguments) {
+    const SceneList scenes({&scene_, 1});
+    const Result<PlanChoice> plan = choosePlan(arguments.plan, scenes);
+    if (!plan) {
+        return plan.error();
+    }
+    Result<Package> package = Diagnostic{};
+    if (arguments.package.empty()) {
+        package = compileTemporary(
+            scene_, compileSettings(arguments, plan->options, context_->handles().tracers, scene_), cache_);
+    } else {
+        package = Package::load(arguments.package);
+        if (package) {
+            const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
+                                       !arguments.environment.file.empty()};
+            if (Status checked = checkPackage(*package, arguments.package, demand, scene_); !checked) {
+                return checked.error();
+            }
+        }
+    }
+    if (!package) {
+        return package.error();
+    }
+    auto mounted = std::make_shared<MountedPackage>();
+    mounted->package = std::make_unique<Package>(std::move(*package));
+    SceneViewData data = sceneView(arguments, scene_);
+    data.packageScene = sceneIn(*mounted->package, scene_).value_or(0);
+    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(*context_, *mounted->package, data.view());
+    if (!uploaded) {
+        return uploaded.error();
+    }
+    mounted->scene = std::move(*uploaded);
+    return mounted;
+}
+
+Result<Mount> BenchBed::mount(const bench::Configuration& configuration, const std::string& package) {
+    RenderArguments arguments = withSettings(base_, configuration);
+    arguments.package = package;
+    // What decides about the package, for mounts to share it.
+    bench::Configuration decided = configurationOf(arguments);
+    std::erase_if(decided, [](const auto& choice) {
+        // Of --effects auto the limit of roughness decides, too.
+        return bench::stageOf(choice.first) == bench::Stage::Render && choice.first != "max-roughness";
+    });
+    const std::string key = fmt::format("{} {}", package, fmt::join(wordsOf(decided), " "));
+    std::shared_ptr<MountedPackage> shared = mounted_[key].lock();
+    if (!shared) {
+        Result<std::shared_ptr<MountedPackage>> made = mountPackage(arguments);
+        if (!made) {
+            return made.error();
+        }
+        shared = std::move(*made);
+        mounted_[key] = shared;
+    }
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(arguments));
+    if (!renderer) {
+        return renderer.error();
+    }
+    Mount mount;
+    mount.package_ = std::move(shared);
+    mount.renderer_ = std::move(*renderer);
+    mount.frame_ = frameOptions(arguments, camera_, environment_.get());
+    mount.samples_ = static_cast<std::uint32_t>(arguments.samples);
+    mount.ordersHits_ = (strategyOf(arguments) & package::kOrderedStrategies) != 0;
+    return mount;
+}
+
+}  // namespace glint

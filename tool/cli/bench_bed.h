@@ -1,0 +1,128 @@
+// What a bench renders on: one device and scene, and a renderer for each configuration that is mounted.
+#pragma once
+
+#include "bench/settings.h"
+#include "cli/bench_settings.h"
+#include "cli/compile_cache.h"
+#include "cli/render_arguments.h"
+#include "cli/scene_view.h"
+#include "gltf/scene.h"
+
+#include <glint/context.h>
+#include <glint/environment.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// One picture: all samples of a frame.
+struct Exposure {
+    LinearImage image;
+    double milliseconds = 0.0;             // device time of all passes
+    std::map<std::string, double> passes;  // likewise, by name; those of cases together, as "shade cases"
+    FrameCounters counters;                // of the last sample
+};
+
+// A package with the scene on the device as it wants it.
+struct MountedPackage {
+    std::unique_ptr<Package> package;
+    std::unique_ptr<GpuScene> scene;
+};
+
+// A configuration that can render.
+class Mount {
+public:
+    // Error as Renderer::render().
+    Result<Exposure> expose(std::uint32_t seed) const;
+    // The same with other samples, without its times.
+    Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
+
+    const Renderer& renderer() const {
+        return *renderer_;
+    }
+    bool ordersHits() const {
+        return ordersHits_;
+    }
+    std::uint32_t cases() const {
+        return package_->package->caseCount();
+    }
+
+private:
+    friend class BenchBed;
+    std::shared_ptr<MountedPackage> package_;
+    std::unique_ptr<Renderer> renderer_;
+    FrameOptions frame_;
+    std::uint32_t samples_ = 1;
+    bool ordersHits_ = false;
+};
+
+struct SceneSize {
+    std::uint64_t triangles = 0;  // of all instances
+    std::uint32_t instances = 0;
+};
+
+class BenchBed {
+public:
+    // Reads the environment map, chooses the camera and the device. Messages go to `console`, which, like
+    // `cache` (may be null) and `scene`, must outlive it. Errors of Context::createHeadless() and of files.
+    static Result<std::unique_ptr<BenchBed>> create(const Console& console, const RenderArguments& base,
+                                                    const Scene& scene, ModuleCache* cache);
+
+    // `configuration` over the base. `package`: a folder with a package of the scene, used instead of
+    // compiling one; empty: none. Compiles, uploads and makes pipelines, as far as no mount that still is
+    // there has the same package. Errors of each.
+    Result<Mount> mount(const bench::Configuration& configuration, const std::string& package = {});
+
+    Context& context() {
+        return *context_;
+    }
+    const RenderArguments& base() const {
+        return base_;
+    }
+    const Scene& scene() const {
+        return scene_;
+    }
+    const std::string& cameraName() const {
+        return cameraName_;
+    }
+    // What device and driver have.
+    bool positionFetch() const {
+        return positionFetch_;
+    }
+    const SceneSize& sceneSize() const {
+        return size_;
+    }
+    std::uint32_t lights() const {
+        return lights_;
+    }
+    bool onCpu() const {
+        return onCpu_;
+    }
+
+private:
+    BenchBed(const Console& console, RenderArguments base, const Scene& scene, ModuleCache* cache)
+        : console_(console), base_(std::move(base)), scene_(scene), cache_(cache) {}
+    Result<std::shared_ptr<MountedPackage>> mountPackage(const RenderArguments& arguments);
+
+    const Console& console_;
+    RenderArguments base_;
+    const Scene& scene_;
+    ModuleCache* cache_;
+    std::unique_ptr<Context> context_;
+    std::unique_ptr<Environment> environment_;
+    CameraView camera_;
+    std::string cameraName_;
+    bool positionFetch_ = false;
+    bool onCpu_ = false;
+    std::uint32_t lights_ = 0;
+    SceneSize size_;
+    std::map<std::string, std::weak_ptr<MountedPackage>> mounted_;
+};
+
+}  // namespace glint

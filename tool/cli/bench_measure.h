@@ -1,0 +1,69 @@
+// Times and errors of configurations: rounds in which each renders one picture, in random order.
+#pragma once
+
+#include "cli/bench_bed.h"
+#include "cli/bench_point.h"
+#include "cli/console.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct MeasureOptions {
+    std::uint32_t rounds = 9;
+    std::uint32_t seed = 1;   // of the order; round r renders with random numbers of its own, seed + r
+    std::uint32_t batch = 8;  // configurations that are mounted at a time, besides the default
+    ErrorMetric metric = ErrorMetric::RelMse;
+};
+
+// The picture that errors are measured against.
+struct Truth {
+    const LinearImage& image;
+    double exposure = 0.0;  // stops
+};
+
+// Measures in batches that each have the default in every round: ratios are to that, in the same round, so
+// that a machine that slows down or a clock that drifts bends neither. Before its rounds a configuration
+// renders once for its pipelines to be ready, and before each picture on a GPU for a few milliseconds for its
+// clocks to be up.
+class Measurer {
+public:
+    // `base`: the default, to which every batch adds times, and the first its errors. All of them must
+    // outlive it. Errors of BenchBed::mount().
+    static Result<Measurer> create(const Console& console, BenchBed& bed, const MeasureOptions& options,
+                                   const Truth& truth, BenchPoint& base);
+
+    // Fills in what is measured of `points`. One that fails to be mounted is reported as a warning,
+    // "bench-point", and left without measurements.
+    Status measure(std::span<BenchPoint> points);
+
+private:
+    Measurer(const Console& console, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
+             BenchPoint& base)
+        : console_(console), bed_(bed), options_(options), truth_(truth), base_(base) {}
+
+    // A configuration on the device, with what it rendered in the current round.
+    struct Entry {
+        BenchPoint* point = nullptr;
+        Mount mount;
+        Exposure exposure;
+    };
+    Result<Entry> mount(BenchPoint& point) const;
+    Status measureBatch(std::span<Entry> entries, std::uint64_t seed);
+    Status expose(Entry& entry, std::uint32_t seed) const;
+    void keep(std::span<Entry*> entries, std::uint32_t round);
+
+    const Console& console_;
+    BenchBed& bed_;
+    MeasureOptions options_;
+    const Truth& truth_;
+    BenchPoint& base_;
+    std::vector<Entry> baseEntry_;  // the one of the default
+    bool baseIsKnown_ = false;      // its errors
+    std::uint64_t batches_ = 0;
+};
+
+}  // namespace glint

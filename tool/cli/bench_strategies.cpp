@@ -1,0 +1,145 @@
+#include "cli/bench_strategies.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numeric>
+
+namespace glint {
+
+namespace {
+
+double medianOf(const BenchPoint& point, std::string_view pass) {
+    const auto found = point.passes.find(std::string(pass));
+    return found == point.passes.end() ? 0.0 : bench::intervalOf(found->second).median;
+}
+
+double sumOf(const BenchPoint& point, std::initializer_list<std::string_view> passes) {
+    return std::accumulate(passes.begin(), passes.end(), 0.0,
+                           [&](double sum, std::string_view pass) { return sum + medianOf(point, pass); });
+}
+
+StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string& strategy) {
+    StrategyRow row;
+    row.strategy = strategy;
+    row.point = index;
+    row.ratio = timeRatio(point);
+    row.traceMs = medianOf(point, "trace");
+    row.orderMs = sumOf(point, {"count", "offset", "copy"});
+    row.shadeMs = sumOf(point, {"shade miss", kShadeCases, "uber", "sorted uber", "hit shaders",
+                                "shadow dispatch", "shadow"});
+    double all = 0.0;
+    for (const auto& [name, times] : point.passes) {
+        all += bench::intervalOf(times).median;
+    }
+    row.commonMs = all - row.traceMs - row.orderMs - row.shadeMs;
+    row.rays = point.counters.rays;
+    return row;
+}
+
+// Cases that `wave` hits in random order have on average.
+double casesIn(std::span<const std::uint32_t> hits, double wave) {
+    const double all = std::accumulate(hits.begin(), hits.end(), 0.0);
+    double cases = 0.0;
+    for (const std::uint32_t count : hits) {
+        cases += all > 0.0 ? 1.0 - std::pow(1.0 - count / all, wave) : 0.0;
+    }
+    return cases;
+}
+
+void countHits(std::span<const std::uint32_t> buckets, StrategyReport& report) {
+    constexpr double kWave = 32.0;
+    if (buckets.size() < 2) {
+        return;
+    }
+    const std::span<const std::uint32_t> hits = buckets.subspan(1);  // the first is of misses
+    report.cases = static_cast<std::uint32_t>(hits.size());
+    report.filledCases =
+        static_cast<std::uint32_t>(std::ranges::count_if(hits, [](std::uint32_t n) { return n > 0; }));
+    const double all = std::accumulate(hits.begin(), hits.end(), 0.0);
+    report.largestShare = all > 0.0 ? *std::ranges::max_element(hits) / all : 0.0;
+    report.casesInWave = casesIn(hits, kWave);
+}
+
+// Of the row's time, whole per cent.
+double percent(double part, const StrategyRow& row) {
+    return 100.0 * part / std::max(row.commonMs + row.traceMs + row.orderMs + row.shadeMs, 1e-12);
+}
+
+void explain(StrategyReport& report) {
+    const auto least =
+        std::ranges::min_element(report.rows, {}, [](const StrategyRow& row) { return row.ratio.median; });
+    for (const StrategyRow& row : report.rows) {
+        if (bench::overlap(row.ratio, least->ratio)) {
+            report.fastest.push_back(row.strategy);
+        }
+    }
+    if (report.fastest.size() > 1) {
+        report.why.push_back(
+            fmt::format("{} take equally long: their intervals overlap.", fmt::join(report.fastest, ", ")));
+    } else {
+        report.why.push_back(fmt::format("{} is fastest.", least->strategy));
+    }
+    for (const StrategyRow& row : report.rows) {
+        if (&row != &*least) {
+            report.why.push_back(fmt::format("{} takes {:.2f} times as long as {} (the medians).",
+                                             row.strategy, row.ratio.median / least->ratio.median,
+                                             least->strategy));
+        }
+    }
+    report.why.push_back(
+        fmt::format("Of {}'s time {:.0f} % are what all strategies do alike: primary surfaces, rays, the "
+                    "composition. Only the rest is theirs.",
+                    least->strategy, percent(least->commonMs, *least)));
+    for (const StrategyRow& row : report.rows) {
+        if (row.orderMs > 0.0) {
+            report.why.push_back(
+                fmt::format("{} spends {:.1f} % on tracing to records, {:.1f} % on their order and {:.1f} % "
+                            "on shading them.",
+                            row.strategy, percent(row.traceMs, row), percent(row.orderMs, row),
+                            percent(row.shadeMs, row)));
+        } else {
+            report.why.push_back(
+                fmt::format("{} orders nothing: it spends {:.1f} % on tracing and shading "
+                            "hits at once.",
+                            row.strategy, percent(row.shadeMs, row)));
+        }
+    }
+    const std::uint32_t rays = report.rows.front().rays;
+    report.why.push_back(fmt::format("A sample sends {} rays whose hits are shaded.", rays));
+    if (report.cases > 0) {
+        report.why.push_back(
+            fmt::format("Hits are of {} of {} shaders, {:.0f} % of them of one; 32 hits in random order are "
+                        "of {:.1f}: so "
+                        "many a subgroup of an uber shader runs one after another at most.",
+                        report.filledCases, report.cases, 100.0 * report.largestShare, report.casesInWave));
+    }
+}
+
+}  // namespace
+
+StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base) {
+    StrategyReport report;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bench::Configuration& configuration = points[i].configuration;
+        const auto own = configuration.find("strategy");
+        const bool isAlone =
+            configuration.empty() || (own != configuration.end() && configuration.size() == 1);
+        if (!isAlone || points[i].times.empty() || points[i].kind == PointKind::Package) {
+            continue;
+        }
+        report.rows.push_back(rowOf(points[i], i, own == configuration.end() ? base : own->second));
+        if (report.cases == 0) {
+            countHits(points[i].counters.bucketCounts, report);
+        }
+    }
+    if (report.rows.size() > 1 && report.rows.front().rays > 0) {
+        explain(report);
+    }
+    return report;
+}
+
+}  // namespace glint

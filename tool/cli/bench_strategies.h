@@ -1,0 +1,42 @@
+// Which strategy is fastest on a scene and a device, and what in the measured run says why.
+#pragma once
+
+#include "cli/bench_point.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Milliseconds of a picture, medians.
+struct StrategyRow {
+    std::string strategy;
+    std::size_t point = 0;   // index
+    bench::Interval ratio;   // of time, to the default
+    double traceMs = 0.0;    // of hits that are traced by a pass of their own
+    double orderMs = 0.0;    // count, offset, copy
+    double shadeMs = 0.0;    // of hits; for uber and hit-shaders with their tracing
+    double commonMs = 0.0;   // what every strategy does alike
+    std::uint32_t rays = 0;  // of the last sample
+};
+
+struct StrategyReport {
+    std::vector<StrategyRow> rows;     // those that were measured, of the default's other settings
+    std::vector<std::string> fastest;  // several: a tie
+    // Of hits, in the last sample of a strategy that counts them by case; zeros where none was measured.
+    std::uint32_t cases = 0;
+    std::uint32_t filledCases = 0;  // that any hit has
+    double largestShare = 0.0;      // of hits in the case that has most
+    // How many cases 32 hits in random order have on average: what an uber shader runs one after another in
+    // a subgroup of that size, at most.
+    double casesInWave = 0.0;
+    std::vector<std::string> why;  // sentences
+};
+
+// `base`: the strategy of the default, the first of `points`.
+StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
+
+}  // namespace glint

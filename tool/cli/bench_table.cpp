@@ -1,0 +1,131 @@
+// What glint bench prints.
+#include "cli/bench_report.h"
+#include "cli/bench_settings.h"
+#include "cli/table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace glint {
+
+namespace {
+
+using bench::Interval;
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string timeText(const BenchReport& report, std::size_t point) {
+    const Interval time = timeOf(report, point);
+    return fmt::format("{:.3g} ({:.3g} to {:.3g})", time.median, time.low, time.high);
+}
+
+std::string ratioText(const BenchPoint& point) {
+    const Interval ratio = timeRatio(point);
+    return isTimeTie(point) ? fmt::format("{:.2f} tie", ratio.median) : fmt::format("{:.2f}", ratio.median);
+}
+
+std::string errorText(const BenchReport& report, const BenchPoint& point) {
+    const Interval error = errorOf(point, report.metric);
+    return fmt::format("{:.3g} ({:.3g} to {:.3g})", error.median, error.low, error.high);
+}
+
+std::string changeText(const BenchReport& report, std::size_t index) {
+    const BenchPoint& point = report.points[index];
+    if (index == 0) {
+        return "";
+    }
+    return point.sameImage ? "same picture" : isErrorTie(point) ? "tie" : "";
+}
+
+std::vector<std::string> rowOf(const BenchReport& report, std::size_t index) {
+    const BenchPoint& point = report.points[index];
+    return {point.name, timeText(report, index), ratioText(point), errorText(report, point),
+            changeText(report, index)};
+}
+
+Rows headed(const BenchReport& report) {
+    return {{"configuration", "ms of a picture", "ratio", std::string(nameOf(report.metric)), "error"}};
+}
+
+std::string pointsTable(const BenchReport& report) {
+    Rows rows = headed(report);
+    for (std::size_t i = 0; i < report.points.size(); ++i) {
+        if (report.points[i].kind != PointKind::Pair && report.points[i].kind != PointKind::Search) {
+            rows.push_back(rowOf(report, i));
+        }
+    }
+    return formatTable(rows);
+}
+
+std::string frontTable(const BenchReport& report) {
+    Rows rows = headed(report);
+    for (const std::size_t i : report.front) {
+        rows.push_back(rowOf(report, i));
+    }
+    return formatTable(rows);
+}
+
+// A line for each reason, with the settings that it keeps from being tried.
+std::string skippedText(const BenchReport& report) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+    for (const bench::Setting& setting : report.settings) {
+        for (const bench::SkippedValue& value : setting.skipped) {
+            auto known = std::ranges::find(reasons, value.reason, [](const auto& r) { return r.first; });
+            if (known == reasons.end()) {
+                reasons.push_back({value.reason, {}});
+                known = reasons.end() - 1;
+            }
+            known->second.push_back(fmt::format("{} {}", setting.name, value.value));
+        }
+    }
+    std::string text;
+    for (const auto& [reason, values] : reasons) {
+        text += fmt::format("  {}: {}\n", fmt::join(values, ", "), reason);
+    }
+    return text;
+}
+
+std::string adviceText(const BenchReport& report) {
+    const BenchAdvice& advice = *report.advice;
+    std::string text = "\nAdvice\n" + advice.why + "\n";
+    if (advice.point) {
+        text +=
+            fmt::format("Settings: {} (glint render --settings, glint compile --settings)\n", advice.file);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string toText(const BenchReport& report) {
+    const Reference& reference = report.reference;
+    std::string text = formatFields(
+        {{"scene", fmt::format("{}, {} x {}, camera {}", report.scene.file, report.scene.width,
+                               report.scene.height, report.scene.camera)},
+         {"device", fmt::format("{}, {}", report.machine.device, report.machine.driver)},
+         {"reference",
+          fmt::format("{} samples{}, within {:.2g} % ({})", reference.samples,
+                      reference.cached ? ", cached" : "", 100.0 * reference.relativeError,
+                      reference.reached ? fmt::format("asked for {:.2g} %", 100.0 * reference.target)
+                                        : fmt::format("NOT the {:.2g} % asked for: give more --reference-spp",
+                                                      100.0 * reference.target))},
+         {"its relMSE", fmt::format("{:.2g}: no error below tells anything", reference.noise.relMse)},
+         {"measured", fmt::format("{} configurations in {} rounds, {:.0f} s", report.points.size(),
+                                  report.rounds, report.seconds)}});
+    text +=
+        fmt::format("\nOne setting at a time (default: {})\n{}",
+                    shellWords(wordsOf(bench::simplified(report.base, configurationOf(usualArguments())))),
+                    pointsTable(report));
+    if (const std::string skipped = skippedText(report); !skipped.empty()) {
+        text += "\nNot tried\n" + skipped;
+    }
+    text += "\nPareto front, from the fastest\n" + frontTable(report);
+    if (!report.strategies.why.empty()) {
+        text += "\nStrategies\n";
+        for (const std::string& sentence : report.strategies.why) {
+            text += sentence + "\n";
+        }
+    }
+    return report.advice ? text + adviceText(report) : text;
+}
+
+}  // namespace glint
