@@ -105,6 +105,17 @@ mesa_too_old() {
     [[ -z $version ]] || dpkg --compare-versions "$version" lt "$kOldestMesa"
 }
 
+# Adds a browser and what drives it, for the test of the page of `glint bench`, which skips without them. Ubuntu
+# has browsers as snaps only, which containers can't install.
+add_browser_needs() {
+    [[ $distribution == debian\ * ]] || return 0
+    needs+=(
+        "command chromium|chromium"
+        "command chromedriver|chromium-driver"
+        "file /usr/lib/python3/dist-packages/selenium/__init__.py|python3-selenium"
+    )
+}
+
 # Adds Clang, its run-time libraries, and what gives their reports names and lines.
 add_sanitizer_needs() {
     local version
@@ -245,6 +256,7 @@ if [[ -r /etc/os-release ]]; then
     # shellcheck source=/dev/null
     distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
 fi
+add_browser_needs
 if [[ $sanitize == true ]]; then
     add_sanitizer_needs
 fi
