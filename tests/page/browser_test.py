@@ -72,6 +72,21 @@ class Chart(Page):
         by_height = [points[i]["error"]["relMse"]["median"] for i, _, _ in sorted(places, key=lambda place: -place[2])]
         self.assertEqual(by_height, sorted(by_height))
 
+    def test_whiskers_and_the_noise_of_the_reference(self):
+        self.assertEqual(len(self.browser.all("#error-time .whisker")), len(REPORT["points"]))
+        self.assertEqual(len(self.browser.all("#error-time .noise")), 1)
+        self.assertEqual(len(self.browser.all("#error-time .front-line")), 1)
+        self.browser.choose("#metric", "flip")
+        self.assertNotIn("flip", REPORT["reference"]["noise"])
+        self.assertEqual(self.browser.all("#error-time .noise"), [])
+
+    def test_names_the_default_and_the_front(self):
+        labels = [label.text for label in self.browser.all(".label")]
+        self.assertIn("default", labels)
+        names = [REPORT["points"][identity]["name"] for identity in REPORT["front"]]
+        for label in labels:
+            self.assertTrue(any(name.startswith(label.rstrip("…")) for name in [*names, "default"]), label)
+
     def test_pointing_shows_every_setting(self):
         point = REPORT["points"][REPORT["front"][-1]]
         self.browser.point_at(self.point(point["id"]))

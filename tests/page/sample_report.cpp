@@ -184,6 +184,9 @@ void Maker::addErrors(Json& point, double factor) {
                       {"p999", interval(std::sqrt(relMse) * 9.0, 0.1)},
                       {"flip", interval(std::sqrt(relMse) * 0.9, 0.04)},
                       {"bias", bias}};
+    if (factor == 1.0 && point.at("id") != 0) {
+        point["error"] = page_.report["points"][0]["error"];
+    }
     point["errorTie"] = std::abs(factor - 1.0) < 0.06;
     point["sameImage"] = factor == 1.0;
 }
@@ -226,8 +229,11 @@ void Maker::addPoint(const std::string& kind, const Chosen& chosen) {
                 }
             }
         }
-        name += (name.empty() ? "" : ", ") + setting + " " + value;
-        options += " --" + setting + " " + value;
+        name += name.empty() ? "" : ", ";
+        name += setting;
+        name += ' ' + value;
+        options += " --" + setting;
+        options += ' ' + value;
     }
     Json& points = page_.report["points"];
     Json point{{"id", points.size()},
@@ -377,11 +383,16 @@ SamplePage Maker::make() {
     addSingles();
     addCombinations();
     markFront();
+    std::size_t advised = 0;
+    for (const Json& id : report["front"]) {
+        advised =
+            report["points"][id.get<std::size_t>()]["time"]["high"] < 20.0 ? id.get<std::size_t>() : advised;
+    }
     report["advice"] = {
         {"budgetMs", 20.0},
         {"maxError", nullptr},
         {"metric", "relMse"},
-        {"point", report["front"][3]},
+        {"point", advised},
         {"file", "settings.json"},
         {"compile", Json::object()},
         {"render", {{"spp", "2"}}},

@@ -11,6 +11,7 @@
 
 namespace glint::testing {
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the move of Json, which throws nothing that can be thrown here.
 struct SamplePage {
     nlohmann::ordered_json report;
     std::vector<PageImage> images;

@@ -69,8 +69,9 @@ struct Channel {
     int width, height;
     std::vector<double> values;
     [[nodiscard]] double at(int x, int y) const {
-        return values[static_cast<std::size_t>(std::clamp(y, 0, height - 1) * width +
-                                               std::clamp(x, 0, width - 1))];
+        return values[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) *
+                          static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
     }
 };
 

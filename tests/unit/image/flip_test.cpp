@@ -55,19 +55,20 @@ LinearImage blurred(const LinearImage& image, int radius) {
     LinearImage result = image;
     const int width = static_cast<int>(image.width);
     const int height = static_cast<int>(image.height);
+    const auto at = [width](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             for (std::size_t c = 0; c < 3; ++c) {
                 float sum = 0.0F;
                 for (int j = -radius; j <= radius; ++j) {
                     for (int i = -radius; i <= radius; ++i) {
-                        const int from =
-                            std::clamp(y + j, 0, height - 1) * width + std::clamp(x + i, 0, width - 1);
-                        sum += image.pixels[static_cast<std::size_t>(from)][c];
+                        sum += image.pixels[at(std::clamp(x + i, 0, width - 1),
+                                               std::clamp(y + j, 0, height - 1))][c];
                     }
                 }
-                result.pixels[static_cast<std::size_t>(y * width + x)][c] =
-                    sum / static_cast<float>((2 * radius + 1) * (2 * radius + 1));
+                result.pixels[at(x, y)][c] = sum / static_cast<float>((2 * radius + 1) * (2 * radius + 1));
             }
         }
     }

@@ -4,15 +4,33 @@ const MARGIN = {left: 74, right: 16, top: 14, bottom: 46};
 // Height below the plot for points that a logarithmic axis can't hold.
 const LANE = 26;
 
+// The noise of the reference is drawn if some error is less than so many times as large: farther down it would take
+// most of the chart.
+const FARTHEST_NOISE = 50;
+
+function noiseOf(metric) {
+    const noise = metric.higherIsBetter ? null : report.reference?.noise?.[metric.key];
+    return isNumber(noise) && noise > 0 ? noise : null;
+}
+
+// What of a drawing is within the plot.
+function clipped(axes, ...children) {
+    const width = axes.width - MARGIN.right - MARGIN.left;
+    const height = axes.height - MARGIN.bottom - MARGIN.top;
+    return svg("svg", {x: MARGIN.left, y: MARGIN.top, width, height, viewBox: `${MARGIN.left} ${MARGIN.top} ${width} ${height}`,
+                       "aria-hidden": "true"}, ...children);
+}
+
 function makeAxes(width, height, metric, shown) {
     const errors = shown.map((point) => errorOf(point, metric));
     const onAxis = (value) => isNumber(value) && (!metric.log || value > 0);
     const lane = errors.some((error) => !onAxis(error.value));
-    const floor = metric.higherIsBetter ? null : report.reference?.noise?.[metric.key];
     // Whiskers that reach zero don't stretch a logarithmic axis.
     const values = errors.flatMap((error) => [error.value, error.low, error.high]).filter(onAxis);
+    const noise = noiseOf(metric);
+    const floor = onAxis(noise) && values.some((value) => value < noise * FARTHEST_NOISE) ? noise : null;
     const xs = shown.flatMap((point) => [point.time.median, point.time.low, point.time.high]).filter((value) => value > 0);
-    const [low, high] = paddedExtent(values.length > 0 ? [...values, ...(onAxis(floor) ? [floor] : [])] : [1, 10], metric.log);
+    const [low, high] = paddedExtent(values.length > 0 ? [...values, ...(floor === null ? [] : [floor])] : [1, 10], metric.log);
     const [first, last] = paddedExtent(xs.length > 0 ? xs : [1, 10], true);
     const bottom = height - MARGIN.bottom - (lane ? LANE : 0);
     const x = makeScale({log: true, low: first, high: last, from: MARGIN.left, to: width - MARGIN.right, ticks: width < 600 ? 4 : 8});
@@ -21,7 +39,7 @@ function makeAxes(width, height, metric, shown) {
     const y = makeScale({log: metric.log, low, high, ...ends, ticks: 7});
     const laneMiddle = height - MARGIN.bottom - (lane ? LANE / 2 : 0);
     const place = (value) => (onAxis(value) ? y(Math.min(Math.max(value, low), high)) : laneMiddle);
-    return {x, y: place, yTicks: y.ticks, bottom, lane, floor: onAxis(floor) ? floor : null, width, height};
+    return {x, y: place, yTicks: y.ticks, bottom, lane, floor, width, height};
 }
 
 function drawAxes(axes, metric) {

@@ -22,8 +22,8 @@ function drawChart() {
         onpointermove: (event) => change({pointed: nearest(event)}), onpointerleave: () => change({pointed: focusedId()}),
         onclick: (event) => { const id = nearest(event); if (id !== null) { change({selected: id}); } },
         onkeydown: moveByKeys,
-    }, drawAxes(axes, metric), drawNoise(axes), drawFront(corners));
-    picture.append(svg("g", {class: "whiskers", "aria-hidden": "true"}, chartPoints.map(({point, x, y}) => whiskers(axes, metric, point, x, y))));
+    }, drawAxes(axes, metric), drawNoise(axes), clipped(axes, drawFront(corners)));
+    picture.append(clipped(axes, chartPoints.map(({point, x, y}) => whiskers(axes, metric, point, x, y))));
     // What matters is drawn last, on top.
     const rank = ({point}) => (point.kind === "default" ? 2 : 0) + (onFront.has(point.id) ? 1 : 0);
     picture.append(...[...chartPoints].sort((a, b) => rank(a) - rank(b)).map((drawn) => drawPoint(drawn, metric, onFront)));
@@ -34,7 +34,8 @@ function drawChart() {
     showFrontList(metric, front);
     byId("shown").textContent = shown.length === usable.length ? `${plural(usable.length, "point")}`
         : `${shown.length} of ${plural(usable.length, "point")}`;
-    byId("metric-note").textContent = `${metric.what} Down and left is better. Whiskers are ${confidenceText()} confidence intervals of the medians.`;
+    byId("metric-note").textContent = `${metric.what} Down and left is better. Whiskers are ${confidenceText()} confidence intervals of the medians.` +
+        (axes.floor === null && noiseOf(metric) !== null ? ` The noise of the reference itself, ${number(noiseOf(metric))}, is far below the chart.` : "");
 }
 
 function confidenceText() {
@@ -80,17 +81,19 @@ function drawPoint(drawn, metric, onFront) {
     return drawn.node;
 }
 
-// Names in a wide chart, numbers of the list below in a narrow one.
+// Names of the front and of the default; in a narrow chart, of the front the numbers of the list below.
 function drawLabels(picture, axes, front, corners) {
     const wide = axes.width >= 600;
     const labels = svg("g", {class: "labels", "aria-hidden": "true"});
     picture.append(labels);
-    const anchors = front.flatMap((id, index) => {
+    const named = [...new Set([defaultPoint?.id, ...front])];
+    const anchors = named.flatMap((id) => {
         const drawn = chartPoints.find((other) => other.point.id === id);
         if (!drawn) {
             return [];
         }
-        const text = svg("text", {class: "label"}, wide ? shorten(drawn.point.name, 34) : String(index + 1));
+        const isNumbered = !wide && drawn.point !== defaultPoint;
+        const text = svg("text", {class: "label"}, isNumbered ? String(front.indexOf(id) + 1) : shorten(drawn.point.name, 34));
         labels.append(text);
         return [{x: drawn.x, y: drawn.y, width: text.getComputedTextLength() + 4, text}];
     });

@@ -7,7 +7,8 @@ function showDetail() {
         panel.replaceChildren(html("p", {}, "No point is selected."));
         return;
     }
-    const notes = [point.id === state.selected ? "selected" : null, frontFor(metricOf(state.metric)).includes(point.id) ? "on the Pareto front" : null,
+    const notes = [point.id === state.selected ? "selected" : null, point.id === report.advice?.point ? "advised" : null,
+                   frontFor(metricOf(state.metric)).includes(point.id) ? "on the Pareto front" : null,
                    point.sameImage && point !== defaultPoint ? "the same picture as the default, bit by bit" : null];
     panel.replaceChildren(
         html("h3", {}, point.name),

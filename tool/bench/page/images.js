@@ -45,7 +45,9 @@ function sideOf(choice) {
 
 function picture(uri, name, attributes = {}) {
     const {width = 16, height = 9} = report.scene ?? {};
-    return uri ? html("img", {src: uri, alt: name, width, height, ...attributes})
+    // Pixels of a small picture are to be seen one by one; a large one is drawn smaller than it is, and smoothed.
+    const looks = [attributes.class, width <= 320 ? "pixels" : null].filter((name) => name).join(" ");
+    return uri ? html("img", {src: uri, alt: name, width, height, ...attributes, class: looks || null})
         : html("span", {class: "no-image", ...attributes}, `no picture of ${name}`);
 }
 

@@ -21,7 +21,7 @@ function showChartLegend() {
     byId("chart-legend").replaceChildren(
         ...kinds.map(([, kind]) => legendEntry(kind.name, marker(kind))),
         legendEntry("on the Pareto front", svg("circle", {class: "ring", r: 8}), svg("circle", {r: 3, fill: "var(--muted)"})),
-        legendEntry("95 % confidence", svg("path", {class: "whisker", d: "M-9,0H9M0,-8V8"})),
+        legendEntry(`${confidenceText()} confidence`, svg("path", {class: "whisker", d: "M-9,0H9M0,-8V8"})),
         legendEntry("what the front attains", svg("path", {class: "front-line", d: "M-9,-5H0V5H9"})),
         legendEntry("noise of the reference", svg("path", {class: "noise", d: "M-9,0H9"})));
 }

@@ -104,12 +104,12 @@ function valueAt(point, setting) {
     return String(point.settings?.[setting.name] ?? setting.default);
 }
 
-// The point that differs from the default by this value alone.
+// The point that differs from the default by this value alone, or that is named so: some values take two options.
 function singleOf(setting, value) {
     return points.find((point) => {
         const changed = Object.entries(point.settings ?? {});
         return changed.length === 1 && changed[0][0] === setting.name && String(changed[0][1]) === String(value);
-    }) ?? null;
+    }) ?? points.find((point) => point.kind !== "default" && point.name === `${setting.name} ${value}`) ?? null;
 }
 
 function imageUri(name) {
