@@ -39,7 +39,7 @@ function makeAxes(width, height, metric, shown) {
     const y = makeScale({log: metric.log, low, high, ...ends, ticks: 7});
     const laneMiddle = height - MARGIN.bottom - (lane ? LANE / 2 : 0);
     const place = (value) => (onAxis(value) ? y(Math.min(Math.max(value, low), high)) : laneMiddle);
-    return {x, y: place, yTicks: y.ticks, bottom, lane, floor, width, height};
+    return {x, y: place, yTicks: y.ticks, bottom, lane, floor, hasErrors: values.length > 0, width, height};
 }
 
 function drawAxes(axes, metric) {

@@ -35,7 +35,7 @@ function drawChart() {
     byId("shown").textContent = shown.length === usable.length ? `${plural(usable.length, "point")}`
         : `${shown.length} of ${plural(usable.length, "point")}`;
     byId("metric-note").textContent = `${metric.what} Down and left is better. Whiskers are ${confidenceText()} confidence intervals of the medians.` +
-        (axes.floor === null && noiseOf(metric) !== null ? ` The noise of the reference itself, ${number(noiseOf(metric))}, is far below the chart.` : "");
+        (axes.floor === null && axes.hasErrors && noiseOf(metric) !== null ? ` The noise of the reference itself, ${number(noiseOf(metric))}, is far below the chart.` : "");
 }
 
 function confidenceText() {
@@ -75,7 +75,7 @@ function drawPoint(drawn, metric, onFront) {
     const front = onFront.has(point.id);
     drawn.node = svg("g", {
         class: front ? "point front" : "point", "data-id": point.id, tabindex: -1, role: "button", transform: `translate(${x} ${y})`,
-        "aria-label": `${point.name}: ${milliseconds(point.time.median)}, ${metric.name} ${errorText(point, metric)}${front ? ", on the front" : ""}`,
+        "aria-label": `${point.name}: ${milliseconds(point.time.median)}, ${signedName(metric)} ${errorText(point, metric)}${front ? ", on the front" : ""}`,
         onfocus: () => change({pointed: point.id}), onblur: () => change({pointed: null}),
     }, front ? svg("circle", {class: "ring", r: 10}) : null, marker(kindOf(point)));
     return drawn.node;
@@ -174,7 +174,7 @@ function showTip(drawn) {
         return;
     }
     const metric = metricOf(state.metric);
-    tip.replaceChildren(html("strong", {}, drawn.point.name), html("br"), `${milliseconds(drawn.point.time.median)}, ${metric.name} ${errorText(drawn.point, metric)}`);
+    tip.replaceChildren(html("strong", {}, drawn.point.name), html("br"), `${milliseconds(drawn.point.time.median)}, ${signedName(metric)} ${errorText(drawn.point, metric)}`);
     const room = byId("chart-box").clientWidth - tip.offsetWidth - 4;
     tip.style.left = `${Math.max(4, Math.min(drawn.x + 14, room))}px`;
     tip.style.top = `${drawn.y > 90 ? drawn.y - tip.offsetHeight - 14 : drawn.y + 16}px`;
@@ -187,6 +187,6 @@ function showFrontList(metric, front) {
     byId("front-list").replaceChildren(...front.map((id) => {
         const point = pointById.get(id);
         return html("li", {}, html("button", {type: "button", class: "link", onclick: () => change({selected: id})}, point.name),
-                    ` ${milliseconds(point.time?.median)}, ${metric.name} ${errorText(point, metric)}`);
+                    ` ${milliseconds(point.time?.median)}, ${signedName(metric)} ${errorText(point, metric)}`);
     }));
 }

@@ -42,7 +42,7 @@ function numberRows(point) {
     for (const metric of METRICS) {
         if (errorOf(point, metric)) {
             const own = metric.key === ownMetric().key;
-            rows.push(row(metric.key === "bias" ? "bias" : metric.name, errorText(point, metric) + tie(own && point.errorTie)));
+            rows.push(row(signedName(metric), errorText(point, metric) + tie(own && point.errorTie)));
         }
     }
     const facts = [["Rays", count(point.rays)], ["Cases", count(point.cases)], ["Pipelines", count(point.pipelines)],

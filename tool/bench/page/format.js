@@ -54,6 +54,10 @@ function ratioText(interval) {
     return interval ? `×${number(interval.median)} ${range(interval)}`.trim() : NONE;
 }
 
+function percent(share) {
+    return isNumber(share) ? `${number(share * 100)} %` : NONE;
+}
+
 function bytesText(bytes) {
     if (bytes === null || bytes === undefined) {
         return NONE;

@@ -82,5 +82,5 @@ function showGrid() {
             html("div", {class: "pair"}, picture(imageUri(point.image), point.name),
                  imageUri(point.errorImage) ? picture(imageUri(point.errorImage), `error of ${point.name}`) : null),
             html("figcaption", {}, html("button", {type: "button", class: "link", onclick: () => change({selected: point.id})}, point.name),
-                 ` ${milliseconds(point.time?.median)}, ${metric.name} ${errorText(point, metric)}`))));
+                 ` ${milliseconds(point.time?.median)}, ${signedName(metric)} ${errorText(point, metric)}`))));
 }

@@ -36,6 +36,11 @@ function candidates(anchor, width) {
     return boxes;
 }
 
+// Two labels side by side must not read as one.
+function widened(box) {
+    return {...box, left: box.left - 6, right: box.right + 6};
+}
+
 // anchors: {x, y, width} of each label; obstacles: boxes that it had better not hide; within: the plot's box. Returns a box or
 // null for each: a name that fits nowhere stands in the list below the chart only.
 function placeLabels(anchors, obstacles, within) {
@@ -45,7 +50,7 @@ function placeLabels(anchors, obstacles, within) {
         let leastCost = Infinity;
         for (const box of candidates(anchor, anchor.width)) {
             const inside = box.left >= within.left && box.right <= within.right && box.top >= within.top && box.bottom <= within.bottom;
-            if (!inside || taken.some((other) => overlap(box, other) > 0)) {
+            if (!inside || taken.some((other) => overlap(widened(box), other) > 0)) {
                 continue;
             }
             const hidden = obstacles.reduce((sum, other) => sum + overlap(box, other), 0);

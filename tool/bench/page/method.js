@@ -9,13 +9,14 @@ function referenceSentences() {
     if (!reference) {
         return [];
     }
-    const reached = reference.reached ? `the target of ${number(reference.target)} is reached`
-        : `the target of ${number(reference.target)} is not reached, so that small errors above are partly the reference's own`;
+    const target = percent(reference.target);
+    const reached = reference.reached ? `the target of ${target} is reached`
+        : `the target of ${target} is not reached, so that errors near its noise are partly its own`;
     const noise = METRICS.filter(({key}) => isNumber(reference.noise?.[key])).map(({key, name}) => `${name} ${number(reference.noise[key])}`);
     const set = Object.entries(reference.settings ?? {}).map(([name, value]) => `${name} ${value}`);
     return [
         `The reference is the same scene with every approximation off${set.length > 0 ? ` (${set.join(", ")})` : ""}, the mean of ` +
-        `${plural(reference.samples, "sample")} a pixel. Its standard error is ${number(reference.relativeError)} relative; ${reached}. ` +
+        `${plural(reference.samples, "sample")} a pixel. Its relative standard error is ${percent(reference.relativeError)}; ${reached}. ` +
         `${noise.length > 0 ? `Its own noise is ${sentenceList(noise)}: no error below that can be measured. ` : ""}` +
         (reference.cached ? "It came from the cache." : `It took ${secondsText(reference.seconds)}.`),
         isNumber(reference.exposure) ? `Pictures and FLIP are shown under an exposure of ${number(reference.exposure)} stops, which is the reference's; all other errors are of radiance, without exposure.` : null,

@@ -26,6 +26,11 @@ function isNumber(value) {
     return typeof value === "number" && Number.isFinite(value);
 }
 
+// What a signed number of the measure is called.
+function signedName(metric) {
+    return metric.key === "bias" ? "bias" : metric.name;
+}
+
 function metricOf(key) {
     return METRICS.find((metric) => metric.key === key) ?? METRICS[0];
 }

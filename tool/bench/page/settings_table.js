@@ -10,7 +10,7 @@ function settingColumns() {
         {key: "stage", name: "Chosen at", of: ({setting}) => setting.stage},
         {key: "ratio", name: "Time over default", of: ({point}) => point?.ratio?.median ?? null},
         {key: "time", name: "Time, ms", of: ({point}) => (point && isMeasured(point) ? timeOf(point) : null)},
-        {key: "error", name: metric.key === "bias" ? "bias" : metric.name + (metric.unit ? `, ${metric.unit}` : ""),
+        {key: "error", name: signedName(metric) + (metric.unit ? `, ${metric.unit}` : ""),
          of: ({point}) => (point && errorOf(point, metric) ? inexactness(point, metric) : null)},
     ];
 }
