@@ -17,7 +17,7 @@ try:
 except ImportError as error:
     missing.append(f"Python's {error.name}")
 if missing:
-    print(f"skipped: not installed: {', '.join(missing)} (scripts/setup.sh installs them)")
+    print(f"skipped: not installed: {', '.join(missing)} (scripts/setup.sh --browser installs them)")
     sys.exit(SKIPPED)
 
 FOLDER = pathlib.Path(sys.argv[1]).resolve()
