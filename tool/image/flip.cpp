@@ -172,7 +172,7 @@ struct Seen {
     Row points;
 };
 
-// The paper's equations 8 and 9: features that one picture has and the other lacks make a difference of
+// The paper's final difference: features that one picture has and the other lacks make a difference of
 // colours larger. The exponent of features is 1/2.
 double pixelDifference(const Seen& a, const Seen& b, std::size_t x) {
     const double feature = std::max(std::abs(a.edges[x] - b.edges[x]), std::abs(a.points[x] - b.points[x]));

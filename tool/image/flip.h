@@ -10,7 +10,7 @@
 
 namespace glint {
 
-// Of a display 0.7 m wide with 3840 pixels, seen from 0.7 m: the paper's section 6.
+// Of a display 0.7 m wide with 3840 pixels, seen from 0.7 m: what the paper's results are for.
 inline constexpr double kFlipPixelsPerDegree = 67.0;
 
 // For each pixel, first row on top, how different it looks, from 0 (not at all) to 1 (as pure blue and pure

@@ -22,8 +22,8 @@ constexpr Matrix kFromXyz{{{12831.0 / 3959.0, -329.0 / 214.0, -1974.0 / 3959.0},
 constexpr Color kWhite{kToXyz[0][0] + kToXyz[0][1] + kToXyz[0][2], kToXyz[1][0] + kToXyz[1][1] + kToXyz[1][2],
                        kToXyz[2][0] + kToXyz[2][1] + kToXyz[2][2]};
 
-// The paper's section 4.1.3: exponent of the difference, and where its range is bent: differences up to kBend
-// of the largest take kBendTo of the output.
+// q_c, p_c and p_t of the paper: exponent of the difference, and where its range is bent: differences up to
+// kBend of the largest take kBendTo of the output.
 constexpr double kExponent = 0.7;
 constexpr double kBend = 0.4;
 constexpr double kBendTo = 0.95;
@@ -34,7 +34,7 @@ constexpr Color multiply(const Matrix& m, const Color& v) {
             m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2]};
 }
 
-// The function f of CIE 15:2004, equation 8.6.
+// The function f of CIE 1976 L*a*b* (CIE 15:2004).
 double labCurve(double t) {
     constexpr double kDelta = 6.0 / 29.0;
     return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
@@ -64,7 +64,8 @@ Color fromOpponent(const Color& opponent) {
     return multiply(kFromXyz, {x * kWhite[0], y * kWhite[1], z * kWhite[2]});
 }
 
-// CIE 15:2004, equations 8.3 to 8.5; Hunt 1952 as in the paper's equation 6.
+// CIE 1976 L*a*b* (CIE 15:2004); Hunt 1952, "Light and Dark Adaptation and the Perception of Color", as the
+// paper has it.
 Color toHuntLab(const Color& rgb) {
     const Color xyz = multiply(kToXyz, rgb);
     const double x = labCurve(xyz[0] / kWhite[0]);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// A term a sqrt(π / b) exp(-π² d² / b) over the distance d in degrees: equation 3 of the paper. Its table 1:
+// A term a sqrt(π / b) exp(-π² d² / b) over the distance d in degrees: the paper's spatial filters, with
+// the parameters of its table 1.
 struct Term {
     double a;
     double b;
@@ -20,9 +21,10 @@ constexpr Term kRedGreen{1.0, 0.0053};
 constexpr Term kBlueYellowWide{34.1, 0.04};
 constexpr Term kBlueYellowNarrow{13.5, 0.025};
 
-// Standard deviations that a filter reaches from its middle: the paper's section 4.1 and 4.2.
+// Standard deviations that a filter reaches from its middle, as in the paper.
 constexpr double kReach = 3.0;
-// From the highest to the lowest weight of the edge filter, in degrees: section 4.2.
+// From the highest to the lowest weight of the edge filter, in degrees: w of the paper's
+// feature detection.
 constexpr double kEdgeWidth = 0.082;
 
 template <typename Function>

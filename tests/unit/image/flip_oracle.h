@@ -7,7 +7,7 @@
 
 namespace glint::testing {
 
-// What flipMap() of image/flip.h returns, by Andersson and others 2020, equations 1 to 9.
+// What flipMap() of image/flip.h returns, from the formulas of Andersson and others 2020.
 std::vector<double> plainFlip(const LinearImage& image, const LinearImage& reference, double pixelsPerDegree);
 
 }  // namespace glint::testing
