@@ -326,6 +326,16 @@ Json settingsJson() {
                         {"values", values},
                         {"skipped", skipped}});
     }
+    list.push_back({{"name", "max-interfaces"},
+                    {"option", "--max-interfaces"},
+                    {"stage", "render"},
+                    {"approximates", true},
+                    {"what", "surfaces that a refracted ray meets at most"},
+                    {"default", "8"},
+                    {"values", {"8"}},
+                    {"skipped",
+                     {{{"value", "2"}, {"reason", "nothing refracts"}},
+                      {{"value", "16"}, {"reason", "nothing refracts"}}}}});
     return list;
 }
 

@@ -7,7 +7,7 @@ function showFilters() {
     const kinds = Object.keys(KINDS).filter((kind) => kind !== "default" && points.some((point) => point.kind === kind));
     fillSelect(byId("kind-filter"), [["", "every point"], ...kinds.map((kind) => [kind, `${KINDS[kind].name}, and the default`])], "",
                (kind) => change({kind}));
-    byId("filters").replaceChildren(...settings.map(filterOf));
+    byId("filters").replaceChildren(...settings.filter((setting) => valuesMeasured(setting).length > 1).map(filterOf));
     byId("clear-filter").addEventListener("click", () => {
         for (const select of document.querySelectorAll("#filters select, #kind-filter")) {
             select.value = "";
@@ -16,10 +16,13 @@ function showFilters() {
     });
 }
 
+function valuesMeasured(setting) {
+    return [...new Set(points.map((point) => valueAt(point, setting)))];
+}
+
 function filterOf(setting) {
     const select = html("select", {"data-setting": setting.name});
-    const values = [...new Set(points.map((point) => valueAt(point, setting)))];
-    fillSelect(select, [["", "any"], ...values.map((value) => [value, value === String(setting.default) ? `${value} (default)` : value])], "",
+    fillSelect(select, [["", "any"], ...valuesMeasured(setting).map((value) => [value, value === String(setting.default) ? `${value} (default)` : value])], "",
                (value) => change({filter: {...state.filter, [setting.name]: value}}));
     return html("label", {title: setting.what}, setting.name, select);
 }

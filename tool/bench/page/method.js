@@ -31,8 +31,10 @@ function methodSentences() {
         `so that a machine that slows down slows all of them. The order comes from the seed ${method.seed}, so that a repetition has the same one. ` +
         `The whole took ${secondsText(method.seconds)}${method.quick ? ", in the quick form, which measures less often and at a smaller size" : ""}.`,
         "Times are of the device, from timestamps around the passes of one picture with all its samples. A number is the median over the rounds; in brackets stands the " +
-        `${confidenceText()} confidence interval of that median, by order statistics, which assumes no distribution. The time over the default is taken within each batch. ` +
-        "Where the intervals of two points overlap, the comparison is a tie: it may be that one is better, but this measurement does not show it.",
+        (method.rounds < 6 ? `whole range of the rounds, as fewer than six hold no ${confidenceText()} confidence interval of a median. `
+            : `${confidenceText()} confidence interval of that median, by order statistics, which assumes no distribution. `) +
+        "That of the bias is Student's interval of a mean. The time over the default is taken within each batch. Where its interval holds 1, or where the intervals " +
+        "of two errors overlap, the comparison is a tie: one may be better than the other, but this measurement does not show it.",
         `The Pareto front holds the points that no other point beats in both time and ${ownMetric().name}.`,
     ];
 }

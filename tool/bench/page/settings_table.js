@@ -22,8 +22,17 @@ function settingRows() {
             const isDefault = String(value) === String(setting.default);
             return {setting, value: String(value), isDefault, point: isDefault ? defaultPoint : singleOf(setting, value), order: order++};
         }),
-        ...(setting.skipped ?? []).map(({value, reason}) => ({setting, value: String(value), reason, point: null, order: order++})),
+        ...skippedOf(setting).map(([reason, values]) => ({setting, value: values.join(", "), reason, point: null, order: order++})),
     ]);
+}
+
+// The values that were not tried, by the reason: [reason, values].
+function skippedOf(setting) {
+    const byReason = new Map();
+    for (const {value, reason} of setting.skipped ?? []) {
+        byReason.set(reason, [...(byReason.get(reason) ?? []), value]);
+    }
+    return [...byReason];
 }
 
 // What was skipped has no number and stays last whichever way the rest is sorted.
