@@ -1,14 +1,15 @@
-# glint_embed(TARGET OUTPUT file.cpp ROOTS dir… PATTERNS glob…): compiles text files into TARGET, found at run time by
-# their path below a root through glint::builtinFiles() (tool/emit/builtin.h). Changed, added and removed files
-# rebuild it.
+# glint_embed(TARGET OUTPUT file.cpp HEADER path.h FUNCTION name ROOTS dir… PATTERNS glob…): compiles text files into
+# TARGET, found at run time by their path below a root through glint::FUNCTION(), which HEADER declares as
+# std::span<const BuiltinFile> FUNCTION(). Changed, added and removed files rebuild it.
 #
-# The same file is the generator: cmake -DOUTPUT=… -DLIST=… -P GlintEmbed.cmake, where each line of LIST is "name|path".
+# The same file is the generator: cmake -DOUTPUT=… -DLIST=… -DHEADER=… -DFUNCTION=… -P GlintEmbed.cmake, where each line
+# of LIST is "name|path".
 
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS "${LIST}" entries ENCODING UTF-8)
-  set(code "// Made by cmake/GlintEmbed.cmake from the shaders and templates. Do not edit.\n")
-  string(APPEND code "#include \"emit/builtin.h\"\n\nnamespace glint {\n\n")
-  string(APPEND code "std::span<const BuiltinFile> builtinFiles() {\n    static constexpr BuiltinFile kFiles[] = {\n")
+  set(code "// Made by cmake/GlintEmbed.cmake from the files that it names. Do not edit.\n")
+  string(APPEND code "#include \"${HEADER}\"\n\nnamespace glint {\n\n")
+  string(APPEND code "std::span<const BuiltinFile> ${FUNCTION}() {\n    static constexpr BuiltinFile kFiles[] = {\n")
   foreach(entry IN LISTS entries)
     string(REGEX MATCH "^([^|]+)\\|(.+)$" matched "${entry}")
     set(name "${CMAKE_MATCH_1}")
@@ -27,7 +28,7 @@ endif()
 set(GLINT_EMBED_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
 
 function(glint_embed target)
-  cmake_parse_arguments(arg "" "OUTPUT" "ROOTS;PATTERNS" ${ARGN})
+  cmake_parse_arguments(arg "" "OUTPUT;HEADER;FUNCTION" "ROOTS;PATTERNS" ${ARGN})
   set(lines "")
   set(inputs "")
   foreach(root IN LISTS arg_ROOTS)
@@ -45,9 +46,10 @@ function(glint_embed target)
   file(CONFIGURE OUTPUT "${arg_OUTPUT}.list" CONTENT "${lines}" @ONLY)
   add_custom_command(
     OUTPUT "${arg_OUTPUT}"
-    COMMAND "${CMAKE_COMMAND}" "-DOUTPUT=${arg_OUTPUT}" "-DLIST=${arg_OUTPUT}.list" -P "${GLINT_EMBED_SCRIPT}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUTPUT=${arg_OUTPUT}" "-DLIST=${arg_OUTPUT}.list" "-DHEADER=${arg_HEADER}"
+            "-DFUNCTION=${arg_FUNCTION}" -P "${GLINT_EMBED_SCRIPT}"
     DEPENDS ${inputs} "${arg_OUTPUT}.list" "${GLINT_EMBED_SCRIPT}"
-    COMMENT "Embedding shaders and templates"
+    COMMENT "Embedding the files of ${arg_FUNCTION}()"
     VERBATIM)
   # The target may live in another folder, where this rule is out of sight: it waits for a target of this one.
   add_custom_target(${target}_embedded DEPENDS "${arg_OUTPUT}")

@@ -4,12 +4,13 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/setup.sh [--check] [--lint] [--sanitize]
+usage: scripts/setup.sh [--check] [--browser] [--lint] [--sanitize]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
 
   --check     install nothing; print what is missing and exit 1 if anything is
+  --browser   also Chromium and its driver, in which scripts/test.sh looks at the page of glint bench
   --lint      also what scripts/lint.sh needs
   --sanitize  also what scripts/sanitize.sh and scripts/fuzz.sh need
 TEXT
@@ -103,6 +104,17 @@ mesa_too_old() {
     local version
     version=$(mesa_version)
     [[ -z $version ]] || dpkg --compare-versions "$version" lt "$kOldestMesa"
+}
+
+# Adds a browser and what drives it. Ubuntu has browsers as snaps only, which containers can't install: there the
+# test of the page in a browser is skipped.
+add_browser_needs() {
+    [[ $distribution == debian\ * ]] || return 0
+    needs+=(
+        "command chromium|chromium"
+        "command chromedriver|chromium-driver"
+        "file /usr/lib/python3/dist-packages/selenium/__init__.py|python3-selenium"
+    )
 }
 
 # Adds Clang, its run-time libraries, and what gives their reports names and lines.
@@ -222,11 +234,13 @@ install_packages() {
 # --- Main ------------------------------------------------------------------------------------------
 
 check_only=false
+browser=false
 sanitize=false
 needs=("${kNeeds[@]}")
 for argument in "$@"; do
     case $argument in
         --check) check_only=true ;;
+        --browser) browser=true ;;
         --lint) needs+=("${kLintNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
         -h | --help)
@@ -244,6 +258,9 @@ distribution=unknown
 if [[ -r /etc/os-release ]]; then
     # shellcheck source=/dev/null
     distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
+fi
+if [[ $browser == true ]]; then
+    add_browser_needs
 fi
 if [[ $sanitize == true ]]; then
     add_sanitizer_needs

@@ -14,10 +14,14 @@ Installs what is missing, builds Glint and runs every test.
 TEXT
 }
 
-setup=()
+setup=(--browser)
+sanitize=false
 for argument in "$@"; do
     case $argument in
-        --sanitize) setup=(--sanitize) ;;
+        --sanitize)
+            setup+=(--sanitize)
+            sanitize=true
+            ;;
         -h | --help)
             usage
             exit 0
@@ -30,7 +34,7 @@ for argument in "$@"; do
 done
 
 scripts/setup.sh "${setup[@]}"
-if [[ ${#setup[@]} -gt 0 ]]; then
+if [[ $sanitize == true ]]; then
     scripts/sanitize.sh
 fi
 cmake --preset release -DGLINT_WARNINGS_AS_ERRORS=ON

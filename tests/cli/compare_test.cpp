@@ -32,6 +32,7 @@ TEST_F(CompareCommand, EqualImages) {
     EXPECT_EQ(json.at("maxAbsolute").at("value"), 0.0);
     EXPECT_EQ(json.at("differing"), 0);
     EXPECT_TRUE(json.at("psnr").is_null());
+    EXPECT_EQ(json.at("flip"), 0.0);
 }
 
 TEST_F(CompareCommand, SaysHowFarAndWhere) {
@@ -42,11 +43,31 @@ TEST_F(CompareCommand, SaysHowFarAndWhere) {
     EXPECT_EQ(json.at("maxRelative").at("x"), 2);
     EXPECT_EQ(json.at("maxRelative").at("y"), 1);
     EXPECT_EQ(json.at("maxRelative").at("channel"), "green");
-    for (const char* name : {"mean", "rmse", "relMse", "psnr"}) {
+    for (const char* name : {"mean", "rmse", "relMse", "psnr", "flip"}) {
         EXPECT_GT(json.at(name).get<double>(), 0.0) << name;
     }
     const Outcome text = run({"compare", "b.exr", "a.exr"});
     EXPECT_NE(text.out.find("0.25 at (2, 1) green"), std::string::npos) << text.out;
+}
+
+// Under the exposure that brings the reference to mid-grey, an image of half its radiance looks the same
+// whatever that radiance is; a PNG is shown already and keeps its own.
+TEST_F(CompareCommand, FlipIsOfWhatADisplayShows) {
+    const auto flip = [this](const std::string& image, const std::string& reference) {
+        return run({"compare", image, reference, "--json"}).json().at("flip").get<double>();
+    };
+    LinearImage grey{4, 2, {}};
+    for (const float level : {1.0F, 0.5F, 1000.0F, 500.0F}) {
+        grey.pixels.assign(8, {level, level, level, 1.0F});
+        write(std::to_string(static_cast<int>(level * 10.0F)) + ".exr", grey);
+    }
+    EXPECT_GT(flip("5.exr", "10.exr"), 0.1);
+    EXPECT_NEAR(flip("5000.exr", "10000.exr"), flip("5.exr", "10.exr"), 1e-4);
+
+    write("shown.png", grey);
+    EXPECT_EQ(flip("shown.png", "shown.png"), 0.0);
+    // White beyond the display's range against mid-grey.
+    EXPECT_GT(flip("5000.exr", "shown.png"), 0.1);
 }
 
 TEST_F(CompareCommand, LimitDecidesTheExit) {

@@ -1,6 +1,7 @@
 #include "cli/bench_output.h"
 
 #include "base/files.h"
+#include "bench/page.h"
 #include "cli/settings_file.h"
 #include "image/compare.h"
 #include "image/png.h"
@@ -21,12 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kImages = "images";
 
-struct Picture {
-    std::string name;  // below the folder
-    Bytes png;
-};
-
-Status add(std::vector<Picture>& pictures, const std::string& name, const DisplayImage& image) {
+Status add(std::vector<PageImage>& pictures, const std::string& name, const DisplayImage& image) {
     Result<Bytes> png = encodePng(image, name);
     if (!png) {
         return png.error();
@@ -35,34 +31,34 @@ Status add(std::vector<Picture>& pictures, const std::string& name, const Displa
     return okStatus();
 }
 
-DisplayImage displayed(const LinearImage& image, double exposure) {
-    DisplayImage shown{image.width, image.height, {}};
-    shown.pixels.reserve(image.pixels.size());
+DisplayImage shown(const LinearImage& image, double exposure) {
+    DisplayImage display{image.width, image.height, {}};
+    display.pixels.reserve(image.pixels.size());
     for (const std::array<float, 4>& pixel : image.pixels) {
-        shown.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
+        display.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
     }
-    return shown;
+    return display;
 }
 
-Result<std::vector<Picture>> picturesOf(const BenchReport& report) {
+Result<std::vector<PageImage>> picturesOf(const BenchReport& report) {
     const double exposure = report.reference.exposure;
-    std::vector<Picture> pictures;
+    std::vector<PageImage> pictures;
     const LinearImage reference = exposed(report.reference.image, exposure);
-    Status added = add(pictures, kReferenceImage, displayed(report.reference.image, exposure));
+    Status added = add(pictures, kReferenceImage, shown(report.reference.image, exposure));
     for (std::size_t i = 0; added && i < report.points.size(); ++i) {
         const LinearImage& image = report.points[i].image;
-        added = add(pictures, imageName(i), displayed(image, exposure));
+        added = add(pictures, imageName(i), shown(image, exposure));
         if (added) {
             added = add(pictures, errorImageName(i), differenceMap(exposed(image, exposure), reference));
         }
     }
-    return added ? Result(std::move(pictures)) : Result<std::vector<Picture>>(added.error());
+    return added ? Result(std::move(pictures)) : Result<std::vector<PageImage>>(added.error());
 }
 
 // Of an earlier bench that had more configurations.
-void removeOthers(const fs::path& folder, const std::vector<Picture>& pictures) {
+void removeOthers(const fs::path& folder, const std::vector<PageImage>& pictures) {
     std::set<std::string> names;
-    for (const Picture& picture : pictures) {
+    for (const PageImage& picture : pictures) {
         names.insert(fs::path(picture.name).filename().string());
     }
     std::error_code ignored;
@@ -97,7 +93,7 @@ Status checkBenchFolder(const fs::path& folder) {
 }
 
 Status writeBench(const BenchReport& report, const fs::path& folder) {
-    const Result<std::vector<Picture>> pictures = picturesOf(report);
+    const Result<std::vector<PageImage>> pictures = picturesOf(report);
     if (!pictures) {
         return pictures.error();
     }
@@ -107,7 +103,7 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
         return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
                          "give another -o");
     }
-    for (const Picture& picture : *pictures) {
+    for (const PageImage& picture : *pictures) {
         if (Status written = writeFile(folder / picture.name, picture.png); !written) {
             return written;
         }
@@ -122,7 +118,11 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
             return written;
         }
     }
-    if (Status written = writeFile(folder / kReportFile, toText(toJson(report))); !written) {
+    const Json json = toJson(report);
+    if (Status written = writeFile(folder / kReportFile, toText(json)); !written) {
+        return written;
+    }
+    if (Status written = writeFile(folder / kPageFile, makePage(json, *pictures)); !written) {
         return written;
     }
     removeOthers(folder, *pictures);

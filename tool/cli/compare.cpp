@@ -5,7 +5,9 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "image/flip.h"
 #include "image/image_file.h"
+#include "image/tone.h"
 
 #include <fmt/format.h>
 
@@ -30,8 +32,25 @@ Json toJson(const LargestError& error) {
     return {{"value", error.value}, {"x", error.x}, {"y", error.y}, {"channel", kChannels[error.channel]}};
 }
 
+// Pixels as a display shows them: those of a PNG are that already.
+LinearImage shown(const std::string& path, const LinearImage& image, double exposure) {
+    const Result<ImageFormat> format = imageFormat(path);
+    return format && *format == ImageFormat::Png ? image : displayedImage(image, exposure);
+}
+
+// Both under the exposure that `glint render` would choose for the reference, or, where that is a PNG, for
+// the image.
+double measureFlip(const CompareArguments& arguments, const LinearImage& image,
+                   const LinearImage& reference) {
+    const Result<ImageFormat> format = imageFormat(arguments.reference);
+    const bool hasRadiance = format && *format == ImageFormat::Exr;
+    const double exposure = automaticExposure(hasRadiance ? reference : image);
+    return flipMean(
+        flipMap(shown(arguments.image, image, exposure), shown(arguments.reference, reference, exposure)));
+}
+
 // PSNR of equal images is infinite, which JSON can't say: null.
-Json toJson(const ImageDifference& difference, const LinearImage& image) {
+Json toJson(const ImageDifference& difference, double flip, const LinearImage& image) {
     return {{"width", image.width},
             {"height", image.height},
             {"maxAbsolute", toJson(difference.absolute)},
@@ -40,6 +59,7 @@ Json toJson(const ImageDifference& difference, const LinearImage& image) {
             {"rmse", difference.rmse},
             {"relMse", difference.relMse},
             {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json(nullptr)},
+            {"flip", flip},
             {"pixels", difference.pixels},
             {"differing", difference.differing},
             {"nonFinite", difference.nonFinite},
@@ -53,7 +73,7 @@ std::string toText(const LargestError& error) {
     return fmt::format("{:.6g} at ({}, {}) {}", error.value, error.x, error.y, kChannels[error.channel]);
 }
 
-std::string toText(const ImageDifference& difference, const LinearImage& image) {
+std::string toText(const ImageDifference& difference, double flip, const LinearImage& image) {
     return formatFields(
         {{"size", fmt::format("{} x {}", image.width, image.height)},
          {"largest error", toText(difference.absolute)},
@@ -62,6 +82,7 @@ std::string toText(const ImageDifference& difference, const LinearImage& image) 
          {"RMSE", fmt::format("{:.6g}", difference.rmse)},
          {"relMSE", fmt::format("{:.6g}", difference.relMse)},
          {"PSNR", std::isfinite(difference.psnr) ? fmt::format("{:.2f} dB", difference.psnr) : "infinite"},
+         {"FLIP", fmt::format("{:.6g}", flip)},
          {"pixels that differ", fmt::format("{} of {}", difference.differing, difference.pixels)},
          {"NaN or infinity",
           fmt::format("{} in A, {} in B", difference.nonFinite, difference.referenceNonFinite)}});
@@ -108,10 +129,11 @@ int compare(const Console& console, const CompareArguments& arguments) {
             return fail(console, written.error());
         }
     }
+    const double flip = measureFlip(arguments, *image, *reference);
     if (console.isJson()) {
-        console.result(toJson(*difference, *image));
+        console.result(toJson(*difference, flip, *image));
     } else {
-        console.print(toText(*difference, *image));
+        console.print(toText(*difference, flip, *image));
     }
     const std::optional<Diagnostic> verdict = judge(arguments, *difference);
     return verdict ? fail(console, *verdict) : kExitDone;

@@ -1,5 +1,8 @@
 #include "image/error.h"
 
+#include "image/flip.h"
+#include "image/tone.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,9 +74,11 @@ ImageErrors summarize(const LinearImage& reference, double scale, const Differen
 }  // namespace
 
 ImageErrors measureErrors(const LinearImage& image, const LinearImage& reference, double exposure) {
-    return summarize(reference, std::exp2(exposure), [&](std::size_t i, std::size_t c) {
+    ImageErrors errors = summarize(reference, std::exp2(exposure), [&](std::size_t i, std::size_t c) {
         return double{image.pixels[i][c]} - double{reference.pixels[i][c]};
     });
+    errors.flip = flipMean(flipMap(displayedImage(image, exposure), displayedImage(reference, exposure)));
+    return errors;
 }
 
 LinearImage exposed(const LinearImage& image, double exposure) {

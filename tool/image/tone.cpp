@@ -77,9 +77,9 @@ double automaticExposure(const LinearImage& image) {
     return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(lit), -kMaxStops, kMaxStops);
 }
 
-std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure) {
+Rgb displayed(const Rgb& color, double exposure) {
     if (!isFinite(color)) {
-        return {255, 0, 255};
+        return {1.0F, 0.0F, 1.0F};
     }
     // Bounded so that a large exposure can't make an infinity of a finite colour.
     constexpr double kBrightest = 1e30;
@@ -88,11 +88,27 @@ std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure) {
     for (std::size_t i = 0; i < 3; ++i) {
         exposed[i] = static_cast<float>(std::clamp(color[i] * scale, 0.0, kBrightest));
     }
+    Rgb mapped = toneMapNeutral(exposed);
+    for (float& channel : mapped) {
+        channel = std::clamp(channel, 0.0F, 1.0F);
+    }
+    return mapped;
+}
+
+LinearImage displayedImage(const LinearImage& image, double exposure) {
+    LinearImage shown = image;
+    for (std::array<float, 4>& pixel : shown.pixels) {
+        const Rgb color = displayed({pixel[0], pixel[1], pixel[2]}, exposure);
+        pixel = {color[0], color[1], color[2], pixel[3]};
+    }
+    return shown;
+}
+
+std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure) {
+    const Rgb shown = displayed(color, exposure);
     std::array<std::uint8_t, 3> display{};
-    const Rgb mapped = toneMapNeutral(exposed);
     for (std::size_t i = 0; i < 3; ++i) {
-        const float encoded = linearToSrgb(std::clamp(mapped[i], 0.0F, 1.0F));
-        display[i] = static_cast<std::uint8_t>(std::lround(encoded * 255.0F));
+        display[i] = static_cast<std::uint8_t>(std::lround(linearToSrgb(shown[i]) * 255.0F));
     }
     return display;
 }

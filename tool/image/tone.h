@@ -26,8 +26,13 @@ Rgb toneMapNeutral(const Rgb& color);
 // to ±16 stops. A pixel is lit if its luminance is finite and above 1e-6; 0 stops if none is.
 double automaticExposure(const LinearImage& image);
 
-// 8-bit sRGB of a linear colour: times 2^exposure, tone mapped, encoded, rounded. NaN and infinity become
-// magenta, so that they are seen.
+// What a display shows of a linear colour, in linear light within [0, 1]: times 2^exposure, tone mapped. NaN
+// and infinity become magenta, so that they are seen.
+Rgb displayed(const Rgb& color, double exposure);
+// Of every pixel; alpha stays.
+LinearImage displayedImage(const LinearImage& image, double exposure);
+
+// 8-bit sRGB of a linear colour: displayed(), encoded, rounded.
 std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure);
 
 }  // namespace glint

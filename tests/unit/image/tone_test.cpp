@@ -78,6 +78,29 @@ TEST(Tone, DisplayShowsWhatIsNotFinite) {
     EXPECT_GE(toDisplay({1e38F, 1e38F, 1e38F}, 100.0)[0], 254);
 }
 
+// What FLIP looks at is what a PNG holds, but for the rounding to 8 bits.
+TEST(Tone, DisplayedImageIsWhatIsWrittenUnrounded) {
+    const LinearImage image{4,
+                            1,
+                            {{0.2F, 0.1F, 0.3F, 0.5F},
+                             {7.0F, 0.0F, -1.0F, 1.0F},
+                             {1e30F, 1.0F, 1.0F, 1.0F},
+                             {std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F}}};
+    const LinearImage shown = displayedImage(image, 1.5);
+    ASSERT_EQ(shown.pixels.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::array<float, 4>& pixel = shown.pixels[i];
+        const std::array<std::uint8_t, 3> display =
+            toDisplay({image.pixels[i][0], image.pixels[i][1], image.pixels[i][2]}, 1.5);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_GE(pixel[c], 0.0F);
+            EXPECT_LE(pixel[c], 1.0F);
+            EXPECT_NEAR(linearToSrgb(pixel[c]) * 255.0F, static_cast<float>(display[c]), 0.5001F);
+        }
+        EXPECT_EQ(pixel[3], image.pixels[i][3]);
+    }
+}
+
 TEST(Tone, DisplayDoublesWithEveryStop) {
     EXPECT_EQ(toDisplay({0.2F, 0.1F, 0.3F}, 1.0), toDisplay({0.4F, 0.2F, 0.6F}, 0.0));
 }

@@ -1,0 +1,13 @@
+// LDR-FLIP once more, as slow and as plain as its definition: filters of two dimensions, doubles throughout.
+#pragma once
+
+#include <glint/renderer.h>
+
+#include <vector>
+
+namespace glint::testing {
+
+// What flipMap() of image/flip.h returns, from the formulas of Andersson and others 2020.
+std::vector<double> plainFlip(const LinearImage& image, const LinearImage& reference, double pixelsPerDegree);
+
+}  // namespace glint::testing

@@ -1,0 +1,33 @@
+// Draws the page, and keeps it up to date.
+
+function main() {
+    showHeading();
+    showFilters();
+    showChartLegend();
+    onChange(["metric", "filter", "kind"], drawChart);
+    onChange(["selected", "pointed"], markPoints);
+    onChange(["selected", "pointed", "metric"], showDetail);
+    onChange(["metric"], showSettingsTable);
+    drawChart();
+    showDetail();
+    showPasses();
+    showSettingsTable();
+    showImages();
+    showStrategies();
+    showMethod();
+    redrawOnResize();
+}
+
+// Charts are drawn for the width that they have.
+function redrawOnResize() {
+    let width = byId("chart-box").clientWidth;
+    new ResizeObserver(() => {
+        if (byId("chart-box").clientWidth !== width) {
+            width = byId("chart-box").clientWidth;
+            drawChart();
+            if (!byId("passes").hidden) {
+                drawPasses();
+            }
+        }
+    }).observe(byId("chart-box"));
+}
