@@ -106,10 +106,10 @@ std::vector<std::string> effectValues(const Facts& facts, const std::string& bas
 }
 
 // Multiples of white, to three digits.
-std::vector<std::string> clampValues(const Facts& facts) {
+std::vector<std::string> clampValues(const Facts& facts, bool quick) {
     std::vector<std::string> values{"0"};
-    if (facts.white > 0.0) {
-        for (const double times : {16.0, 4.0, 1.0}) {
+    for (const double times : {16.0, 4.0, 1.0}) {
+        if (facts.white > 0.0 && (!quick || times == 1.0)) {
             values.push_back(fmt::format("{:.3g}", times * facts.white));
         }
     }
@@ -167,7 +167,7 @@ std::string reasonAgainst(std::string_view name, std::string_view value, const F
         return "the device has no 16-bit floating point (shaderFloat16)";
     }
     if (name == "position-fetch" && value == "on" && !facts.positionFetch) {
-        return "the device lacks VK_KHR_ray_tracing_position_fetch";
+        return "the device lacks VK_KHR_ray_tracing_position_fetch, or this glint's glslang GLSL for it";
     }
     if (name == "strategy" && value == "hit-shaders" && !facts.rayPipeline) {
         return "the device has no ray tracing pipelines";
@@ -222,7 +222,7 @@ std::vector<Setting> settingsFor(const Facts& facts, const Configuration& base, 
         if (row.name == "effects") {
             values = effectValues(facts, setting.base);
         } else if (row.name == "clamp") {
-            values = clampValues(facts);
+            values = clampValues(facts, quick);
         }
         insertBase(values, setting.base);
         if (const std::string reason = reasonAgainst(row.name, "", facts, base); !reason.empty()) {

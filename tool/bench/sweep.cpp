@@ -50,6 +50,9 @@ const Setting* find(std::span<const Setting> settings, std::string_view name) {
 // A pair of every value is too many where both have several: of samples the neighbours of the default.
 std::vector<std::string> pairValues(const Setting& setting, bool quick) {
     std::vector<std::string> values;
+    if (quick && setting.name == "merge") {
+        return {"all"};  // the one that is farthest from the others
+    }
     const auto own = std::ranges::find(setting.values, setting.base);
     const auto at = std::distance(setting.values.begin(), own);
     for (std::ptrdiff_t i = 0; i < std::ssize(setting.values); ++i) {
@@ -79,7 +82,8 @@ Steps stepsOf(std::span<const Setting> settings, std::span<const Rated> measured
     for (const Rated& point : measured) {
         if (point.configuration.size() == 1) {
             const auto& [name, value] = *point.configuration.begin();
-            steps[name].push_back({value, point.time / base.time, point.error - base.error});
+            steps[name].push_back({value, point.timeTie ? 1.0 : point.time / base.time,
+                                   point.errorTie ? 0.0 : point.error - base.error});
         }
     }
     return steps;
@@ -94,7 +98,7 @@ std::vector<Rated> fastestWays(std::span<const Setting> settings, std::span<cons
             const Setting* const setting = find(settings, choice.first);
             return setting == nullptr || setting->approximates;
         });
-        if (keepsError) {
+        if (keepsError && (point.configuration.empty() || !point.timeTie)) {
             ways.push_back(point);
         }
     }
@@ -121,6 +125,10 @@ std::vector<Rated> predictedFront(std::span<const Setting> settings, const Steps
         std::vector<Rated> grown;
         for (const Rated& point : front) {
             for (const Step& step : steps.find(setting.name)->second) {
+                const bool isIdle = step.ratio == 1.0 && step.difference == 0.0;
+                if (isIdle && step.value != setting.base) {
+                    continue;
+                }
                 Rated next = point;
                 next.configuration[setting.name] = step.value;
                 next.time *= step.ratio;
@@ -150,6 +158,9 @@ std::vector<Rated> neighbours(std::span<const Setting> settings, const Configura
                 const std::string& value = setting.values[static_cast<std::size_t>(next)];
                 const auto there = std::ranges::find(known, value, &Step::value);
                 if (there == known.end()) {
+                    continue;
+                }
+                if (there->ratio == here->ratio && there->difference == here->difference) {
                     continue;
                 }
                 Rated moved = measured[i];

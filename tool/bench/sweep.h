@@ -23,6 +23,9 @@ struct Rated {
     Configuration configuration;
     double time = 0.0;   // any unit
     double error = 0.0;  // of a kind that adds up: relMSE, squared RMSE
+    // Whether it can't be told from the default's: then the models take it for the same.
+    bool timeTie = false;
+    bool errorTie = false;
 };
 
 // The Pareto front: indices of those to which no other is as good or better in both and better in one, from

@@ -14,6 +14,7 @@
 #include "cli/validation_messages.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
+#include "spirv/compiler.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -106,7 +107,7 @@ private:
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayQuery = (tracers & package::kTracerRayQuery) != 0;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
-        facts.positionFetch = bed_.positionFetch();
+        facts.positionFetch = bed_.positionFetch() && supportsPositionFetch();
         const ReferenceOptions options{arguments_.referenceError,
                                        static_cast<std::uint32_t>(arguments_.referenceSamples)};
         Result<Reference> reference = makeReference(console_, bed_, facts, options, store_);
@@ -159,7 +160,8 @@ private:
             if (point.kind != PointKind::Package) {
                 const double error = errorOf(point, report_.metric).median;
                 const bool isRoot = report_.metric == ErrorMetric::Rmse;
-                all.push_back({point.configuration, timeRatio(point).median, isRoot ? error * error : error});
+                all.push_back({point.configuration, timeRatio(point).median, isRoot ? error * error : error,
+                               isTimeTie(point), isErrorTie(point)});
             }
         };
         add(base_);

@@ -18,7 +18,7 @@ constexpr double kReferenceError = 0.005;
 constexpr double kQuickReferenceError = 0.02;
 constexpr std::int64_t kReferenceSamples = 16384;
 constexpr std::int64_t kQuickReferenceSamples = 512;
-constexpr const char* kQuickSize = "96x54";
+constexpr const char* kQuickSize = "80x45";
 
 // The option as it would be given again, a name and its value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words) {

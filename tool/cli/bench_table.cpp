@@ -19,6 +19,9 @@ std::string timeText(const BenchReport& report, std::size_t point) {
 }
 
 std::string ratioText(const BenchPoint& point) {
+    if (point.kind == PointKind::Default) {
+        return "1";
+    }
     const Interval ratio = timeRatio(point);
     return isTimeTie(point) ? fmt::format("{:.2f} tie", ratio.median) : fmt::format("{:.2f}", ratio.median);
 }
@@ -36,9 +39,9 @@ std::string changeText(const BenchReport& report, std::size_t index) {
     return point.sameImage ? "same picture" : isErrorTie(point) ? "tie" : "";
 }
 
-std::vector<std::string> rowOf(const BenchReport& report, std::size_t index) {
+std::vector<std::string> rowOf(const BenchReport& report, std::size_t index, const std::string& name) {
     const BenchPoint& point = report.points[index];
-    return {point.name, timeText(report, index), ratioText(point), errorText(report, point),
+    return {name, timeText(report, index), ratioText(point), errorText(report, point),
             changeText(report, index)};
 }
 
@@ -50,18 +53,28 @@ std::string pointsTable(const BenchReport& report) {
     Rows rows = headed(report);
     for (std::size_t i = 0; i < report.points.size(); ++i) {
         if (report.points[i].kind != PointKind::Pair && report.points[i].kind != PointKind::Search) {
-            rows.push_back(rowOf(report, i));
+            rows.push_back(rowOf(report, i, report.points[i].name));
         }
     }
     return formatTable(rows);
 }
 
 std::string frontTable(const BenchReport& report) {
+    // Names of many settings stand below, where they widen no column.
+    constexpr std::size_t kLongest = 40;
     Rows rows = headed(report);
+    std::string names;
+    char letter = 'A';
     for (const std::size_t i : report.front) {
-        rows.push_back(rowOf(report, i));
+        const std::string& name = report.points[i].name;
+        if (name.size() <= kLongest) {
+            rows.push_back(rowOf(report, i, name));
+            continue;
+        }
+        names += fmt::format("  {}: {}\n", letter, name);
+        rows.push_back(rowOf(report, i, std::string(1, letter++)));
     }
-    return formatTable(rows);
+    return formatTable(rows) + names;
 }
 
 // A line for each reason, with the settings that it keeps from being tried.
