@@ -134,6 +134,8 @@ class Chart(Page):
         expected = [point["id"] for point in REPORT["points"] if point["settings"].get("spp") == "16"]
         self.assertEqual(len(self.browser.all("g.point")), len(expected))
         self.assertIn(f"{len(expected)} of", self.text("#shown"))
+        rows = self.browser.all("#points-table tbody tr")
+        self.assertEqual({int(row.get_attribute("data-id")) for row in rows}, set(expected))
         self.browser.one("#clear-filter").click()
         self.assertEqual(len(self.browser.all("g.point")), len(REPORT["points"]))
 

@@ -8,8 +8,10 @@ function main() {
     onChange(["selected", "pointed"], markPoints);
     onChange(["selected", "pointed", "metric"], showDetail);
     onChange(["metric"], showSettingsTable);
+    onChange(["metric", "filter", "kind"], showPointsTable);
     drawChart();
     showDetail();
+    showPointsTable();
     showPasses();
     showSettingsTable();
     showImages();

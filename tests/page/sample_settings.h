@@ -1,0 +1,32 @@
+// The settings of the reports of sample_report.h.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace glint::testing {
+
+// What a value of a setting does to time and to error, as factors.
+struct Value {
+    const char* name;
+    double time;
+    double error;
+    const char* skipped = nullptr;
+};
+struct Setting {
+    const char* name;
+    const char* stage;
+    bool approximates;
+    const char* what;
+    std::size_t defaultValue;
+    std::vector<Value> values;
+};
+
+const std::vector<Setting>& sampleSettings();
+
+// As the report lists them, with one more that has a single value.
+nlohmann::ordered_json sampleSettingsJson();
+
+}  // namespace glint::testing
