@@ -82,8 +82,7 @@ Steps stepsOf(std::span<const Setting> settings, std::span<const Rated> measured
     for (const Rated& point : measured) {
         if (point.configuration.size() == 1) {
             const auto& [name, value] = *point.configuration.begin();
-            steps[name].push_back({value, point.timeTie ? 1.0 : point.time / base.time,
-                                   point.errorTie ? 0.0 : point.error - base.error});
+            steps[name].push_back({value, point.time / base.time, point.error - base.error});
         }
     }
     return steps;
@@ -221,6 +220,15 @@ std::vector<Configuration> pairs(std::span<const Setting> settings, const Config
     return all;
 }
 
+std::vector<Rated> withTiesSettled(std::span<const Rated> points) {
+    std::vector<Rated> settled(points.begin(), points.end());
+    for (Rated& point : settled) {
+        point.time = point.timeTie ? points.front().time : point.time;
+        point.error = point.errorTie ? points.front().error : point.error;
+    }
+    return settled;
+}
+
 std::vector<std::size_t> paretoFront(std::span<const Rated> points) {
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -237,7 +245,8 @@ std::vector<std::size_t> paretoFront(std::span<const Rated> points) {
 }
 
 std::vector<Configuration> proposals(std::span<const Setting> settings, const Configuration& base,
-                                     std::span<const Rated> measured, std::size_t count) {
+                                     std::span<const Rated> points, std::size_t count) {
+    const std::vector<Rated> measured = withTiesSettled(points);
     const Steps steps = stepsOf(settings, measured);
     std::vector<Rated> candidates = neighbours(settings, base, steps, measured);
     for (const Rated& way : fastestWays(settings, measured)) {

@@ -23,10 +23,14 @@ struct Rated {
     Configuration configuration;
     double time = 0.0;   // any unit
     double error = 0.0;  // of a kind that adds up: relMSE, squared RMSE
-    // Whether it can't be told from the default's: then the models take it for the same.
+    // Whether it can't be told from the default's.
     bool timeTie = false;
     bool errorTie = false;
 };
+
+// With the time and the error of the first, the default, where a point is tied with it: else noise would
+// decide which of the same things is better.
+std::vector<Rated> withTiesSettled(std::span<const Rated> points);
 
 // The Pareto front: indices of those to which no other is as good or better in both and better in one, from
 // the fastest; of equal ones the first.

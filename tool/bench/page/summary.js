@@ -76,7 +76,7 @@ function adviceSentences() {
     const goal = limits.length > 0 ? `For ${limits.join(" and ")}` : "Advice";
     const point = pointById.get(advice.point);
     const file = point && advice.file ? ` The settings are in ${advice.file}.` : "";
-    return [`${goal}: ${point ? point.name : "no point fits"}. ${advice.why ?? ""}${file}`];
+    return [`${goal}: ${advice.why ?? (point ? point.name : "nothing fits")}${file}`];
 }
 
 function strategySentences() {
@@ -87,5 +87,5 @@ function strategySentences() {
     }
     const verdict = fastest.length === 1 ? `The fastest strategy is ${fastest[0]}`
         : `The fastest strategies, a tie, are ${sentenceList(fastest)}`;
-    return [`${verdict}${strategies.tracer ? `, traced by ${strategies.tracer}` : ""}. ${(strategies.why ?? []).join(" ")}`];
+    return [`${verdict}${strategies.tracer ? `, traced by ${strategies.tracer}` : ""}. Below stands why.`];
 }
