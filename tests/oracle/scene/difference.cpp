@@ -49,46 +49,58 @@ std::optional<Cause> changeBeside(const SceneRenderer& renderer, const View& vie
     return cause;
 }
 
-// Whether a picture agrees with some truth.
-bool agrees(const Vec3& device, const std::vector<Vec3>& truths) {
+// Whether a picture agrees with some truth, within a relative error.
+bool agrees(const Vec3& device, const std::vector<Vec3>& truths, double within) {
     return std::ranges::any_of(truths,
-                               [&](const Vec3& truth) { return relativeError(device, truth) <= kDiffers; });
+                               [&](const Vec3& truth) { return relativeError(device, truth) <= within; });
 }
 
-Cause causeOf(const SceneRenderer& renderer, const View& view, const Evidence& evidence,
-              const DifferentPixel& pixel, const Path& path, const Vec3& variance) {
-    const Vec3 device(pixel.device[0], pixel.device[1], pixel.device[2]);
-    std::vector<Vec3> truths{pixel.truth};
+// Decoding, filtering or chance, if one of the truths that they make is what the device shows.
+std::optional<Cause> causeInDevice(const CameraLight& exact, const View& view, const Evidence& evidence,
+                                   const DifferentPixel& pixel) {
+    std::vector<Vec3> truths{exact.mean};
+    std::vector<Vec3> outcomes = exact.outcomes;
     if (evidence.decoding != nullptr) {
-        truths.push_back(evidence.decoding->radiance(view.ray(pixel.x + 0.5, pixel.y + 0.5)).mean);
-        if (agrees(device, truths)) {
-            return Cause::Decoding;
-        }
+        Path path;
+        const CameraLight decoded =
+            evidence.decoding->radiance(view.ray(pixel.x + 0.5, pixel.y + 0.5), &path);
+        truths.push_back(decoded.mean);
+        outcomes.insert(outcomes.end(), decoded.outcomes.begin(), decoded.outcomes.end());
     }
-    if (evidence.filtered != nullptr) {
-        const auto& other =
-            evidence.filtered->pixels[static_cast<std::size_t>(pixel.y) * view.width() + pixel.x];
-        if (agrees({other[0], other[1], other[2]}, truths)) {
-            return Cause::Filtering;
-        }
+    // A choice explains nine tenths of the error at least: what it brings is magnified, with its own error.
+    const double chosen = std::max(kDiffers, 0.1 * pixel.relative);
+    const Vec3 device(pixel.device[0], pixel.device[1], pixel.device[2]);
+    if (agrees(device, truths, kDiffers)) {
+        return Cause::Decoding;
     }
-    // Of a standard deviation a hundredth: rare choices are far off.
-    const Vec3 error = glm::abs(device - pixel.truth);
-    if (glm::any(glm::greaterThan(variance, 1e-4 * error * error)) &&
-        !glm::all(glm::equal(variance, Vec3(0.0)))) {
+    if (agrees(device, outcomes, chosen)) {
         return Cause::Chance;
     }
-    if (const std::optional<Cause> change = changeBeside(renderer, view, pixel, path)) {
-        return *change;
+    if (evidence.filtered != nullptr) {
+        const auto& found =
+            evidence.filtered->pixels[static_cast<std::size_t>(pixel.y) * view.width() + pixel.x];
+        const Vec3 filtered(found[0], found[1], found[2]);
+        if (agrees(filtered, truths, kDiffers)) {
+            return Cause::Filtering;
+        }
+        if (agrees(filtered, outcomes, chosen)) {
+            return Cause::Chance;
+        }
     }
-    return path.grazing ? Cause::Terminator : Cause::Other;
+    return std::nullopt;
 }
 
 void explain(const SceneRenderer& renderer, const View& view, const Evidence& evidence,
              DifferentPixel& pixel) {
     Path path;
-    const CameraLight centre = renderer.radiance(view.ray(pixel.x + 0.5, pixel.y + 0.5), &path);
-    pixel.cause = causeOf(renderer, view, evidence, pixel, path, centre.variance);
+    const CameraLight exact = renderer.radiance(view.ray(pixel.x + 0.5, pixel.y + 0.5), &path);
+    pixel.cause = causeInDevice(exact, view, evidence, pixel);
+    if (!pixel.cause) {
+        pixel.cause = changeBeside(renderer, view, pixel, path);
+    }
+    if (!pixel.cause) {
+        pixel.cause = path.grazing ? Cause::Terminator : Cause::Other;
+    }
     pixel.material = path.triangles.front() == Path::kNothing
                          ? "sky"
                          : renderer.scene().materials[static_cast<std::size_t>(path.materials.front())].name;

@@ -21,7 +21,7 @@ inline constexpr double kDiffers = 1e-3;
 enum class Cause : std::uint8_t {
     Decoding,    // the device decodes sRGB texels so
     Filtering,   // and filters textures in less than single precision
-    Chance,      // it chose one of several lights or mirrors
+    Chance,      // it chose one of several lights or mirrors: it shows what one of the choices gives
     Edge,        // another surface within 1/128 of a pixel: the rasteriser rounds to half of that
     ShadowEdge,  // likewise, another light reaches it
     MirrorEdge,  // likewise, a mirror shows another surface

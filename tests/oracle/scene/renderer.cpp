@@ -14,6 +14,10 @@ double luminanceOf(const Vec3& color) {
     return glm::dot(color, Vec3(0.2126, 0.7152, 0.0722));
 }
 
+CameraLight certainly(const Vec3& light) {
+    return {light, Vec3(0.0), {light}};
+}
+
 void note(Path* path, const std::optional<SurfacePoint>& point) {
     if (path != nullptr) {
         path->triangles.push_back(point ? point->triangle : Path::kNothing);
@@ -61,73 +65,88 @@ CameraLight SceneRenderer::seenInMirror(const Ray& ray, Path* path) const {
     const std::optional<SurfacePoint> point = geometry_.closest(ray);
     note(path, point);
     if (!point) {
-        return {settings_.sky(ray.direction), Vec3(0.0)};
+        return certainly(settings_.sky(ray.direction));
     }
     const LitSurface surface(textures_, *point, ray.direction, -1.0);
     if (surface.unlit()) {
-        return {surface.baseColor(), Vec3(0.0)};
+        return certainly(surface.baseColor());
     }
-    Vec3 sum(0.0);
+    const Vec3 certain = surface.emission() + surface.ambient(settings_.sky);
     double total = 0.0;
     const std::vector<Direct> lights = directLights(surface, point->position, path);
     for (const Direct& light : lights) {
         total += luminanceOf(light.unshadowed);
     }
+    if (lights.empty()) {
+        return certainly(certain);
+    }
+    CameraLight result{certain, Vec3(0.0)};
     Vec3 square(0.0);
     for (const Direct& light : lights) {
-        if (light.visible) {
-            sum += light.unshadowed;
-            square += light.unshadowed * light.unshadowed * (total / luminanceOf(light.unshadowed));
+        const Vec3 reaching = light.visible ? light.unshadowed : Vec3(0.0);
+        const double chance = luminanceOf(light.unshadowed) / total;
+        result.mean += reaching;
+        square += reaching * reaching / chance;
+        if (path != nullptr) {
+            result.outcomes.push_back(certain + reaching / chance);
         }
     }
-    return {surface.emission() + surface.ambient(settings_.sky) + sum,
-            glm::max(square - sum * sum, Vec3(0.0))};
+    const Vec3 sum = result.mean - certain;
+    result.variance = glm::max(square - sum * sum, Vec3(0.0));
+    return result;
 }
 
 CameraLight SceneRenderer::radiance(const Ray& ray, Path* path) const {
     const std::optional<SurfacePoint> point = geometry_.closest(ray);
     note(path, point);
     if (!point) {
-        return {settings_.sky(ray.direction), Vec3(0.0)};
+        return certainly(settings_.sky(ray.direction));
     }
     const LitSurface surface(textures_, *point, ray.direction, settings_.mirrorRoughness);
     if (path != nullptr) {
         path->grazing = glm::dot(surface.normal(), -ray.direction) < kGrazing;
     }
     if (surface.unlit()) {
-        return {surface.baseColor(), Vec3(0.0)};
+        return certainly(surface.baseColor());
     }
     Vec3 certain = surface.emission() + surface.ambient(settings_.sky);
     for (const Direct& light : directLights(surface, point->position, path)) {
         certain += light.visible ? light.unshadowed : Vec3(0.0);
     }
-    const CameraLight mirrored = reflected(surface.mirrors(), point->position, path);
-    return {certain + mirrored.mean, mirrored.variance};
+    CameraLight result = reflected(surface.mirrors(), point->position, path);
+    result.mean += certain;
+    for (Vec3& outcome : result.outcomes) {
+        outcome += certain;
+    }
+    return result;
 }
 
 CameraLight SceneRenderer::reflected(const std::vector<Mirror>& mirrors, const Vec3& position,
                                      Path* path) const {
     // Cosine of the angle within which one ray serves coat and base.
     constexpr double kTogether = 0.99996;
-    Vec3 sum(0.0);
-    Vec3 square(0.0);  // of a ray for each
     Vec3 weights(0.0);
-    double luminances = 0.0;
     bool together = true;
     for (const Mirror& mirror : mirrors) {
         weights += mirror.weight;
-        luminances += luminanceOf(mirror.weight);
         together = together && glm::dot(mirror.direction, mirrors.front().direction) > kTogether;
     }
-    Vec3 variance(0.0);
+    CameraLight result;
+    Vec3 square(0.0);  // of a ray for each
     for (const Mirror& mirror : mirrors) {
         const CameraLight seen = seenInMirror({position, mirror.direction}, path);
-        const double chance = luminanceOf(mirror.weight) / luminances;
-        sum += mirror.weight * seen.mean;
+        const double chance = luminanceOf(mirror.weight) / luminanceOf(weights);
+        result.mean += mirror.weight * seen.mean;
         square += mirror.weight * mirror.weight * (seen.variance + seen.mean * seen.mean) / chance;
-        variance = glm::max(variance, weights * weights * seen.variance);
+        result.variance = glm::max(result.variance, weights * weights * seen.variance);
+        for (const Vec3& outcome : seen.outcomes) {
+            result.outcomes.push_back((together ? weights : mirror.weight / chance) * outcome);
+        }
     }
-    return {sum, together ? variance : glm::max(square - sum * sum, Vec3(0.0))};
+    if (!together) {
+        result.variance = glm::max(square - result.mean * result.mean, Vec3(0.0));
+    }
+    return result;
 }
 
 }  // namespace glint::oracle

@@ -22,6 +22,8 @@ struct CameraLight {
     // Of a renderer that chooses between coat and base by what either brings, and one light at what a mirror
     // shows, by what each would bring without shadows.
     Vec3 variance{0.0};
+    // What it shows for each choice; filled where a path is asked for.
+    std::vector<Vec3> outcomes{};
 };
 
 // What decided the light of a ray.
