@@ -36,7 +36,7 @@ for name in features/{ClearCoatTest/ClearCoatTest.gltf,SpecularTest/SpecularTest
     features/DiffuseTransmissionTest-rebuilt/DiffuseTransmissionTest-rebuilt.gltf \
     features/TransmissionRoughnessTest/TransmissionRoughnessTest.glb features/dispersion-test/dispersion-test.glb \
     large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb large/2CylinderEngine/2CylinderEngine.glb \
-    large/ReciprocatingSaw/ReciprocatingSaw.glb large/VC/VC.glb; do
+    large/ReciprocatingSaw/ReciprocatingSaw.glb; do
     if [[ -f $models/$name ]]; then
         scenes+=("$models/$name")
     else
@@ -63,14 +63,14 @@ for scene in "${scenes[@]}"; do
     out=$work/$name
     render "$scene" -o "$out-centre.exr"
     in_floats render "$scene" -o "$out-floats.exr"
-    render "$scene" -o "$out-mean.exr" --spp "$samples"
+    in_floats render "$scene" -o "$out-mean.exr" --spp "$samples"
     oracle "$scene" --against "$out-centre.exr" --filtered "$out-floats.exr" --json "$out-centre.json" \
         -o "$out-truth.png" --diff "$out-centre.png"
     oracle "$scene" --against "$out-floats.exr" --device-texels --json "$out-floats.json"
     oracle "$scene" --against "$out-mean.exr" --spp 1024 --device-spp "$samples" --json "$out-mean.json" \
         --diff "$out-mean.png"
-    oracle "$scene" --against "$out-mean.exr" --spp "$samples" --device-points --device-spp "$samples" \
-        --json "$out-points.json"
+    oracle "$scene" --against "$out-mean.exr" --spp "$samples" --device-points --device-texels \
+        --device-spp "$samples" --json "$out-points.json"
     echo "$name" >> "$work/names"
     echo "oracle_scenes.sh: $name done" >&2
 done

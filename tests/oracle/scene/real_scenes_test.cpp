@@ -171,8 +171,8 @@ TEST(RealScenes, SeeWhatIsOff) {
 }
 
 // For GoogleTest's messages.
-void PrintTo(const RealScene& scene, std::ostream* out) {
-    *out << scene.name;
+std::ostream& operator<<(std::ostream& out, const RealScene& scene) {
+    return out << scene.name;
 }
 
 std::string testName(const ::testing::TestParamInfo<RealScene>& scene) {
