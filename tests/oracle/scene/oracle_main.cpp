@@ -151,7 +151,7 @@ int parseAndRun(int argc, char** argv) {
         "glint_oracle"};
     Settings settings;
     app.add_option("SCENE", settings.choice.path, "the scene, .gltf or .glb");
-    app.add_option("--size", settings.size, "WxH, pixels")->capture_default_str();
+    app.add_option("--size", settings.size, "WxH, pixels, 1 to 4096 each way")->capture_default_str();
     app.add_option("--spp", settings.samples,
                    "rays a pixel: 1, through its centre; more, in 4 repeats of strata, at least as many")
         ->check(CLI::Range(1U, 1U << 20U))
@@ -187,7 +187,11 @@ int parseAndRun(int argc, char** argv) {
     app.add_option("--write-texels", settings.writeTexels,
                    "write that scene into this folder, and do nothing else");
     app.add_option("--list", settings.list, "print that many of the worst pixels")->capture_default_str();
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     if (settings.choice.path.empty() == settings.writeTexels.empty()) {
         std::fputs("glint_oracle: give a SCENE, or --write-texels\n", stderr);
         return 2;
