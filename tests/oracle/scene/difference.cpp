@@ -55,9 +55,12 @@ bool agrees(const Vec3& device, const std::vector<Vec3>& truths, double within) 
                                [&](const Vec3& truth) { return relativeError(device, truth) <= within; });
 }
 
-// Decoding, filtering or chance, if one of the truths that they make is what the device shows.
+// Decoding, chance or filtering, if one of the truths that they make is what the device shows, but for a
+// tenth of the error: what they bring may be magnified, with its own error.
 std::optional<Cause> causeInDevice(const CameraLight& exact, const View& view, const Evidence& evidence,
                                    const DifferentPixel& pixel) {
+    const double within = std::max(kDiffers, 0.1 * pixel.relative);
+    const bool chooses = exact.outcomes.size() > 1;
     std::vector<Vec3> truths{exact.mean};
     std::vector<Vec3> outcomes = exact.outcomes;
     if (evidence.decoding != nullptr) {
@@ -67,23 +70,21 @@ std::optional<Cause> causeInDevice(const CameraLight& exact, const View& view, c
         truths.push_back(decoded.mean);
         outcomes.insert(outcomes.end(), decoded.outcomes.begin(), decoded.outcomes.end());
     }
-    // A choice explains nine tenths of the error at least: what it brings is magnified, with its own error.
-    const double chosen = std::max(kDiffers, 0.1 * pixel.relative);
     const Vec3 device(pixel.device[0], pixel.device[1], pixel.device[2]);
-    if (agrees(device, truths, kDiffers)) {
+    if (agrees(device, truths, within)) {
         return Cause::Decoding;
     }
-    if (agrees(device, outcomes, chosen)) {
+    if (chooses && agrees(device, outcomes, within)) {
         return Cause::Chance;
     }
     if (evidence.filtered != nullptr) {
         const auto& found =
             evidence.filtered->pixels[static_cast<std::size_t>(pixel.y) * view.width() + pixel.x];
         const Vec3 filtered(found[0], found[1], found[2]);
-        if (agrees(filtered, truths, kDiffers)) {
+        if (agrees(filtered, truths, within)) {
             return Cause::Filtering;
         }
-        if (agrees(filtered, outcomes, chosen)) {
+        if (chooses && agrees(filtered, outcomes, within)) {
             return Cause::Chance;
         }
     }
@@ -118,10 +119,28 @@ double quantile(const std::vector<double>& sorted, double share) {
 }  // namespace
 
 std::string_view nameOf(Cause cause) {
-    constexpr std::array<std::string_view, kCauses> kNames{"decoding", "filtering",   "chance",
-                                                           "edge",     "shadow edge", "edge in a mirror",
-                                                           "steep",    "terminator",  "other"};
-    return kNames.at(static_cast<std::size_t>(cause));
+    switch (cause) {
+        case Cause::Decoding:
+            return "decoding";
+        case Cause::Chance:
+            return "chance";
+        case Cause::Filtering:
+            return "filtering";
+        case Cause::Edge:
+            return "edge";
+        case Cause::ShadowEdge:
+            return "shadow edge";
+        case Cause::MirrorEdge:
+            return "edge in a mirror";
+        case Cause::Steep:
+            return "steep";
+        case Cause::Terminator:
+            return "terminator";
+        case Cause::Other:
+        case Cause::Count:
+            break;
+    }
+    return "other";
 }
 
 std::size_t Difference::count(Cause cause) const {

@@ -20,8 +20,8 @@ inline constexpr double kDiffers = 1e-3;
 // Why a pixel differs, the first that applies.
 enum class Cause : std::uint8_t {
     Decoding,    // the device decodes sRGB texels so
-    Filtering,   // and filters textures in less than single precision
     Chance,      // it chose one of several lights or mirrors: it shows what one of the choices gives
+    Filtering,   // it filters textures in less than single precision
     Edge,        // another surface within 1/128 of a pixel: the rasteriser rounds to half of that
     ShadowEdge,  // likewise, another light reaches it
     MirrorEdge,  // likewise, a mirror shows another surface

@@ -25,7 +25,7 @@ glm::dmat4 toMatrix(const Matrix4& m) {
     return matrix;
 }
 
-// Weights of a triangle's corners.
+// Of a triangle's corners, by their weights.
 template <class Value>
 auto mixed(const std::vector<Value>& values, const std::array<std::uint32_t, 3>& corners,
            const Vec3& weights) {

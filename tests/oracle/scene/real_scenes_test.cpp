@@ -98,7 +98,7 @@ const SrgbTable& sharedTexels() {
     return table;
 }
 
-// Direct3D 11.3, section 3.2.3.7, allows half a step of the 8-bit code, Vulkan states no bound.
+// Nearer to their own number than to any other: encoded again they are what they were.
 TEST(RealScenes, TheDeviceDecodesTexelsWithinHalfAStep) {
     for (std::size_t i = 0; i < sharedTexels().size(); ++i) {
         EXPECT_NEAR(255.0 * linearToSrgb(static_cast<float>(sharedTexels()[i])), static_cast<double>(i), 0.5);
