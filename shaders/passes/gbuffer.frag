@@ -20,9 +20,15 @@ void main() {
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
             TextureRecord record = material.textures[kTextureBaseColor];
             // The draw has one material: the indices are uniform.
+#if GLINT_TEXTURE_LOD_CONES
             alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
                              texCoord)
                          .a;
+#else
+            alpha *= textureLod(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
+                                texCoord, 0.0)
+                         .a;
+#endif
         }
         if (alpha < material.alphaCutoff) {
             discard;

@@ -12,6 +12,12 @@
 
 namespace glint::oracle {
 
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+#else
+using QueryContext = RTCIntersectContext;
+#endif
+
 struct Triangles::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
@@ -23,28 +29,6 @@ struct Triangles::Embree {
     }
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;
-
-    RTCRayHit nearestFrom(const Vec3& origin, const Vec3& direction, float nearest) const {
-        RTCRayHit query{};
-        query.ray.org_x = static_cast<float>(origin.x);
-        query.ray.org_y = static_cast<float>(origin.y);
-        query.ray.org_z = static_cast<float>(origin.z);
-        query.ray.dir_x = static_cast<float>(direction.x);
-        query.ray.dir_y = static_cast<float>(direction.y);
-        query.ray.dir_z = static_cast<float>(direction.z);
-        query.ray.tnear = nearest;
-        query.ray.tfar = std::numeric_limits<float>::infinity();
-        query.ray.mask = 0xFFFFFFFFU;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(scene, &query);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene, &context, &query);
-#endif
-        return query;
-    }
 };
 
 namespace {
@@ -64,10 +48,44 @@ TriangleHit planeHit(const Triangle& triangle, const Vec3& origin, const Vec3& d
     return hit;
 }
 
-bool showsBack(const Triangle& triangle, const Vec3& direction) {
-    const Vec3 front = glm::cross(triangle.positions[1] - triangle.positions[0],
-                                  triangle.positions[2] - triangle.positions[0]);
-    return glm::dot(front, direction) > 0.0;
+// What Embree hands on to the filter: the context comes first, so that a pointer to it is one to this.
+struct Query {
+    QueryContext context;
+    const Triangles& triangles;
+    const Vec3& origin;
+    const Vec3& direction;
+    double nearest;
+    double farthest;
+    const Accepts& accepts;
+};
+
+TriangleHit hitOf(const Query& query, std::uint32_t index) {
+    TriangleHit hit = planeHit(query.triangles.at(index), query.origin, query.direction);
+    hit.triangle = index;
+    return hit;
+}
+
+// Leaves out what the ray starts on, what is too far, and what is not there. Embree goes on behind it, to
+// what stands in the same place first.
+void filter(const RTCFilterFunctionNArguments* arguments) {
+    const Query& query = *reinterpret_cast<const Query*>(arguments->context);
+    const TriangleHit hit = hitOf(query, RTCHitN_primID(arguments->hit, arguments->N, 0));
+    if (!(hit.distance > query.nearest && hit.distance < query.farthest && query.accepts(hit))) {
+        arguments->valid[0] = 0;
+    }
+}
+
+RTCRay rayOf(const Query& query) {
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(query.origin.x);
+    ray.org_y = static_cast<float>(query.origin.y);
+    ray.org_z = static_cast<float>(query.origin.z);
+    ray.dir_x = static_cast<float>(query.direction.x);
+    ray.dir_y = static_cast<float>(query.direction.y);
+    ray.dir_z = static_cast<float>(query.direction.z);
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = 0xFFFFFFFFU;
+    return ray;
 }
 
 }  // namespace
@@ -91,6 +109,8 @@ Triangles::Triangles(std::vector<Triangle> triangles)
                 *indices++ = corner++;
             }
         }
+        rtcSetGeometryIntersectFilterFunction(geometry, filter);
+        rtcSetGeometryOccludedFilterFunction(geometry, filter);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(embree_->scene, geometry);
         rtcReleaseGeometry(geometry);
@@ -105,27 +125,62 @@ Triangles::Triangles(std::vector<Triangle> triangles)
 
 Triangles::~Triangles() = default;
 
+bool Triangles::showsBack(std::uint32_t index, const Vec3& direction) const {
+    const Triangle& triangle = triangles_[index];
+    const Vec3 front = glm::cross(triangle.positions[1] - triangle.positions[0],
+                                  triangle.positions[2] - triangle.positions[0]);
+    return glm::dot(front, direction) > 0.0;
+}
+
 bool Triangles::closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
                         bool culled, TriangleHit& hit) const {
-    float start = 0.0F;
-    while (true) {
-        const RTCRayHit found = embree_->nearestFrom(origin, direction, start);
-        if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-            return false;
-        }
-        const Triangle& triangle = triangles_[found.hit.primID];
-        hit = planeHit(triangle, origin, direction);
-        hit.triangle = found.hit.primID;
-        if (hit.distance >= farthest) {
-            return false;
-        }
-        const bool there = !culled || triangle.doubleSided || !showsBack(triangle, direction);
-        if (hit.distance > nearest && there) {
-            return true;
-        }
-        // The surface that the ray starts on, or one that it does not see: on from behind it.
-        start = std::nextafter(found.ray.tfar, std::numeric_limits<float>::infinity());
+    return closest(
+        origin, direction, nearest, farthest,
+        [&](const TriangleHit& found) {
+            return !culled || at(found.triangle).doubleSided || !showsBack(found.triangle, direction);
+        },
+        hit);
+}
+
+bool Triangles::closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
+                        const Accepts& accepts, TriangleHit& hit) const {
+    Query query{{}, *this, origin, direction, nearest, farthest, accepts};
+    RTCRayHit found{};
+    found.ray = rayOf(query);
+    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    rtcIntersect1(embree_->scene, &found, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    rtcIntersect1(embree_->scene, &query.context, &found);
+#endif
+    if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return false;
     }
+    hit = hitOf(query, found.hit.primID);
+    return true;
+}
+
+bool Triangles::blocked(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
+                        const Accepts& accepts) const {
+    Query query{{}, *this, origin, direction, nearest, farthest, accepts};
+    RTCRay ray = rayOf(query);
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query.context;
+    rtcOccluded1(embree_->scene, &ray, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    rtcOccluded1(embree_->scene, &query.context, &ray);
+#endif
+    // Embree marks a ray that is blocked so.
+    return ray.tfar < 0.0F;
 }
 
 }  // namespace glint::oracle

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct TriangleHit {
     double v = 0.0;
 };
 
+// Whether a triangle is there where a ray meets it.
+using Accepts = std::function<bool(const TriangleHit&)>;
+
 // Embree's rays and triangles are of single precision (with RTC_SCENE_FLAG_ROBUST, which leaves no gaps
 // between triangles); they say which triangle is hit. Where is then worked out in double precision on the
 // triangle itself. A ray that passes an edge within single precision, 1e-7 of the coordinates, may be given
@@ -43,6 +47,14 @@ public:
     // The nearest hit in (nearest, farthest); `culled`: back faces of single-sided triangles are not there.
     bool closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest, bool culled,
                  TriangleHit& hit) const;
+    // The same of those that are accepted.
+    bool closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
+                 const Accepts& accepts, TriangleHit& hit) const;
+    // Whether any is in (nearest, farthest) and accepted.
+    bool blocked(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
+                 const Accepts& accepts) const;
+    // From behind, by the winding.
+    bool showsBack(std::uint32_t index, const Vec3& direction) const;
 
 private:
     struct Embree;

@@ -21,10 +21,25 @@ View::View(const Camera& camera, std::uint32_t width, std::uint32_t height)
     right_ *= half * width / height;
 }
 
+View::View(const Ray& middle, const Vec3& right, const Vec3& up, bool parallel, double near,
+           std::uint32_t width, std::uint32_t height)
+    : origin_(middle.origin),
+      right_(right),
+      up_(up),
+      forward_(middle.direction),
+      parallel_(parallel),
+      near_(near),
+      width_(width),
+      height_(height) {}
+
 Ray View::ray(double x, double y) const {
     const double across = 2.0 * x / width_ - 1.0;
     const double upwards = 1.0 - 2.0 * y / height_;
-    return {origin_, glm::normalize(forward_ + across * right_ + upwards * up_)};
+    if (parallel_) {
+        return {origin_ + across * right_ + upwards * up_ + near_ * forward_, forward_};
+    }
+    const Vec3 through = forward_ + across * right_ + upwards * up_;
+    return {origin_ + near_ * through, glm::normalize(through)};
 }
 
 }  // namespace glint::oracle

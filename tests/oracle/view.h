@@ -8,11 +8,15 @@
 
 namespace glint::oracle {
 
-// A perspective camera: glTF 2.0, 3.10.3. The vertical field of view is the camera's, the width follows the
-// image.
+// glTF 2.0, 3.10.3. A perspective camera's vertical field of view is its own, the width
+// follows the image.
 class View {
 public:
     View(const Camera& camera, std::uint32_t width, std::uint32_t height);
+    // Rays start at `near`, metres along the view. `right` and `up`: from the middle of the image to its
+    // edges, on the plane at distance 1 or, if rays are parallel, as they are.
+    View(const Ray& middle, const Vec3& right, const Vec3& up, bool parallel, double near,
+         std::uint32_t width, std::uint32_t height);
 
     // Through a place of the image in pixels from the top left corner.
     Ray ray(double x, double y) const;
@@ -28,6 +32,8 @@ private:
     Vec3 right_;  // on the plane at distance 1, from the middle to the right edge
     Vec3 up_;
     Vec3 forward_;
+    bool parallel_ = false;
+    double near_ = 0.0;
     std::uint32_t width_;
     std::uint32_t height_;
 };

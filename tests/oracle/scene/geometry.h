@@ -1,0 +1,64 @@
+// Triangles of a scene with all that materials read of them, in double precision.
+#pragma once
+
+#include "gltf/scene.h"
+#include "oracle/triangles.h"
+#include "oracle/world.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace glint::oracle {
+
+// Where a ray meets a surface. Attributes are mixed as the file gives them and taken into the world then.
+struct SurfacePoint {
+    double distance = 0.0;
+    Vec3 position{0.0};
+    Vec3 geometricNormal{0.0};  // unit, out of the front
+    Vec3 normal{0.0};           // unit, interpolated, out of the front
+    bool front = true;          // the ray came from the front
+    std::optional<Vec3> tangent;
+    double handedness = 1.0;  // of the tangent's frame
+    std::array<std::optional<Vec2>, 2> texCoords;
+    std::array<Vec3, 2> edges{};                         // from the first corner to the second and the third
+    std::array<std::array<Vec2, 2>, 2> texCoordEdges{};  // by UV set
+    glm::dvec4 color{1.0};                               // COLOR_0
+    double scale = 1.0;  // metres in one of the mesh, root mean square over its axes
+    int material = 0;
+    std::uint32_t triangle = 0;
+};
+
+// Whether a surface is there at a point: alpha masks.
+using PointIsThere = std::function<bool(const SurfacePoint&)>;
+
+class SceneGeometry {
+public:
+    // Meshes of all nodes in their rest pose, without skins and morph targets. The scene must outlive it.
+    // `isThere` is asked of materials that are masked.
+    SceneGeometry(const Scene& scene, PointIsThere isThere);
+    ~SceneGeometry();
+    SceneGeometry(const SceneGeometry&) = delete;
+    SceneGeometry& operator=(const SceneGeometry&) = delete;
+
+    // The nearest surface that is there, without the backs of what is single-sided. What a ray meets within
+    // 1e-9 of the scene's size is the surface that it starts on.
+    std::optional<SurfacePoint> closest(const Ray& ray) const;
+    // Whether nothing that is there, front or back, stands nearer than `distance`.
+    bool visible(const Ray& ray, double distance) const;
+    std::size_t triangleCount() const;
+
+private:
+    struct Source;  // of a triangle
+    SurfacePoint pointOf(const TriangleHit& hit, const Ray& ray) const;
+    bool isThereAt(const TriangleHit& hit, const Ray& ray) const;
+
+    const Scene& scene_;
+    PointIsThere isThere_;
+    std::vector<Source> sources_;
+    std::unique_ptr<Triangles> triangles_;
+    double nearest_ = 0.0;
+};
+
+}  // namespace glint::oracle

@@ -1,0 +1,43 @@
+// What materials read at a point: factors times textures, and the frames of normal textures.
+#pragma once
+
+#include "gltf/scene.h"
+#include "oracle/scene/texture.h"
+
+namespace glint::oracle {
+
+class Inputs {
+public:
+    // Both must outlive it.
+    Inputs(const Textures& textures, const SurfacePoint& point);
+
+    // White where there is nothing to read.
+    glm::dvec4 texel(TextureSlot slot) const;
+    bool reads(TextureSlot slot) const;
+    glm::dvec4 baseColor() const;
+    // Columns: tangent, bitangent and normal. Of TANGENT, or of the directions in which the UVs of the slot
+    // grow; the bitangent points up in the image (glTF 2.0, 3.7.2.1).
+    glm::dmat3 tangentFrame(TextureSlot slot) const;
+    // Towards the front, as a normal texture has it.
+    Vec3 mappedNormal(TextureSlot slot, double scale) const;
+    // Whether there is a direction of anisotropy.
+    bool hasDirection() const;
+    // glTF 2.0, 3.9.4, alphaMode MASK.
+    bool passesAlphaMask() const;
+
+    const Material& material() const {
+        return material_;
+    }
+    const SurfacePoint& point() const {
+        return point_;
+    }
+
+private:
+    std::size_t derivedSet(TextureSlot slot) const;
+
+    const Textures& textures_;
+    const SurfacePoint& point_;
+    const Material& material_;
+};
+
+}  // namespace glint::oracle

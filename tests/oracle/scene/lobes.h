@@ -1,0 +1,266 @@
+// A material's parameters at a point as the BSDF of the shaders takes them. Of internal linkage, as that is
+// (numerics/glsl.h): surface.cpp alone includes this.
+#pragma once
+
+#include "numerics/shaders_double.h"
+#include "oracle/scene/inputs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint::oracle {
+namespace {
+
+Vec3 toVec(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+double squared(double x) {
+    return x * x;
+}
+
+double largestOf(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+struct Base {
+    Vec3 color{0.0};
+    double metallic = 0.0;
+    double roughness = 1.0;
+};
+
+// glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular; KHR_materials_pbrSpecularGlossiness.
+Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
+    const Material& material = inputs.material();
+    const glm::dvec4 texel = inputs.texel(TextureSlot::MetallicRoughness);
+    Base base;
+    base.color = Vec3(inputs.baseColor());
+    if (material.specularGlossiness.given) {
+        bsdf.f0 = toVec(material.specularGlossiness.specularFactor) * Vec3(texel);
+        bsdf.f90 = 1.0;
+        bsdf.diffuse = base.color * (1.0 - largestOf(bsdf.f0));
+        base.roughness = 1.0 - material.specularGlossiness.glossinessFactor * texel.a;
+        return base;
+    }
+    base.metallic = material.metallicFactor * texel.b;
+    base.roughness = material.roughnessFactor * texel.g;
+    const double ior = material.ior.ior;
+    const double specular = material.specular.factor * inputs.texel(TextureSlot::Specular).a;
+    const Vec3 tint = toVec(material.specular.colorFactor) * Vec3(inputs.texel(TextureSlot::SpecularColor));
+    const Vec3 dielectric = glm::min(squared((ior - 1.0) / (ior + 1.0)) * tint, Vec3(1.0)) * specular;
+    bsdf.diffuse = base.color * (1.0 - base.metallic);
+    bsdf.f0 = glm::mix(dielectric, base.color, base.metallic);
+    bsdf.f90 = glm::mix(specular, 1.0, base.metallic);
+    return base;
+}
+
+// A surface's BSDF, prepared for a view, and what goes with it.
+struct SurfaceLobes {
+    Inputs inputs;
+    double side;  // 1: seen from the front
+    Vec3 view;    // world
+    double mirrorLimit;
+    glm::dmat3 frame{1.0};
+    glsl::Bsdf bsdf{};
+    glsl::uint lobes = 0;
+    double roughness = 1.0;
+    Vec3 emission{0.0};
+    double occlusion = 1.0;
+
+    SurfaceLobes(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
+                 double mirrorRoughness)
+        : inputs(textures, point),
+          side(point.front ? 1.0 : -1.0),
+          view(-incoming),
+          mirrorLimit(mirrorRoughness) {
+        if (inputs.material().unlit) {
+            return;
+        }
+        const Material& material = inputs.material();
+        const Vec3 normal = side * inputs.mappedNormal(TextureSlot::Normal, material.normalScale);
+        frame = frameAbout(normal);
+        bsdf.eta = Vec3(1.0);
+        bsdf.clearcoatAlpha = 1.0;
+        bsdf.clearcoatNormal = Vec3(0.0, 0.0, 1.0);
+        bsdf.sheenAlpha = 1.0;
+        const Base base = applyBase(inputs, bsdf);
+        bsdf.alpha = glm::dvec2(std::max(squared(base.roughness), glsl::kMinAlpha));
+        roughness = base.roughness;
+        if (!material.specularGlossiness.given) {
+            applyAnisotropy();
+            applyIridescence();
+            applyTransmission(base);
+            applySheen();
+            applyClearcoat();
+        }
+        glsl::prepareBsdf(bsdf, features(), toFrame(view));
+        emission = toVec(material.emissiveFactor) * Vec3(inputs.texel(TextureSlot::Emissive)) *
+                   static_cast<double>(material.emissiveStrength) * (1.0 - coat());
+        if (inputs.reads(TextureSlot::Occlusion)) {
+            occlusion = 1.0 + material.occlusionStrength * (inputs.texel(TextureSlot::Occlusion).r - 1.0);
+        }
+    }
+
+    glsl::Features features() const {
+        return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+    }
+    bool has(glsl::uint lobe) const {
+        return (lobes & lobe) != 0U;
+    }
+    Vec3 toFrame(const Vec3& direction) const {
+        return glm::transpose(frame) * direction;
+    }
+
+    // KHR_materials_anisotropy.
+    void applyAnisotropy() {
+        const Anisotropy& given = inputs.material().anisotropy;
+        if (given.strength == 0.0F || !inputs.hasDirection()) {
+            return;
+        }
+        lobes |= GLINT_ANISOTROPY;
+        double angle = given.rotation;
+        double strength = given.strength;
+        Vec2 direction(std::cos(angle), std::sin(angle));
+        TextureSlot slot = TextureSlot::Normal;
+        if (inputs.reads(TextureSlot::Anisotropy)) {
+            slot = TextureSlot::Anisotropy;
+            const glm::dvec4 texel = inputs.texel(slot);
+            const Vec2 turned = Vec2(texel) * 2.0 - 1.0;
+            direction = {direction.x * turned.x - direction.y * turned.y,
+                         direction.y * turned.x + direction.x * turned.y};
+            strength *= texel.b;
+        }
+        const glm::dmat3 tangents = inputs.tangentFrame(slot);
+        const Vec3 n = frame[2];
+        Vec3 along = tangents[0] * direction.x + tangents[1] * direction.y;
+        along -= n * glm::dot(n, along);
+        if (along != Vec3(0.0)) {
+            const Vec3 tangent = glm::normalize(along);
+            frame = {tangent, glm::cross(n, tangent), n};
+        }
+        bsdf.alpha.x = glm::mix(bsdf.alpha.y, 1.0, squared(strength));
+        roughness = std::sqrt(bsdf.alpha.x);
+    }
+
+    // KHR_materials_iridescence, at the angle of the view.
+    void applyIridescence() {
+        const Iridescence& given = inputs.material().iridescence;
+        if (given.factor == 0.0F || given.ior == 1.0F) {
+            return;
+        }
+        const double factor = given.factor * inputs.texel(TextureSlot::Iridescence).r;
+        double thickness = given.thicknessMaximum;
+        if (inputs.reads(TextureSlot::IridescenceThickness)) {
+            thickness = glm::mix<double>(given.thicknessMinimum, given.thicknessMaximum,
+                                         inputs.texel(TextureSlot::IridescenceThickness).g);
+        }
+        const double cosine = std::clamp(toFrame(view).z, 0.0, 1.0);
+        const Vec3 film = glsl::iridescentFresnel(cosine, bsdf.f0, given.ior, thickness);
+        bsdf.f0 =
+            glm::mix(bsdf.f0, glm::min(glsl::schlickF0(film, bsdf.f90, cosine), Vec3(bsdf.f90)), factor);
+    }
+
+    // KHR_materials_transmission, _diffuse_transmission, _volume, _dispersion.
+    void applyTransmission(const Base& base) {
+        const Material& material = inputs.material();
+        const double dielectric = 1.0 - base.metallic;
+        double passed = 0.0;
+        if (material.transmission.factor > 0.0F) {
+            lobes |= GLINT_TRANSMISSION;
+            passed = material.transmission.factor * inputs.texel(TextureSlot::Transmission).r;
+            bsdf.transmitted = base.color * (dielectric * passed);
+            bsdf.diffuse *= 1.0 - passed;
+        }
+        if (material.diffuseTransmission.factor > 0.0F) {
+            lobes |= GLINT_DIFFUSE_TRANSMISSION;
+            const double share =
+                material.diffuseTransmission.factor * inputs.texel(TextureSlot::DiffuseTransmission).a;
+            bsdf.diffuseTransmitted = toVec(material.diffuseTransmission.colorFactor) *
+                                      Vec3(inputs.texel(TextureSlot::DiffuseTransmissionColor)) *
+                                      (share * (1.0 - passed) * dielectric);
+            bsdf.diffuse *= 1.0 - share;
+        }
+        if (has(GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION) && material.volume.thicknessFactor > 0.0F) {
+            applyVolume();
+        }
+    }
+
+    void applyVolume() {
+        const Material& material = inputs.material();
+        lobes |= GLINT_VOLUME;
+        Vec3 iors(material.ior.ior);
+        if (material.dispersion.dispersion > 0.0F && has(GLINT_TRANSMISSION)) {
+            // KHR_materials_dispersion, "Implementation".
+            lobes |= GLINT_DISPERSION;
+            const double spread = (material.ior.ior - 1.0) * 0.025 * material.dispersion.dispersion;
+            iors += Vec3(-spread, 0.0, spread);
+        }
+        bsdf.eta = side < 0.0 ? 1.0 / iors : iors;
+        if (side < 0.0) {
+            bsdf.diffuse = Vec3(0.0);
+            bsdf.diffuseTransmitted = Vec3(0.0);
+        }
+        if (material.volume.attenuationDistance > 0.0F) {
+            const double thickness = material.volume.thicknessFactor *
+                                     inputs.texel(TextureSlot::Thickness).g * inputs.point().scale;
+            const Vec3 transmittance = glm::pow(toVec(material.volume.attenuationColor),
+                                                Vec3(thickness / material.volume.attenuationDistance));
+            bsdf.transmitted *= transmittance;
+            bsdf.diffuseTransmitted *= transmittance;
+        }
+    }
+
+    void applySheen() {
+        const Sheen& given = inputs.material().sheen;
+        if (toVec(given.colorFactor) == Vec3(0.0)) {
+            return;
+        }
+        lobes |= GLINT_SHEEN;
+        bsdf.sheenColor = toVec(given.colorFactor) * Vec3(inputs.texel(TextureSlot::SheenColor));
+        bsdf.sheenAlpha =
+            std::max(squared(given.roughnessFactor * inputs.texel(TextureSlot::SheenRoughness).a),
+                     glsl::kMinSheenAlpha);
+    }
+
+    // KHR_materials_clearcoat: its normals are the mesh's unless it has a texture of its own.
+    void applyClearcoat() {
+        const Clearcoat& given = inputs.material().clearcoat;
+        if (given.factor == 0.0F) {
+            return;
+        }
+        lobes |= GLINT_CLEARCOAT;
+        bsdf.clearcoat = given.factor * inputs.texel(TextureSlot::Clearcoat).r;
+        bsdf.clearcoatAlpha =
+            std::max(squared(given.roughnessFactor * inputs.texel(TextureSlot::ClearcoatRoughness).g),
+                     glsl::kMinAlpha);
+        bsdf.clearcoatNormal =
+            toFrame(side * inputs.mappedNormal(TextureSlot::ClearcoatNormal, given.normalScale));
+    }
+
+    // What the coat reflects at the view.
+    double coat() const {
+        return has(GLINT_CLEARCOAT) ? glsl::clearcoatFresnel(bsdf.clearcoat, glsl::coatViewCosine(bsdf))
+                                    : 0.0;
+    }
+    double baseShare() const {
+        const double share = 1.0 - coat();
+        return has(GLINT_SHEEN) ? share * glsl::belowSheen(bsdf, bsdf.sheenAlbedo) : share;
+    }
+
+    double tracedShare(double lobeRoughness) const {
+        if (lobeRoughness > mirrorLimit || mirrorLimit < 0.0) {
+            return 0.0;
+        }
+        const double fade =
+            mirrorLimit > 0.0
+                ? std::clamp((lobeRoughness - 0.8 * mirrorLimit) / (0.2 * mirrorLimit), 0.0, 0.999)
+                : 0.0;
+        return 1.0 - fade * fade * (3.0 - 2.0 * fade);
+    }
+    double tracedCoat() const {
+        return has(GLINT_CLEARCOAT) ? tracedShare(std::sqrt(bsdf.clearcoatAlpha)) : 0.0;
+    }
+};
+
+}  // namespace
+}  // namespace glint::oracle

@@ -1,0 +1,216 @@
+// glint_oracle: renders a scene in double precision and compares pictures of the device with it.
+#include "base/files.h"
+#include "cli/camera.h"
+#include "gltf/import.h"
+#include "image/compare.h"
+#include "image/exr.h"
+#include "image/image_file.h"
+#include "oracle/scene/difference.h"
+#include "oracle/scene/input.h"
+#include "oracle/scene/report.h"
+#include "oracle/scene/texels.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+namespace {
+
+using namespace glint;
+using namespace glint::oracle;
+
+struct Settings {
+    SceneChoice choice;
+    std::string size = "96x54";
+    std::uint32_t samples = 1;
+    std::uint32_t deviceSamples = 1;
+    double mirrorRoughness = 0.05F;
+    std::string against;
+    std::string picture;
+    std::string difference;
+    std::string json;
+    std::string texels;
+    bool deviceTexels = false;
+    bool devicePoints = false;
+    std::string filtered;
+    std::string writeTexels;
+    std::uint32_t list = 0;
+};
+
+// Repeats of the strata: their spread is the error.
+constexpr int kRepeats = 4;
+
+Strata strataOf(std::uint32_t samples) {
+    return {std::max(static_cast<int>(std::lround(std::ceil(std::sqrt(samples / double{kRepeats})))), 1),
+            kRepeats};
+}
+
+Result<SrgbTable> readTexels(const std::string& path) {
+    const Result<LinearImage> picture = readImage(path);
+    return picture ? texelsOf(*picture, path) : Result<SrgbTable>(picture.error());
+}
+
+Result<LinearImage> readPicture(const std::string& path, const Picture& truth) {
+    Result<LinearImage> picture = readImage(path);
+    if (picture && (picture->width != truth.width || picture->height != truth.height)) {
+        return makeError("image-mismatch", path,
+                         fmt::format("is not of {}x{} pixels", truth.width, truth.height),
+                         "give both the same --size");
+    }
+    return picture;
+}
+
+Result<Difference> compare(const Settings& settings, const OracleInput& input, const SceneRenderer& renderer,
+                           const Picture& truth, const LinearImage& device) {
+    if (settings.samples > 1) {
+        return meanDifference(device, truth, settings.deviceSamples);
+    }
+    std::optional<SceneRenderer> decoding;
+    if (!settings.texels.empty()) {
+        const Result<SrgbTable> table = readTexels(settings.texels);
+        if (!table) {
+            return table.error();
+        }
+        decoding.emplace(input.scene, RendererSettings{defaultSky(), settings.mirrorRoughness, *table});
+    }
+    LinearImage filtered;
+    if (!settings.filtered.empty()) {
+        Result<LinearImage> picture = readPicture(settings.filtered, truth);
+        if (!picture) {
+            return picture.error();
+        }
+        filtered = std::move(*picture);
+    }
+    return centreDifference(device, truth, renderer, input.view,
+                            {decoding ? &*decoding : nullptr, filtered.pixels.empty() ? nullptr : &filtered});
+}
+
+Status run(const Settings& settings) {
+    if (!settings.writeTexels.empty()) {
+        return writeTexelScene(settings.writeTexels);
+    }
+    const Result<ImageSize> size = parseSize(settings.size);
+    if (!size) {
+        return size.error();
+    }
+    Result<OracleInput> input = readOracleInput(settings.choice, size->width, size->height);
+    if (!input) {
+        return input.error();
+    }
+    RendererSettings look{.sky = defaultSky(), .mirrorRoughness = settings.mirrorRoughness};
+    if (settings.deviceTexels) {
+        const Result<SrgbTable> table = readTexels(settings.texels);
+        if (!table) {
+            return table.error();
+        }
+        look.srgb = *table;
+    }
+    const SceneRenderer renderer(input->scene, look);
+    const Picture truth = settings.devicePoints ? samplePicture(renderer, input->view, settings.samples)
+                          : settings.samples == 1
+                              ? centrePicture(renderer, input->view)
+                              : meanPicture(renderer, input->view, strataOf(settings.samples));
+    if (!settings.picture.empty()) {
+        if (Status status = writeImage(settings.picture, toImage(truth), 0.0); !status) {
+            return status;
+        }
+    }
+    if (settings.against.empty()) {
+        return okStatus();
+    }
+    const Result<LinearImage> device = readPicture(settings.against, truth);
+    if (!device) {
+        return device.error();
+    }
+    const Result<Difference> difference = compare(settings, *input, renderer, truth, *device);
+    if (!difference) {
+        return difference.error();
+    }
+    if (!settings.difference.empty()) {
+        if (Status status = writeImage(settings.difference, differenceMap(*device, toImage(truth)));
+            !status) {
+            return status;
+        }
+    }
+    std::fputs(toText(*difference, settings.list).c_str(), stdout);
+    return settings.json.empty()
+               ? okStatus()
+               : writeFile(settings.json, toJson(*difference, settings.samples, settings.deviceSamples));
+}
+
+int parseAndRun(int argc, char** argv) {
+    CLI::App app{
+        "Render a scene in double precision on the CPU: punctual lights with hard shadows, the sky, one "
+        "mirror "
+        "reflection; and compare a picture of glint render with it",
+        "glint_oracle"};
+    Settings settings;
+    app.add_option("SCENE", settings.choice.path, "the scene, .gltf or .glb");
+    app.add_option("--size", settings.size, "WxH, pixels, 1 to 4096 each way")->capture_default_str();
+    app.add_option("--spp", settings.samples,
+                   "rays a pixel: 1, through its centre; more, in 4 repeats of strata, at least as many")
+        ->check(CLI::Range(1U, 1U << 20U))
+        ->capture_default_str();
+    app.add_flag("--device-points", settings.devicePoints, "they lie where samples of glint render do");
+    app.add_option("--camera", settings.choice.camera, "as of glint render");
+    app.add_option("--variant", settings.choice.variant, "as of glint render");
+    app.add_option("--mirror-roughness", settings.mirrorRoughness,
+                   "smoother surfaces are mirrors; glint render needs the same, and --max-roughness, too")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("-o,--output", settings.picture, "write the truth: .exr, or .png at exposure 0");
+    app.add_option(
+        "--against", settings.against,
+        "compare this picture, .exr: of glint render --effects shadow,reflection --texture-lod mip0 "
+        "--alpha tested");
+    app.add_option("--device-spp", settings.deviceSamples, "samples that picture was made with")
+        ->check(CLI::Range(1U, 1U << 16U))
+        ->capture_default_str();
+    app.add_option("--diff", settings.difference, "write where they differ, .png");
+    app.add_option("--json", settings.json, "write the comparison");
+    app.add_option(
+        "--texels", settings.texels,
+        "how the device decodes sRGB texels, as a cause of differences: its picture, .exr, of the scene of "
+        "--write-texels at 16x16");
+    app.add_flag("--device-texels", settings.deviceTexels,
+                 "the truth itself decodes texels as the device does")
+        ->needs("--texels");
+    app.add_option(
+        "--filtered", settings.filtered,
+        "the picture of --against by a device that filters textures in single precision, as a cause: of "
+        "llvmpipe under GALLIVM_PERF=no_aos_sampling");
+    app.add_option("--write-texels", settings.writeTexels,
+                   "write that scene into this folder, and do nothing else");
+    app.add_option("--list", settings.list, "print that many of the worst pixels")->capture_default_str();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    if (settings.choice.path.empty() == settings.writeTexels.empty()) {
+        std::fputs("glint_oracle: give a SCENE, or --write-texels\n", stderr);
+        return 2;
+    }
+    const Status status = run(settings);
+    if (!status) {
+        std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
+        return 1;
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return parseAndRun(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "glint_oracle: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,65 @@
+// The light of whole scenes: punctual lights with hard shadows, emission, the sky, and one mirror reflection.
+#pragma once
+
+#include "oracle/scene/geometry.h"
+#include "oracle/scene/surface.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace glint::oracle {
+
+struct RendererSettings {
+    GradientSky sky;
+    // Smoother surfaces reflect, and no others.
+    double mirrorRoughness = 0.05;
+    SrgbTable srgb = exactSrgb();
+};
+
+// Of one ray of the camera.
+struct CameraLight {
+    Vec3 mean{0.0};
+    // Of a renderer that chooses between coat and base by what either brings, and one light at what a mirror
+    // shows, by what each would bring without shadows.
+    Vec3 variance{0.0};
+    // What it shows for each choice; filled where a path is asked for.
+    std::vector<Vec3> outcomes{};
+};
+
+// What decided the light of a ray.
+struct Path {
+    std::vector<std::uint32_t> triangles;  // met, in order: the camera's, then those in mirrors; kNothing
+    std::vector<bool> visible;             // a light each that could reach a surface
+    std::vector<int> materials;            // of the triangles
+    bool grazing = false;                  // light or view within 1e-3 of a tangent plane
+
+    static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
+};
+
+class SceneRenderer {
+public:
+    // Everything in the scene as it is; lights that a viewer adds are among the scene's. It must outlive
+    // this.
+    SceneRenderer(const Scene& scene, const RendererSettings& settings);
+
+    const Scene& scene() const {
+        return textures_.scene();
+    }
+    // `path`, if there is one, is appended to. May be called by several threads.
+    CameraLight radiance(const Ray& ray, Path* path = nullptr) const;
+    const SceneGeometry& geometry() const {
+        return geometry_;
+    }
+
+private:
+    struct Direct;  // of one light
+    std::vector<Direct> directLights(const LitSurface& surface, const Vec3& position, Path* path) const;
+    CameraLight reflected(const std::vector<Mirror>& mirrors, const Vec3& position, Path* path) const;
+    CameraLight seenInMirror(const Ray& ray, Path* path) const;
+
+    Textures textures_;
+    RendererSettings settings_;
+    SceneGeometry geometry_;
+};
+
+}  // namespace glint::oracle

@@ -1,0 +1,94 @@
+// Textures of the oracle against values by hand.
+#include "oracle/scene/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace glint;
+using namespace glint::oracle;
+
+// Greys 0, 51, 102 and 255: 0, 0.2, 0.4 and 1; the second row is below the first.
+Scene sceneOf(const Sampler& sampler) {
+    Scene scene;
+    Image image;
+    image.width = 2;
+    image.height = 2;
+    image.pixels = {0, 0, 0, 0, 51, 51, 51, 51, 102, 102, 102, 102, 255, 255, 255, 255};
+    scene.images = {image};
+    scene.samplers = {sampler};
+    scene.textures = {{0, 0}};
+    scene.materials.resize(1);
+    scene.materials[0].texture(TextureSlot::Normal).texture = 0;
+    scene.materials[0].texture(TextureSlot::BaseColor).texture = 0;
+    return scene;
+}
+
+double sampleAt(const Scene& scene, double u, double v, TextureSlot slot = TextureSlot::Normal) {
+    SurfacePoint point;
+    point.texCoords[0] = Vec2(u, v);
+    return Textures(scene, exactSrgb()).sample(scene.materials[0], slot, point).value().r;
+}
+
+TEST(OracleTexture, MixesTheFourNearestTexels) {
+    const Scene scene = sceneOf({});
+    EXPECT_DOUBLE_EQ(sampleAt(scene, 0.25, 0.25), 0.0);
+    EXPECT_DOUBLE_EQ(sampleAt(scene, 0.75, 0.25), 0.2);
+    EXPECT_DOUBLE_EQ(sampleAt(scene, 0.25, 0.75), 0.4);
+    EXPECT_NEAR(sampleAt(scene, 0.5, 0.5), 0.4, 1e-15);
+    EXPECT_NEAR(sampleAt(scene, 0.35, 0.25), 0.04, 1e-15);
+}
+
+TEST(OracleTexture, DecodesColoursBeforeItMixesThem) {
+    const Scene scene = sceneOf({});
+    const double fifth = std::pow((0.2 + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(sampleAt(scene, 0.5, 0.25, TextureSlot::BaseColor), 0.5 * fifth, 1e-15);
+}
+
+TEST(OracleTexture, WrapsAsItsSamplerSays) {
+    EXPECT_NEAR(sampleAt(sceneOf({}), 1.0, 0.25), 0.1, 1e-15);
+    EXPECT_NEAR(sampleAt(sceneOf({}), -7.25, 2.25), 0.2, 1e-15);
+    Sampler clamped;
+    clamped.wrapU = Wrap::ClampToEdge;
+    EXPECT_NEAR(sampleAt(sceneOf(clamped), 1.0, 0.25), 0.2, 1e-15);
+    EXPECT_NEAR(sampleAt(sceneOf(clamped), -3.0, 0.25), 0.0, 1e-15);
+    Sampler mirrored;
+    mirrored.wrapU = Wrap::MirroredRepeat;
+    EXPECT_NEAR(sampleAt(sceneOf(mirrored), 1.0, 0.25), 0.2, 1e-15);
+    EXPECT_NEAR(sampleAt(sceneOf(mirrored), 1.75, 0.25), 0.0, 1e-15);
+    EXPECT_NEAR(sampleAt(sceneOf(mirrored), -0.25, 0.25), 0.0, 1e-15);
+    Sampler nearest;
+    nearest.magnification = Filter::Nearest;
+    EXPECT_DOUBLE_EQ(sampleAt(sceneOf(nearest), 0.501, 0.499), 0.2);
+}
+
+// KHR_texture_transform, "Overview": offset, rotation and scale as in its example of a quarter turn, which
+// shows the image turned counter-clockwise.
+TEST(OracleTexture, TransformsCoordinates) {
+    Scene scene = sceneOf({});
+    TextureTransform& transform = scene.materials[0].texture(TextureSlot::Normal).transform;
+    transform.offset = {0.0F, 1.0F};
+    transform.rotation = static_cast<float>(kPi / 2.0);
+    // The corner (0, 0) of the surface, top left, shows the image's bottom left; (1, 0) its top left.
+    SurfacePoint point;
+    point.texCoords[0] = Vec2(0.0, 0.0);
+    const TextureInfo& info = scene.materials[0].texture(TextureSlot::Normal);
+    EXPECT_NEAR(glm::length(*textureCoordinates(info, point) - Vec2(0.0, 1.0)), 0.0, 1e-6);
+    point.texCoords[0] = Vec2(1.0, 0.0);
+    EXPECT_NEAR(glm::length(*textureCoordinates(info, point) - Vec2(0.0, 0.0)), 0.0, 1e-6);
+    transform.scale = {0.5F, 2.0F};
+    point.texCoords[0] = Vec2(0.0, 0.5);
+    EXPECT_NEAR(glm::length(*textureCoordinates(info, point) - Vec2(1.0, 1.0)), 0.0, 1e-6);
+}
+
+TEST(OracleTexture, ReadsNothingWithoutCoordinates) {
+    Scene scene = sceneOf({});
+    scene.materials[0].texture(TextureSlot::Normal).texCoord = 1;
+    SurfacePoint point;
+    point.texCoords[0] = Vec2(0.0);
+    EXPECT_FALSE(Textures(scene, exactSrgb()).sample(scene.materials[0], TextureSlot::Normal, point));
+}
+
+}  // namespace
