@@ -14,7 +14,6 @@
 #include "cli/validation_messages.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
-#include "spirv/compiler.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -107,7 +106,7 @@ private:
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayQuery = (tracers & package::kTracerRayQuery) != 0;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
-        facts.positionFetch = bed_.positionFetch() && supportsPositionFetch();
+        facts.positionFetch = bed_.positionFetch();
         const ReferenceOptions options{arguments_.referenceError,
                                        static_cast<std::uint32_t>(arguments_.referenceSamples)};
         Result<Reference> reference = makeReference(console_, bed_, facts, options, store_);
@@ -173,10 +172,10 @@ private:
         report_.points.insert(report_.points.begin(), std::move(base_));
         std::vector<bench::Rated> points;
         for (const BenchPoint& point : report_.points) {
-            points.push_back(
-                {point.configuration, timeRatio(point).median, errorOf(point, report_.metric).median});
+            points.push_back({point.configuration, timeRatio(point).median,
+                              errorOf(point, report_.metric).median, isTimeTie(point), isErrorTie(point)});
         }
-        report_.front = bench::paretoFront(points);
+        report_.front = bench::paretoFront(bench::withTiesSettled(points));
         report_.strategies = compareStrategies(report_.points, report_.base.find("strategy")->second);
         if (arguments_.budgetMs > 0.0 || arguments_.maxError > 0.0) {
             report_.advice = advise();

@@ -41,7 +41,7 @@ void addWords(const CLI::Option& option, std::vector<std::string>& words) {
 bool isView(const CLI::Option& option) {
     constexpr std::string_view kViews[] = {"--size",
                                            "--camera",
-                                           "--exposure",
+
                                            "--sun",
                                            "--environment",
                                            "--environment-rotation",

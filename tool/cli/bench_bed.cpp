@@ -7,6 +7,7 @@
 #include "cli/render_input.h"
 #include "cli/render_setup.h"
 #include "gltf/scene_list.h"
+#include "spirv/compiler.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,9 +23,10 @@ Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, bo
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
-    options.positionFetch = true;
+    // Where shaders can be compiled for it, and the layers know it.
+    options.positionFetch = arguments.tracing.positionFetch || supportsPositionFetch();
     Result<std::unique_ptr<Context>> context = Context::createHeadless(options);
-    positionFetch = context.ok();
+    positionFetch = context.ok() && options.positionFetch;
     if (context || arguments.tracing.positionFetch) {
         return context;
     }

@@ -91,7 +91,7 @@ public:
     const std::string& cameraName() const {
         return cameraName_;
     }
-    // What device and driver have.
+    // Whether device and compiler have it.
     bool positionFetch() const {
         return positionFetch_;
     }

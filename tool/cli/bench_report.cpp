@@ -261,6 +261,9 @@ std::string shellWords(const std::vector<std::string>& words) {
 std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
     std::vector<std::string> words{"glint", "render", report.scene.file, "-o", "picture.png"};
     words.insert(words.end(), report.viewWords.begin(), report.viewWords.end());
+    // The picture of the first round, to the bit.
+    words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
+                               fmt::format("{:.9g}", report.reference.exposure)});
     bench::Configuration given;
     const bench::Configuration defaults = configurationOf(usualArguments());
     for (const auto& [name, value] : defaults) {

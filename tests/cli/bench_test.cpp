@@ -1,0 +1,178 @@
+// glint bench on the tiny scene: its files, that it repeats itself, and what it refuses.
+#include "cli/render_command.h"
+#include "cli/schemas.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class Bench : public RenderCommand {
+protected:
+    Outcome bench(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"bench",  scene_,  "-o",    "out", "--quick",
+                                           "--size", "32x18", "--spp", "2",   "--reference-error",
+                                           "0.1",    "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    static const Json* point(const Json& report, const std::string& name) {
+        for (const Json& candidate : report.at("points")) {
+            if (candidate.at("name") == name) {
+                return &candidate;
+            }
+        }
+        ADD_FAILURE() << "no point " << name;
+        return nullptr;
+    }
+};
+
+TEST_F(Bench, WritesWhatItMeasured) {
+    const Outcome outcome = bench({"--only", "spp,strategy,max-roughness,ssr", "--max-error", "1000"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Json report = outcome.json();
+    expectFits("bench", report);
+    Json file = Json::parse(readText(path("out/bench.json")));
+    file["diagnostics"] = Json::array();
+    expectFits("bench", file);
+    file["diagnostics"] = report.at("diagnostics");
+    EXPECT_EQ(file, report);
+
+    const Json& points = report.at("points");
+    EXPECT_EQ(points[0].at("kind"), "default");
+    for (const Json& one : points) {
+        EXPECT_EQ(one.at("time").at("values").size() % 6, 0U);
+        EXPECT_TRUE(std::filesystem::exists(path("out/" + one.at("image").get<std::string>())));
+        EXPECT_TRUE(std::filesystem::exists(path("out/" + one.at("errorImage").get<std::string>())));
+    }
+    // How hits are shaded changes nothing of the picture; the number of samples does.
+    for (const char* const strategy : {"uber", "sorted-uber", "hit-shaders"}) {
+        const Json* const one = point(report, std::string("strategy ") + strategy);
+        ASSERT_NE(one, nullptr);
+        EXPECT_TRUE(one->at("sameImage").get<bool>()) << strategy;
+        EXPECT_EQ(one->at("error"), points[0].at("error")) << strategy;
+    }
+    ASSERT_NE(point(report, "spp 8"), nullptr);
+    EXPECT_FALSE(point(report, "spp 8")->at("sameImage").get<bool>());
+    EXPECT_LT(point(report, "spp 8")->at("error").at("trimmed").at("median"),
+              point(report, "spp 1")->at("error").at("trimmed").at("median"));
+    EXPECT_EQ(report.at("strategies").at("rows").size(), 4U);
+
+    // The front is in order, and nothing that was measured beats it by more than a tie.
+    double error = 1e300;
+    double time = 0.0;
+    for (const Json& id : report.at("front")) {
+        const Json& one = points[id.get<std::size_t>()];
+        EXPECT_TRUE(one.at("front").get<bool>());
+        EXPECT_GE(one.at("ratio").at("median").get<double>() + (one.at("timeTie") ? 1.0 : 0.0), time);
+        EXPECT_LT(one.at("error").at("trimmed").at("median").get<double>(), error * 1.0001);
+        time = one.at("timeTie") ? 1.0 : one.at("ratio").at("median").get<double>();
+        error = one.at("error").at("trimmed").at("median").get<double>();
+    }
+
+    // The page and the settings.
+    const std::string page = readText(path("out/index.html"));
+    EXPECT_TRUE(has(page, "data:image/png;base64,"));
+    EXPECT_TRUE(has(page, "strategy hit-shaders"));
+    const Json settings = Json::parse(readText(path("out/settings.json")));
+    EXPECT_EQ(settings.at("format"), "glint-settings");
+    const Outcome again = render("advised.exr", {"--settings", "out/settings.json", "--json"});
+    ASSERT_EQ(again.exit, 0) << again.err;
+    const Json advice = report.at("advice");
+    EXPECT_EQ(std::to_string(again.json().at("spp").get<int>()), advice.at("render").at("spp"));
+    EXPECT_EQ(again.json().at("strategy"), advice.at("compile").at("strategy"));
+    EXPECT_EQ(run({"compile", scene_, "-o", "package", "--settings", "out/settings.json"}).exit, 0);
+}
+
+TEST_F(Bench, TellsACommandThatMakesThePicture) {
+    const Json report = bench({"--only", "spp", "--depth", "singles", "--camera", "auto"}).json();
+    const Json* const one = point(report, "spp 4");
+    ASSERT_NE(one, nullptr);
+    const std::string command = one->at("command");
+    ASSERT_TRUE(command.starts_with("glint ")) << command;
+    const Outcome rendered = runProgram({"sh", "-c", commandPath() + command.substr(5)});
+    ASSERT_EQ(rendered.exit, 0) << rendered.err;
+    const std::string image = "out/" + one->at("image").get<std::string>();
+    EXPECT_EQ(readText(path("picture.png")), readText(path(image)));
+}
+
+TEST_F(Bench, RepeatsItsErrorsAndKeepsItsReference) {
+    const std::vector<std::string> options{"--only", "spp", "--depth", "singles", "--cache", "cache"};
+    const Json first = bench(options).json();
+    EXPECT_FALSE(first.at("reference").at("cached").get<bool>());
+    const Json second = bench(options).json();
+    EXPECT_TRUE(second.at("reference").at("cached").get<bool>());
+    EXPECT_EQ(first.at("reference").at("samples"), second.at("reference").at("samples"));
+    ASSERT_EQ(first.at("points").size(), second.at("points").size());
+    for (std::size_t i = 0; i < first.at("points").size(); ++i) {
+        EXPECT_EQ(first.at("points")[i].at("error"), second.at("points")[i].at("error"));
+    }
+    // Another view is another truth.
+    std::vector<std::string> other = options;
+    other.insert(other.end(), {"--sun", "off"});
+    EXPECT_FALSE(bench(other).json().at("reference").at("cached").get<bool>());
+    // One that is asked to be more certain goes on from what is kept.
+    other = options;
+    other[1] = "spp";
+    std::vector<std::string> arguments{"bench",   scene_,
+                                       "-o",      "more",
+                                       "--quick", "--size",
+                                       "32x18",   "--spp",
+                                       "2",       "--reference-error",
+                                       "1e-9",    "--reference-spp",
+                                       "512",     "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Json third = run(arguments).json();
+    EXPECT_TRUE(third.at("reference").at("cached").get<bool>());
+    EXPECT_EQ(third.at("reference").at("samples"), 512);
+    EXPECT_FALSE(third.at("reference").at("reached").get<bool>());
+    EXPECT_EQ(third.at("diagnostics")[0].at("id"), "bench-reference");
+}
+
+TEST_F(Bench, SaysWhereNothingIsWithinABudget) {
+    const Outcome outcome = bench({"--only", "spp", "--depth", "singles", "--budget-ms", "1e-6"});
+    EXPECT_EQ(outcome.exit, 1);
+    const Json report = outcome.json();
+    expectFits("bench", report);
+    EXPECT_TRUE(report.at("advice").at("point").is_null());
+    EXPECT_EQ(report.at("diagnostics").back().at("id"), "bench-advice");
+    EXPECT_TRUE(std::filesystem::exists(path("out/bench.json")));
+    EXPECT_FALSE(std::filesystem::exists(path("out/settings.json")));
+}
+
+TEST_F(Bench, RefusesFoldersThatAreNotItsOwn) {
+    writeText(path("file"), "mine");
+    std::filesystem::create_directories(path("folder"));
+    writeText(path("folder/mine.txt"), "mine");
+    for (const char* const folder : {"file", "folder", "file/below"}) {
+        const Outcome outcome = run({"bench", scene_, "-o", folder});
+        EXPECT_EQ(outcome.exit, 1) << folder;
+        EXPECT_TRUE(has(outcome.err, "[bench-folder]")) << outcome.err;
+    }
+    EXPECT_EQ(filesBelow(path("folder")), std::vector<std::string>{"mine.txt"});
+    EXPECT_EQ(run({"bench", "none.gltf", "-o", "out"}).exit, 1);
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+TEST_F(Bench, RefusesLinesThatMakeNoSense) {
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+             {"--budget-ms", "0"}, {"--candidate", "name"}, {"--only", "sp"}, {"--metric", "psnr"}}) {
+        EXPECT_EQ(bench(more).exit, 2) << more[0];
+    }
+    const Outcome missing = bench({"--only", "spp", "--depth", "singles", "--candidate", "mine=nowhere"});
+    EXPECT_EQ(missing.exit, 0) << missing.err;
+    EXPECT_TRUE(has(missing.err, "[bench-point]")) << missing.err;
+}
+
+TEST_F(Bench, IsCleanUnderValidation) {
+    const Outcome outcome = bench(
+        {"--only", "spp,texture-lod,hit-record,merge", "--depth", "singles", "--rounds", "2", "--validate"});
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+}
+
+}  // namespace
+}  // namespace glint::testing

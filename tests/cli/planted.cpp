@@ -1,0 +1,80 @@
+#include "cli/planted.h"
+
+#include "base/files.h"
+#include "cli/command.h"
+#include "spirv/compiler.h"
+
+#include <glint/package_format.h>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace glint::testing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename T>
+T at(const std::string& bytes, std::size_t offset) {
+    T value{};
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+package::PackageSection sectionOf(const std::string& tables, package::SectionKind kind) {
+    const auto header = at<package::PackageHeader>(tables, 0);
+    for (std::uint32_t i = 0; i < header.sectionCount; ++i) {
+        const auto section =
+            at<package::PackageSection>(tables, sizeof header + i * sizeof(package::PackageSection));
+        if (section.kind == kind) {
+            return section;
+        }
+    }
+    ADD_FAILURE() << "the tables lack a section";
+    return {};
+}
+
+// Length and hash of the file's new bytes, then the hash of the tables.
+std::string withModule(std::string tables, const std::string& file, std::span<const std::uint8_t> spirv) {
+    const package::PackageSection modules = sectionOf(tables, package::SectionKind::Modules);
+    const package::PackageSection strings = sectionOf(tables, package::SectionKind::Strings);
+    for (std::uint64_t i = 0; i < modules.count; ++i) {
+        const std::size_t place = modules.offset + i * modules.elementBytes;
+        auto entry = at<package::ModuleEntry>(tables, place);
+        if (tables.substr(strings.offset + entry.file.offset, entry.file.length) == file) {
+            entry.bytes = spirv.size();
+            entry.hash = hashBytes(spirv);
+            std::memcpy(tables.data() + place, &entry, sizeof entry);
+        }
+    }
+    auto header = at<package::PackageHeader>(tables, 0);
+    header.contentHash = 0;
+    const std::span whole(reinterpret_cast<const std::uint8_t*>(tables.data()), tables.size());
+    const std::span head(reinterpret_cast<const std::uint8_t*>(&header), sizeof header);
+    header.contentHash = hashBytes(whole.subspan(sizeof header), hashBytes(head));
+    std::memcpy(tables.data(), &header, sizeof header);
+    return tables;
+}
+
+}  // namespace
+
+void plant(const fs::path& package, const std::string& source, const std::string& from,
+           const std::string& to) {
+    std::string glsl = readText(package / "glsl" / source);
+    const std::size_t found = glsl.find(from);
+    ASSERT_NE(found, std::string::npos) << source << " lacks " << from;
+    glsl.replace(found, from.size(), to);
+    const auto words = compileShader({source, ShaderStage::Compute, glsl}, {});
+    ASSERT_TRUE(words.ok()) << words.error().message;
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(words->data()),
+                          words->size() * sizeof(std::uint32_t));
+    const std::string file = fs::path(source).stem().string() + ".spv";
+    writeText(package / file, std::string(bytes.begin(), bytes.end()));
+    writeText(package / "tables.bin", withModule(readText(package / "tables.bin"), file, bytes));
+}
+
+}  // namespace glint::testing
