@@ -1,8 +1,12 @@
 // That glint bench can fail: what is wrong with a package shows as an error above its interval, what is slow
 // as time, and what is neither as a tie.
+#include "cli/command.h"
 #include "cli/planted.h"
-#include "cli/render_command.h"
+#include "cli/tiny_scene.h"
+#include "image/image_file.h"
 
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,23 +15,66 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kGallery = GLINT_GALLERY_FOLDER "/gallery.gltf";
+// Nothing else approximates, so that what is planted is all there is besides noise.
+const std::vector<std::string> kExactPackage{"--texture-lod", "mip0", "--alpha", "tested"};
+const std::vector<std::string> kExactFrame{"--max-roughness", "1", "--mirror-roughness", "0"};
 
 class PlantedFaults : public CommandTest {
 protected:
-    // A package of the gallery of its own.
-    void compile(const std::string& name, const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{"compile",    kGallery,     "-o",     name,
+    // The tiny scene with a rough, coated floor that reflects a wall with a checkerboard.
+    void SetUp() override {
+        CommandTest::SetUp();
+        TinyScene options;
+        options.variants = true;
+        const std::filesystem::path file = writeTinyScene(path(""), options);
+        Json gltf = Json::parse(readText(file));
+        // Texture coordinates are the first two of each position.
+        Json& attributes = gltf["meshes"][1]["primitives"][0]["attributes"];
+        Json view = gltf["bufferViews"]
+                        [gltf["accessors"][attributes["POSITION"].get<int>()]["bufferView"].get<int>()];
+        view["byteStride"] = 12;
+        gltf["bufferViews"].push_back(view);
+        gltf["accessors"].push_back({{"bufferView", gltf["bufferViews"].size() - 1},
+                                     {"componentType", 5126},
+                                     {"count", 4},
+                                     {"type", "VEC2"}});
+        attributes["TEXCOORD_0"] = gltf["accessors"].size() - 1;
+        writeCheckerboard();
+        gltf["images"] = {{{"uri", "checkerboard.png"}}};
+        gltf["textures"] = {{{"source", 0}}};
+        gltf["materials"][1].erase("extensions");
+        gltf["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+        gltf["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.3;
+        writeText(file, gltf.dump());
+    }
+
+    void writeCheckerboard() const {
+        constexpr std::uint32_t kSize = 64;
+        DisplayImage image{kSize, kSize, {}};
+        for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+            const bool isLight = (i % kSize < kSize / 2) != (i / kSize < kSize / 2);
+            image.pixels.push_back(isLight ? std::array<std::uint8_t, 3>{250, 250, 250}
+                                           : std::array<std::uint8_t, 3>{20, 20, 20});
+        }
+        const Status written = writeImage(path("checkerboard.png"), image);
+        ASSERT_TRUE(written.ok());
+    }
+
+    // A package of its own.
+    void compile(const std::string& name) const {
+        std::vector<std::string> arguments{"compile",    "scene.gltf", "-o",     name,
                                            "--strategy", "visibility", "--emit", "glsl"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
         const Outcome outcome = run(arguments);
         ASSERT_EQ(outcome.exit, 0) << outcome.err;
     }
     // The points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {
-        std::vector<std::string> arguments{"bench",  kGallery,  "-o",      "out",   "--quick",
-                                           "--size", "48x27",   "--spp",   "4",     "--only",
-                                           "spp",    "--depth", "singles", "--json"};
+        std::vector<std::string> arguments{"bench",  "scene.gltf", "-o",      "out",   "--quick",
+                                           "--size", "64x36",      "--spp",   "16",    "--only",
+                                           "spp",    "--depth",    "singles", "--json"};
+        arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
+        arguments.insert(arguments.end(), kExactFrame.begin(), kExactFrame.end());
         for (const std::string& name : packages) {
             arguments.insert(arguments.end(), {"--candidate", name + "=" + name});
         }
@@ -49,9 +96,9 @@ TEST_F(PlantedFaults, ShowAsErrorsOrAsTime) {
     for (const char* const name : {"sound", "level", "lobe", "sampling", "slow"}) {
         ASSERT_NO_FATAL_FAILURE(compile(name));
     }
-    // Textures four levels too coarse, no clearcoat, reflections that keep to the middle of their lobe.
-    plant(path("level"), "lighting.comp", "gradients.xy, gradients.zw",
-          "gradients.xy * 16.0, gradients.zw * 16.0");
+    // Textures six levels too coarse, no clearcoat, reflections that keep to the middle of their lobe.
+    plant(path("level"), "lighting.comp", "textureLod(GLINT_SAMPLER(record), uv, 0.0)",
+          "textureLod(GLINT_SAMPLER(record), uv, 6.0)");
     plant(path("lobe"), "lighting.comp", "GLINT_MATERIAL(hit).clearcoatFactor",
           "0.0 * GLINT_MATERIAL(hit).clearcoatFactor");
     plant(path("sampling"), "lighting.comp", "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {",
