@@ -184,7 +184,7 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
             missing.emplace_back(kPositionFetchExtension);
         }
         if (options.shaderFloat16 && report.features.vulkan12.shaderFloat16 == VK_FALSE) {
-            missing.emplace_back("shaderFloat16");
+            missing.emplace_back("shaderFloat16, which --precision 16 needs");
         }
         if (missing.empty()) {
             tracers = common;
