@@ -1,25 +1,14 @@
 #include "ladder.h"
 
 #include "evaluate.h"
+#include "kernel_timer.h"
 #include "spirv/statistics.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <cmath>
-#include <random>
 #include <utility>
 
 namespace glint::numerics {
 namespace {
-
-// Elements whose evaluations are timed; they stay in a cache of any device.
-constexpr std::uint32_t kElements = 4096;
-// Enough to fill a GPU; a CPU is full with as many as it has lanes.
-constexpr std::uint32_t kGpuThreads = 1U << 18U;
-constexpr std::uint32_t kCpuThreads = 1U << 12U;
-constexpr std::uint32_t kLeastRepeats = 16;
-constexpr std::uint32_t kMostRepeats = 1U << 16U;
 
 // Of functions without a textbook's form, by their probes.
 constexpr std::string_view kFurther[] = {"GgxDistributionAnisotropic",
@@ -42,15 +31,12 @@ constexpr std::string_view kFurther[] = {"GgxDistributionAnisotropic",
 // A loop of 100,000 samples is no function of shading.
 constexpr std::string_view kLeftOut = "RunningMean";
 
-// What is timed by itself: a rung, or a kernel without the function.
-struct Timed {
+// A rung, or what is around its function.
+struct Climbing {
     std::size_t row = 0;
     RungKind kind = RungKind::Single;
-    bool isBase = false;                    // without the function
-    std::optional<ProbePipeline> pipeline;  // nothing: C++
-    void (*call)(const double*, double*) = nullptr;
-    std::uint32_t repeats = kLeastRepeats;
-    std::vector<double> nanoseconds;  // an evaluation, by round
+    bool isBase = false;  // without the function
+    TimedKernel kernel;
 };
 
 ProbePrecision precisionOf(RungKind kind) {
@@ -78,7 +64,8 @@ Result<std::uint32_t> countInstructions(const ProbePipeline& pipeline) {
 
 class Climber {
 public:
-    Climber(ProbeDevice& device, const LadderOptions& options) : device_(device), options_(options) {}
+    Climber(ProbeDevice& device, const LadderOptions& options)
+        : device_(device), options_(options), timer_(device, options.leastMilliseconds) {}
 
     Result<Ladder> climb();
 
@@ -86,23 +73,15 @@ private:
     Status addRow(const Probe& probe);
     Status addRung(std::size_t row, RungKind kind);
     Status addErrors(LadderRow& row);
-    Status measureRounds();
-    Status calibrate(Timed& timed);
-    Result<double> measureOnce(Timed& timed);
-    Result<double> measureDevice(const Timed& timed, std::uint32_t repeats);
-    double measureHost(const Timed& timed, std::uint32_t repeats);
-    std::uint32_t threads() const {
-        return device_.isCpu() ? kCpuThreads : kGpuThreads;
-    }
     std::vector<double> timesOf(std::size_t row, RungKind kind) const;
-    const Timed* findTimed(std::size_t row, RungKind kind, bool isBase) const;
+    const TimedKernel* findKernel(std::size_t row, RungKind kind, bool isBase) const;
     void summarise(std::size_t row);
 
     ProbeDevice& device_;
     const LadderOptions& options_;
     Ladder ladder_;
-    std::vector<Timed> timed_;
-    std::vector<std::vector<float>> inputs_;  // by row
+    KernelTimer timer_;
+    std::vector<Climbing> climbing_;
 };
 
 Status Climber::addRung(std::size_t row, RungKind kind) {
@@ -115,23 +94,21 @@ Status Climber::addRung(std::size_t row, RungKind kind) {
     }
     // All in half precision has loads and sums of its own; the others share them.
     const RungKind baseKind = kind == RungKind::Half ? RungKind::Half : RungKind::Single;
-    const Timed* base = findTimed(row, baseKind, true);
-    if (base == nullptr) {
+    if (findKernel(row, baseKind, true) == nullptr) {
         Result<ProbePipeline> without =
             device_.compileTimed({}, probe.inputs, probe.outputs, precisionOf(baseKind));
         if (!without) {
             return without.error();
         }
-        timed_.push_back({row, baseKind, true, std::move(*without), nullptr, kLeastRepeats, {}});
-        base = &timed_.back();
+        climbing_.push_back({row, baseKind, true, {row, std::move(*without)}});
     }
     const Result<std::uint32_t> all = countInstructions(*pipeline);
-    const Result<std::uint32_t> around = countInstructions(*base->pipeline);
+    const Result<std::uint32_t> around = countInstructions(*findKernel(row, baseKind, true)->pipeline);
     if (!all || !around) {
         return all ? around.error() : all.error();
     }
     if (kind == RungKind::Mixed &&
-        pipeline->spirv == findTimed(row, RungKind::Single, false)->pipeline->spirv) {
+        pipeline->spirv == findKernel(row, RungKind::Single, false)->pipeline->spirv) {
         return okStatus();  // nothing of it is in 16 bits
     }
     // The base sums up inputs, the kernel outputs.
@@ -141,14 +118,14 @@ Status Climber::addRung(std::size_t row, RungKind kind) {
     rung.kind = kind;
     rung.instructions = static_cast<std::uint32_t>(std::max(cost, 0));
     ladder_.rows[row].rungs.push_back(rung);
-    timed_.push_back({row, kind, false, std::move(*pipeline), nullptr, kLeastRepeats, {}});
+    climbing_.push_back({row, kind, false, {row, std::move(*pipeline)}});
     return okStatus();
 }
 
 Status Climber::addRow(const Probe& probe) {
     const std::size_t row = ladder_.rows.size();
     ladder_.rows.push_back({probe, {}});
-    inputs_.push_back(firstInputs(probe, options_.seed, kElements));
+    timer_.addInputs(firstInputs(probe, options_.seed, KernelTimer::kElements));
     std::vector<RungKind> kinds{RungKind::Single};
     if (!probe.textbook.empty()) {
         kinds.insert(kinds.begin(), RungKind::Textbook);
@@ -167,7 +144,10 @@ Status Climber::addRow(const Probe& probe) {
     Rung twice;
     twice.kind = RungKind::Double;
     ladder_.rows[row].rungs.push_back(twice);
-    timed_.push_back({row, RungKind::Double, false, std::nullopt, found->call, kLeastRepeats, {}});
+    climbing_.push_back({row,
+                         RungKind::Double,
+                         false,
+                         {row, std::nullopt, found->call, static_cast<std::size_t>(probe.inputs)}});
     return addErrors(ladder_.rows[row]);
 }
 
@@ -203,95 +183,19 @@ Status Climber::addErrors(LadderRow& row) {
     return okStatus();
 }
 
-Result<double> Climber::measureDevice(const Timed& timed, std::uint32_t repeats) {
-    device_.setInputs(inputs_[timed.row]);
-    return device_.time(*timed.pipeline, kElements, threads(), repeats);
-}
-
-// Milliseconds of as many passes over all elements.
-double Climber::measureHost(const Timed& timed, std::uint32_t repeats) {
-    const std::size_t width = static_cast<std::size_t>(ladder_.rows[timed.row].probe.inputs);
-    const std::vector<double> inputs(inputs_[timed.row].begin(), inputs_[timed.row].end());
-    std::array<double, kMaxOutputs> outputs{};
-    const auto start = std::chrono::steady_clock::now();
-    for (std::uint32_t repeat = 0; repeat < repeats; ++repeat) {
-        for (std::uint32_t element = 0; element < kElements; ++element) {
-            timed.call(inputs.data() + element * width, outputs.data());
-        }
-    }
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Finds how often to repeat; the first run warms up, too.
-Status Climber::calibrate(Timed& timed) {
-    if (!timed.pipeline) {
-        timed.repeats = 1;
-    }
-    while (timed.repeats < kMostRepeats) {
-        const Result<double> once =
-            timed.pipeline ? measureDevice(timed, timed.repeats) : measureHost(timed, timed.repeats);
-        if (!once) {
-            return once.error();
-        }
-        if (*once >= options_.leastMilliseconds) {
-            break;
-        }
-        timed.repeats *= 2;
-    }
-    return okStatus();
-}
-
-// Nanoseconds of an evaluation.
-Result<double> Climber::measureOnce(Timed& timed) {
-    constexpr double kNanosecondsInOne = 1e6;
-    const Result<double> milliseconds =
-        timed.pipeline ? measureDevice(timed, timed.repeats) : measureHost(timed, timed.repeats);
-    if (!milliseconds) {
-        return milliseconds;
-    }
-    const double evaluations =
-        static_cast<double>(timed.pipeline ? threads() : kElements) * static_cast<double>(timed.repeats);
-    return *milliseconds * kNanosecondsInOne / evaluations;
-}
-
-// Every kernel once a round, in an order that is drawn anew.
-Status Climber::measureRounds() {
-    for (Timed& timed : timed_) {
-        if (Status status = calibrate(timed); !status) {
-            return status;
-        }
-    }
-    std::vector<Timed*> order;
-    for (Timed& timed : timed_) {
-        order.push_back(&timed);
-    }
-    std::mt19937_64 engine(options_.seed);
-    for (int round = 0; round < options_.rounds; ++round) {
-        std::ranges::shuffle(order, engine);
-        for (Timed* timed : order) {
-            const Result<double> time = measureOnce(*timed);
-            if (!time) {
-                return time.error();
-            }
-            timed->nanoseconds.push_back(*time);
-        }
-    }
-    return okStatus();
-}
-
-const Timed* Climber::findTimed(std::size_t row, RungKind kind, bool isBase) const {
-    const auto found = std::ranges::find_if(timed_, [&](const Timed& timed) {
-        return timed.row == row && timed.kind == kind && timed.isBase == isBase;
+const TimedKernel* Climber::findKernel(std::size_t row, RungKind kind, bool isBase) const {
+    const auto found = std::ranges::find_if(climbing_, [&](const Climbing& climbing) {
+        return climbing.row == row && climbing.kind == kind && climbing.isBase == isBase;
     });
-    return found == timed_.end() ? nullptr : &*found;
+    return found == climbing_.end() ? nullptr : &found->kernel;
 }
 
 // By round: what the kernel takes more than one without the function does on the whole. (Less in one round
 // than in another by chance, that one would show in the difference.)
 std::vector<double> Climber::timesOf(std::size_t row, RungKind kind) const {
-    std::vector<double> times = findTimed(row, kind, false)->nanoseconds;
+    std::vector<double> times = findKernel(row, kind, false)->nanoseconds;
     if (kind != RungKind::Double) {
-        const Timed* base = findTimed(row, kind == RungKind::Half ? kind : RungKind::Single, true);
+        const TimedKernel* base = findKernel(row, kind == RungKind::Half ? kind : RungKind::Single, true);
         const double around = spreadOf(base->nanoseconds).median;
         for (double& time : times) {
             time -= around;
@@ -332,7 +236,11 @@ Result<Ladder> Climber::climb() {
             }
         }
     }
-    if (Status status = measureRounds(); !status) {
+    std::vector<TimedKernel*> kernels;
+    for (Climbing& climbing : climbing_) {
+        kernels.push_back(&climbing.kernel);
+    }
+    if (Status status = timer_.measure(kernels, options_.rounds, options_.seed); !status) {
         return status.error();
     }
     for (std::size_t row = 0; row < ladder_.rows.size(); ++row) {
