@@ -17,22 +17,23 @@ float dielectricF0(float ior) {
     return r * r;
 }
 
-// (1 - cosine)⁵, the weight of f90 in Schlick's approximation.
-GLINT_RELAXED float schlickWeight(GLINT_RELAXED float cosine) {
-    GLINT_RELAXED float m = clamp(1.0 - cosine, 0.0, 1.0);
-    GLINT_RELAXED float m2 = m * m;
+// (1 - cosine)⁵, the weight of f90 in Schlick's approximation. So steep that it is computed in 32 bits whatever the
+// precision of the result; schlickRest() likewise.
+GLINT_RELAXED float schlickWeight(float cosine) {
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    float m2 = m * m;
     return m2 * m2 * m;
 }
 
 // 1 - schlickWeight() as a polynomial, whose terms do not cancel near grazing as the difference does.
-GLINT_RELAXED float schlickRest(GLINT_RELAXED float cosine) {
-    GLINT_RELAXED float c = clamp(cosine, 0.0, 1.0);
+GLINT_RELAXED float schlickRest(float cosine) {
+    float c = clamp(cosine, 0.0, 1.0);
     return c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
 }
 
 // Schlick's approximation: glTF 2.0, appendix B.3.4; f90 from KHR_materials_specular. cosine is that of view and half
 // vector, in [0, 1].
-GLINT_RELAXED vec3 fresnelSchlick(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, GLINT_RELAXED float cosine) {
+GLINT_RELAXED vec3 fresnelSchlick(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float cosine) {
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
@@ -49,7 +50,7 @@ GLINT_RELAXED vec3 fresnelInterface(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f
 
 // What a surface lets through of the channel that it reflects most: 1 - largest(fresnelSchlick()), with its digits
 // where little passes. f90 is at least f0.
-GLINT_RELAXED float schlickPassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, GLINT_RELAXED float cosine) {
+GLINT_RELAXED float schlickPassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float cosine) {
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
 }
 

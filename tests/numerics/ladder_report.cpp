@@ -3,15 +3,11 @@
 #include "report.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace glint::numerics {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string timeText(const Spread& spread) {
     if (spread.low <= 0.0) {
@@ -80,33 +76,6 @@ std::string summary(const Ladder& ladder) {
         counts.faster, counts.slower, counts.ties, counts.unknown);
 }
 
-Json jsonOf(const Spread& spread) {
-    return {{"median", spread.median},
-            {"low", spread.low},
-            {"high", spread.high},
-            {"q1", spread.q1},
-            {"q3", spread.q3}};
-}
-
-Json jsonOf(const RungErrors& errors) {
-    // JSON has no infinity: null.
-    const Json worst = std::isfinite(errors.worst) ? Json(errors.worst) : Json(nullptr);
-    const Json median = std::isfinite(errors.median) ? Json(errors.median) : Json(nullptr);
-    return {{"worst", worst},
-            {"median", median},
-            {"notFinite", errors.notFinite},
-            {"undecided", errors.undecided}};
-}
-
-Json jsonOf(const Rung& rung) {
-    return {{"rung", nameOf(rung.kind)},
-            {"instructions", rung.instructions ? Json(*rung.instructions) : Json(nullptr)},
-            {"nanoseconds", jsonOf(rung.nanoseconds)},
-            {"ratio", rung.ratio ? jsonOf(*rung.ratio) : Json(nullptr)},
-            {"tie", rung.tie},
-            {"error", rung.errors ? jsonOf(*rung.errors) : Json(nullptr)}};
-}
-
 }  // namespace
 
 std::string toText(const Ladder& ladder) {
@@ -124,7 +93,7 @@ std::string toText(const Ladder& ladder) {
 std::string toMarkdown(const Ladder& ladder) {
     std::string text =
         headline(ladder) + " " + summary(ladder) +
-        "\n\n| function | rung | instructions | ns | time to that of the first rung | worst error "
+        "\n\n| function | rung | instructions | ns | time over that of the first rung | worst error "
         "| median error |\n|---|---|---|---|---|---|---|\n";
     std::string last;
     for (const Cells& cells : cellsOf(ladder)) {
@@ -134,24 +103,6 @@ std::string toMarkdown(const Ladder& ladder) {
         last = cells.function;
     }
     return text;
-}
-
-std::string toJson(const Ladder& ladder) {
-    Json json;
-    json["device"] = ladder.device;
-    json["half"] = ladder.hasHalf;
-    json["inputs"] = ladder.options.inputs;
-    json["seed"] = ladder.options.seed;
-    json["rounds"] = ladder.options.rounds;
-    json["functions"] = Json::array();
-    for (const LadderRow& row : ladder.rows) {
-        Json rungs = Json::array();
-        for (const Rung& rung : row.rungs) {
-            rungs.push_back(jsonOf(rung));
-        }
-        json["functions"].push_back({{"name", row.probe.function}, {"rungs", std::move(rungs)}});
-    }
-    return json.dump(2) + "\n";
 }
 
 }  // namespace glint::numerics

@@ -1,4 +1,4 @@
-// The precision ladder as text.
+// The precision ladder as text and as JSON.
 #pragma once
 
 #include "ladder.h"
@@ -11,5 +11,7 @@ namespace glint::numerics {
 std::string toText(const Ladder& ladder);
 std::string toMarkdown(const Ladder& ladder);
 std::string toJson(const Ladder& ladder);
+// What toJson() made, perhaps on another machine. Error "ladder-format".
+Result<Ladder> ladderFromJson(const std::string& text);
 
 }  // namespace glint::numerics

@@ -64,6 +64,17 @@ TEST(Ladder, HasEveryFunctionWithATextbookForm) {
     }
 }
 
+TEST(LadderJson, IsRefusedWhereItIsNone) {
+    for (
+        const char* const text :
+        {"", "[]", "{}", R"({"device": 1})",
+         R"({"device": "", "half": true, "inputs": 1, "seed": 1, "rounds": 1, "functions": [{"name": "none"}]})"}) {
+        const Result<Ladder> ladder = ladderFromJson(text);
+        ASSERT_FALSE(ladder) << text;
+        EXPECT_EQ(ladder.error().id, "ladder-format");
+    }
+}
+
 class LadderOf : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(LadderOf, HasEveryRungWithinItsBounds) {
@@ -106,6 +117,9 @@ TEST_P(LadderOf, HasEveryRungWithinItsBounds) {
     const nlohmann::json json = nlohmann::json::parse(toJson(*ladder));
     EXPECT_EQ(json.at("functions").at(0).at("rungs").size(), row.rungs.size());
     const std::string table = toMarkdown(*ladder);
+    const Result<Ladder> again = ladderFromJson(toJson(*ladder));
+    ASSERT_TRUE(again) << toString(again.error());
+    EXPECT_EQ(toMarkdown(*again), table);
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')), 4 + row.rungs.size()) << table;
 }
 

@@ -26,6 +26,7 @@ struct Settings {
     bool ladder = false;
     int rounds = numerics::LadderOptions{}.rounds;
     std::string marker;
+    std::string from;  // JSON of a ladder that was measured before
 };
 
 Result<numerics::Report> measureAll(const Settings& settings) {
@@ -87,18 +88,33 @@ int fail(const Diagnostic& error) {
     return 1;
 }
 
-int runLadder(const Settings& settings) {
+Result<numerics::Ladder> measureLadder(const Settings& settings) {
+    if (!settings.from.empty()) {
+        const Result<Bytes> bytes = readFile(settings.from);
+        return bytes ? numerics::ladderFromJson({bytes->begin(), bytes->end()})
+                     : Result<numerics::Ladder>(bytes.error());
+    }
     const Result<std::unique_ptr<numerics::ProbeDevice>> device =
         numerics::ProbeDevice::create({settings.device, false});
     if (!device) {
-        return fail(device.error());
+        return device.error();
     }
     numerics::LadderOptions options;
     options.inputs = settings.measure.inputs;
     options.seed = settings.measure.seed;
     options.rounds = settings.rounds;
     options.function = settings.function;
-    const Result<numerics::Ladder> ladder = numerics::climb(**device, options);
+    const std::vector<numerics::Probe> probes = numerics::ladderProbes();
+    if (!options.function.empty() &&
+        std::ranges::find(probes, options.function, &numerics::Probe::function) == probes.end()) {
+        return makeError("ladder-function", "", options.function + " is not in the ladder",
+                         "leave out --function to see which are");
+    }
+    return numerics::climb(**device, options);
+}
+
+int runLadder(const Settings& settings) {
+    const Result<numerics::Ladder> ladder = measureLadder(settings);
     if (!ladder) {
         return fail(ladder.error());
     }
@@ -149,6 +165,10 @@ int main(int argc, char** argv) {
             ->capture_default_str()
             ->check(CLI::Range(1, 1000))
             ->needs(ladder);
+        app.add_option("--from", settings.from,
+                       "Take the ladder from the JSON of an earlier run, perhaps elsewhere")
+            ->needs(ladder)
+            ->check(CLI::ExistingFile);
         app.add_option("--marker", settings.marker,
                        "Name of the region of --report (default: numerics, or ladder)");
         CLI11_PARSE(app, argc, argv);

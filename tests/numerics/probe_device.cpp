@@ -5,7 +5,7 @@
 #include "spirv/compiler.h"
 #include "vulkan_error.h"
 
-#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -57,8 +57,9 @@ Context::State& ProbeDevice::state() const {
 
 Status ProbeDevice::initialise() {
     pool_ = std::make_unique<MemoryPool>(state());
-    constexpr VkBufferUsageFlags kUsage =
-        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                          VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const auto create = [&](Buffer& buffer, VkDeviceSize floats, MemoryUse use) -> Status {
         Result<Buffer> made = createBuffer(state(), *pool_, sizeof(float) * floats, kUsage, use);
         if (!made) {
@@ -72,12 +73,14 @@ Status ProbeDevice::initialise() {
         status = create(outputs_, VkDeviceSize{kMaxOutputs} * kBatch, MemoryUse::Readback);
     }
     if (status) {
-        status = create(ones_, kOnes, MemoryUse::Upload);
+        status = create(timedInputs_, VkDeviceSize{kMaxInputs} * kBatch, MemoryUse::Device);
+    }
+    if (status) {
+        status = create(ones_, kOnes, MemoryUse::Device);
     }
     if (!status) {
         return status;
     }
-    std::fill_n(reinterpret_cast<float*>(ones_.mapped), kOnes, 1.0F);
     Result<CommandRunner> runner = CommandRunner::create(state());
     if (!runner) {
         return runner.error();
@@ -134,10 +137,10 @@ Result<ProbePipeline> ProbeDevice::compileTimed(std::string_view probe, int inpu
     return make(probe, timedKernel(probe, inputs, outputs, precision), inputs, outputs, precision);
 }
 
-void ProbeDevice::dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, std::uint32_t threads,
-                           std::uint32_t count, std::uint32_t repeats) const {
+void ProbeDevice::dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, const Buffer& inputs,
+                           std::uint32_t threads, std::uint32_t count, std::uint32_t repeats) const {
     const DeviceTable& vk = state().vk;
-    const Pushed pushed{inputs_.address, outputs_.address, ones_.address, count, repeats};
+    const Pushed pushed{inputs.address, outputs_.address, ones_.address, count, repeats};
     vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline.get());
     vk.CmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), &pushed);
     vk.CmdDispatch(commands, (threads + kProbeGroup - 1) / kProbeGroup, 1, 1);
@@ -152,7 +155,7 @@ Status ProbeDevice::run(const ProbePipeline& pipeline, std::span<const float> in
     if (!commands) {
         return commands.error();
     }
-    dispatch(*commands, pipeline, count, count, 1);
+    dispatch(*commands, pipeline, inputs_, count, count, 1);
     recordDependency(state(), *commands,
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
@@ -173,9 +176,16 @@ Result<double> ProbeDevice::time(const ProbePipeline& pipeline, std::uint32_t co
     if (!commands) {
         return commands.error();
     }
+    const DeviceTable& vk = state().vk;
+    const VkBufferCopy copy{0, 0, sizeof(float) * count * static_cast<VkDeviceSize>(pipeline.inputs)};
+    vk.CmdCopyBuffer(*commands, inputs_.handle.get(), timedInputs_.handle.get(), 1, &copy);
+    vk.CmdFillBuffer(*commands, ones_.handle.get(), 0, VK_WHOLE_SIZE, std::bit_cast<std::uint32_t>(1.0F));
+    recordDependency(state(), *commands,
+                     {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
     timer_->recordReset(*commands);
     timer_->recordBegin(*commands, 0);
-    dispatch(*commands, pipeline, threads, count, repeats);
+    dispatch(*commands, pipeline, timedInputs_, threads, count, repeats);
     timer_->recordEnd(*commands, 0);
     if (Status status = runner_->submitAndWait(); !status) {
         return status.error();

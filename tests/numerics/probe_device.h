@@ -72,9 +72,9 @@ private:
     Status createLayout();
     Result<ProbePipeline> make(std::string_view probe, const std::string& glsl, int inputs, int outputs,
                                ProbePrecision precision);
-    // Records one dispatch.
-    void dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, std::uint32_t threads,
-                  std::uint32_t count, std::uint32_t repeats) const;
+    // Records one dispatch, which reads from `inputs`.
+    void dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, const Buffer& inputs,
+                  std::uint32_t threads, std::uint32_t count, std::uint32_t repeats) const;
 
     // One of the two.
     std::unique_ptr<Context> context_;
@@ -82,6 +82,8 @@ private:
     std::unique_ptr<MemoryPool> pool_;
     Buffer inputs_;
     Buffer outputs_;
+    // In the device's own memory: what timed kernels read.
+    Buffer timedInputs_;
     Buffer ones_;
     UniquePipelineLayout layout_;
     std::unique_ptr<CommandRunner> runner_;
