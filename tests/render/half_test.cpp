@@ -124,7 +124,8 @@ Scene extremeScene() {
     constexpr int kColumns = 6;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const auto column = static_cast<float>(i % kColumns);
-        const auto row = static_cast<float>(i / kColumns);
+        const std::size_t whole = i / kColumns;
+        const auto row = static_cast<float>(whole);
         const float turn = 1.5F * row / (static_cast<float>(materials.size()) / kColumns);
         Primitive quad = makeQuad(addMaterial(scene, materials[i]),
                                   {0.33F * column - 1.0F, 0.6F * row - 0.9F, -1.0F - 0.1F * column},
