@@ -211,6 +211,13 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
             "create it with VK_KHR_ray_tracing_position_fetch and set DeviceHandles::positionFetch, or "
             "compile without --position-fetch");
     }
+    if (package.precision() == package::ShadingPrecision::Half && !contextState.handles.shaderFloat16) {
+        return makeError("half-precision", "",
+                         "the package's shaders compute in 16-bit float, which the device does not allow or "
+                         "was not created for",
+                         "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
+                         "DeviceHandles::shaderFloat16, or compile with --precision 32");
+    }
     const PackageScene known = package.scene(scene.packageScene);
     if (Status s = checkScene(known, scene, contextState.limits.core.maxImageDimension2D); !s) {
         return s.error();

@@ -183,6 +183,9 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
         if (options.positionFetch && !hasExtension(report, kPositionFetchExtension)) {
             missing.emplace_back(kPositionFetchExtension);
         }
+        if (options.shaderFloat16 && report.features.vulkan12.shaderFloat16 == VK_FALSE) {
+            missing.emplace_back("shaderFloat16, which --precision 16 needs");
+        }
         if (missing.empty()) {
             tracers = common;
             return device;
@@ -215,7 +218,8 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 }
 
 Status createDevice(Context::State& state) {
-    DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch);
+    DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
+                                    state.handles.shaderFloat16);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -267,6 +271,7 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
     }
     state->handles.tracers = options.tracers;
     state->handles.positionFetch = options.positionFetch;
+    state->handles.shaderFloat16 = options.shaderFloat16;
     Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
     if (!device) {
         return device.error();

@@ -74,6 +74,10 @@ bool Package::positionFetch() const {
     return state_->header.positionFetch != 0;
 }
 
+package::ShadingPrecision Package::precision() const {
+    return state_->header.precision;
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }

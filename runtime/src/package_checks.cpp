@@ -105,6 +105,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.positionFetch > 1) {
         return outside("the source of positions", header.positionFetch);
     }
+    if (header.precision > package::ShadingPrecision::Half) {
+        return outside("the precision of shading", static_cast<std::uint32_t>(header.precision));
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }

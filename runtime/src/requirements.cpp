@@ -88,7 +88,7 @@ constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000)
 
 }  // namespace
 
-DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions)
+DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
@@ -119,6 +119,7 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         positionFetch.rayTracingPositionFetch = VK_TRUE;
         extensions.push_back(kPositionFetchExtension);
     }
+    vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
     // An umbrella bit: the specification asks for it where its parts are used with SPIR-V 1.5 modules.
     vulkan12.descriptorIndexing = VK_TRUE;
     for (const RequiredFeature& feature : kFeatures) {

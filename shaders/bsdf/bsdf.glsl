@@ -12,19 +12,21 @@
 #include "bsdf/transmission.glsl"
 #include "bsdf/clearcoat.glsl"
 
+// What is GLINT_RELAXED is a share of light in [0, 1] and may have 16 bits (--precision 16). Directions, alphas, and
+// losses, which vanish with alpha², keep 32.
 // Vectors are in the frame of the surface: z is the shading normal on the viewer's side, x the direction of anisotropy.
 struct Bsdf {
-    vec3 diffuse;   // albedo of the diffuse lobe: metal and what is transmitted taken out
-    vec3 f0;        // reflectance at normal incidence
-    float f90;      // and at grazing
+    GLINT_RELAXED vec3 diffuse;   // albedo of the diffuse lobe: metal and what is transmitted taken out
+    GLINT_RELAXED vec3 f0;        // reflectance at normal incidence
+    GLINT_RELAXED float f90;      // and at grazing
     vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy
-    vec3 transmitted;         // tint and share of light that passes the microfacets
+    GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
-    vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
-    float clearcoat;          // share of the surface that the coat covers
+    GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
+    GLINT_RELAXED float clearcoat;          // share of the surface that the coat covers
     float clearcoatAlpha;
     vec3 clearcoatNormal;     // unit
-    vec3 sheenColor;
+    GLINT_RELAXED vec3 sheenColor;
     float sheenAlpha;  // at least kMinSheenAlpha
     // By prepareBsdf(), of the view:
     vec3 view;         // unit, z >= kMinViewCosine
@@ -36,43 +38,45 @@ struct Bsdf {
 };
 
 // Of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
-vec3 meanFresnel(Bsdf b) {
+GLINT_RELAXED vec3 meanFresnel(Bsdf b) {
     return b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
 }
 
 // The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
 // Based Shading at Imageworks" (2017), with the Fresnel of the second and later bounces after Hill (2018).
-vec3 multiScatterFresnel(Bsdf b) {
-    vec3 mean = meanFresnel(b);
-    return mean * mean * (1.0 - b.meanLoss) / (vec3(1.0) - mean * b.meanLoss);
+GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b) {
+    GLINT_RELAXED vec3 mean = meanFresnel(b);
+    GLINT_RELAXED float loss = b.meanLoss;
+    return mean * mean * (1.0 - loss) / (vec3(1.0) - mean * loss);
 }
 
 // What the microfacets reflect at the first bounce of a uniform white sky, by E's loss and bias.
-vec3 singleScatterAlbedo(Bsdf b, float loss, float bias) {
+GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     return b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
 }
 
 // What they reflect in all: the later bounces, too, if energy compensation is on.
-vec3 specularAlbedo(Bsdf b, float loss, float bias) {
-    vec3 single = singleScatterAlbedo(b, loss, bias);
+GLINT_RELAXED vec3 specularAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    GLINT_RELAXED vec3 single = singleScatterAlbedo(b, loss, bias);
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
 }
 
 // 1 - specularAlbedo(), as a sum of terms that are all positive: where nearly all is reflected the difference would lose
 // its digits.
-vec3 specularPassed(Bsdf b, float loss, float bias) {
-    vec3 absorbed = vec3(1.0) - b.f0;
-    vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
-    vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
+GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
+    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
+    GLINT_RELAXED vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
     if (GLINT_ENERGY_COMPENSATION != 0) {
-        vec3 mean = meanFresnel(b);
-        vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
-        again = rest * (vec3(1.0) + mean * (1.0 - b.meanLoss)) / (vec3(1.0) - mean * b.meanLoss);
+        GLINT_RELAXED vec3 mean = meanFresnel(b);
+        GLINT_RELAXED float meanLoss = b.meanLoss;
+        GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
+        again = rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
     }
     return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + again * loss;
 }
 
-float smallest(vec3 v) {
+GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
     return min(v.x, min(v.y, v.z));
 }
 
@@ -132,7 +136,7 @@ bool seenFromWithin(Bsdf b, Features features) {
 // What of a diffuse lobe the microfacets above it let in and out. With compensation, reciprocal and such that the whole
 // reflects what comes in at most: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model"
 // (2001). Without it, glTF 2.0, appendix B.3.5: light by the Fresnel of the half vector.
-float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) {
+GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
         // Total reflection is no part of E: what the smooth interface lets through, both ways.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
@@ -151,7 +155,7 @@ float diffuseShare(Bsdf b, Features features, float lightCosine, float fresnel) 
 }
 
 // Fresnel of the facet between view and light, and its normal.
-vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
+GLINT_RELAXED vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
     // |v + l| is twice the cosine of v and h, and keeps its digits where facets are seen from the side.
     vec3 sum = b.view + l;
     float size = sqrt(dot(sum, sum));
@@ -163,13 +167,13 @@ vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
 // Reflected by the base, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     vec3 h;
-    vec3 fresnel = facetFresnel(b, features, l, h);
+    GLINT_RELAXED vec3 fresnel = facetFresnel(b, features, l, h);
     vec3 specular = fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
     if (GLINT_ENERGY_COMPENSATION != 0) {
         float lightLoss = lobeAlbedo(b, features, l.z).x;
         specular += multiScatterFresnel(b) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
     }
-    vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(fresnel)));
+    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(fresnel)));
     return (diffuse + specular) * l.z;
 }
 
@@ -177,7 +181,7 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
 float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     float cosine;
     float lobe;
-    float passed;
+    GLINT_RELAXED float passed;
     if (passesStraight(features, eta)) {
         // Nothing bends, whatever the facets: as sharp as lobes get, with the view's own Fresnel.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
@@ -205,15 +209,17 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
         // Light leaves on the other side: the half vector tells nothing, the view's own Fresnel does.
-        float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
+        GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, -l.z, fresnel) * -l.z);
     }
     return result;
 }
 
 // Share of the base below the sheen, for light of one cosine: KHR_materials_sheen, albedo scaling.
-float belowSheen(Bsdf b, float albedo) {
-    return max(1.0 - largest(b.sheenColor) * min(albedo, 1.0), 0.0);
+GLINT_RELAXED float belowSheen(Bsdf b, float albedo) {
+    GLINT_RELAXED float color = largest(b.sheenColor);
+    GLINT_RELAXED float reflected = min(albedo, 1.0);
+    return max(1.0 - color * reflected, 0.0);
 }
 
 // Cosine of the view to the coat's normal.
@@ -231,7 +237,7 @@ vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
         result = baseTransmission(b, features, l);
     }
     if (hasLobe(features, GLINT_SHEEN)) {
-        float below = belowSheen(b, b.sheenAlbedo);
+        GLINT_RELAXED float below = belowSheen(b, b.sheenAlbedo);
         if (l.z > 0.0) {
             float lightAlbedo = sheenAlbedo(l.z, b.sheenAlpha);
             below = min(below, belowSheen(b, lightAlbedo));
@@ -247,7 +253,7 @@ vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
     if (hasLobe(features, GLINT_CLEARCOAT)) {
         float nDotV = coatViewCosine(b);
         float nDotL = accurateDot(b.clearcoatNormal, l);
-        float coat = clearcoatFresnel(b.clearcoat, nDotV);
+        GLINT_RELAXED float coat = clearcoatFresnel(b.clearcoat, nDotV);
         result *= clearcoatPassed(b.clearcoat, nDotV);
         if (l.z > 0.0 && nDotL > 0.0) {
             result += vec3(coat * nDotL *

@@ -2,12 +2,12 @@
 // the frame of the base, where the coat's normal need not be z: so products that nearly cancel keep their errors.
 
 // Reflectance of the layer, by the angle of the view alone, as the extension's text has it.
-float clearcoatFresnel(float factor, float nDotV) {
+GLINT_RELAXED float clearcoatFresnel(GLINT_RELAXED float factor, float nDotV) {
     return factor * (0.04 + 0.96 * schlickWeight(nDotV));
 }
 
 // What it lets through: 1 - clearcoatFresnel(), with its digits where little passes.
-float clearcoatPassed(float factor, float nDotV) {
+GLINT_RELAXED float clearcoatPassed(GLINT_RELAXED float factor, float nDotV) {
     return (1.0 - factor) + factor * 0.96 * schlickRest(nDotV);
 }
 

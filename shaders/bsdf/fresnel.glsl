@@ -1,7 +1,8 @@
 // Fresnel reflectance.
+#include "generated/scene.glsl"
 #include "bsdf/exact.glsl"
 
-float largest(vec3 v) {
+GLINT_RELAXED float largest(GLINT_RELAXED vec3 v) {
     return max(v.x, max(v.y, v.z));
 }
 
@@ -16,29 +17,30 @@ float dielectricF0(float ior) {
     return r * r;
 }
 
-// (1 - cosine)⁵, the weight of f90 in Schlick's approximation.
-float schlickWeight(float cosine) {
+// (1 - cosine)⁵, the weight of f90 in Schlick's approximation. So steep that it is computed in 32 bits whatever the
+// precision of the result; schlickRest() likewise.
+GLINT_RELAXED float schlickWeight(float cosine) {
     float m = clamp(1.0 - cosine, 0.0, 1.0);
     float m2 = m * m;
     return m2 * m2 * m;
 }
 
 // 1 - schlickWeight() as a polynomial, whose terms do not cancel near grazing as the difference does.
-float schlickRest(float cosine) {
+GLINT_RELAXED float schlickRest(float cosine) {
     float c = clamp(cosine, 0.0, 1.0);
     return c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
 }
 
 // Schlick's approximation: glTF 2.0, appendix B.3.4; f90 from KHR_materials_specular. cosine is that of view and half
 // vector, in [0, 1].
-vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
+GLINT_RELAXED vec3 fresnelSchlick(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float cosine) {
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
 // The same at an interface of relative index eta = n_t / n_i, by the squared cosine and its error. Where light leaves
 // the denser side Schlick's cosine is that of the transmitted angle (van der Burg 1999, "Schlick's approximation"), and
 // beyond the critical angle all of it is reflected, whatever f90.
-vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
+GLINT_RELAXED vec3 fresnelInterface(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
         return fresnelSchlick(f0, f90, sqrt(cosine2.x));
     }
@@ -48,12 +50,12 @@ vec3 fresnelInterface(vec3 f0, float f90, vec2 cosine2, float eta) {
 
 // What a surface lets through of the channel that it reflects most: 1 - largest(fresnelSchlick()), with its digits
 // where little passes. f90 is at least f0.
-float schlickPassed(vec3 f0, float f90, float cosine) {
+GLINT_RELAXED float schlickPassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float cosine) {
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
 }
 
 // The same of an interface: 1 - largest(fresnelInterface()).
-float interfacePassed(vec3 f0, float f90, vec2 cosine2, float eta) {
+GLINT_RELAXED float interfacePassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
         return schlickPassed(f0, f90, sqrt(cosine2.x));
     }

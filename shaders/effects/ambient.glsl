@@ -34,18 +34,18 @@ vec3 ambientTransmission(Surface surface, Features features) {
         behind.z = skyBehind(surface, features, bsdf.eta.z).z;
     }
     // What the microfacets do not reflect; without compensation, less what single scattering drops.
-    float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
-    float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
+    GLINT_RELAXED float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
+    GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
     return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
-    vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    vec3 reflected = albedo - first * (1.0 - sky.mirrored);
-    float below = diffusePassed(surface);
+    GLINT_RELAXED vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 reflected = albedo - first * (1.0 - sky.mirrored);
+    GLINT_RELAXED float below = diffusePassed(surface);
     // The occlusion texture is of the outside, as are the rays of ambient occlusion.
-    float open = surface.occlusion * sky.open;
+    GLINT_RELAXED float open = surface.occlusion * sky.open;
     vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * skyIrradianceOverPi(surface.normal) +
                  reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);
     vec3 back = vec3(0.0);
@@ -56,7 +56,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
         back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * skyIrradianceOverPi(-surface.normal);
     }
     vec3 result = (front * open + back) * baseShare(surface, features);
-    float coat = coatReflectance(surface, features);
+    GLINT_RELAXED float coat = coatReflectance(surface, features);
     if (hasLobe(features, GLINT_SHEEN)) {
         result += surface.bsdf.sheenColor * min(surface.bsdf.sheenAlbedo, 1.0) * skyIrradianceOverPi(surface.normal) *
                   (open * (1.0 - coat));

@@ -1,14 +1,16 @@
-// From a hit and its material to a Surface.
+// From a hit and its material to a Surface. Roughness and thickness, which limits and wavelengths are compared with,
+// keep 32 bits whatever the precision.
 #include "hit/surface.glsl"
 #include "hit/texture.glsl"
 
-vec4 baseColor(Hit hit, Features features) {
-    vec4 color = GLINT_MATERIAL(hit).baseColorFactor;
+GLINT_RELAXED vec4 baseColor(Hit hit, Features features) {
+    GLINT_RELAXED vec4 color = GLINT_MATERIAL(hit).baseColorFactor;
     if (hasInput(features, GLINT_BASE_COLOR_TEXTURE)) {
         color *= sampleSlot(hit, kTextureBaseColor, features);
     }
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
-        color *= hit.color;
+        // glTF 2.0, section 3.7.2.1, bounds them; in 16 bits what is beyond would overflow further on.
+        color *= GLINT_PRECISION == 16 ? clamp(hit.color, vec4(0.0), vec4(1.0)) : hit.color;
     }
     return color;
 }
@@ -31,8 +33,8 @@ vec3 emission(Hit hit, Features features) {
 
 // The base's colour as the extensions on top see it.
 struct Base {
-    vec3 color;
-    float metallic;
+    GLINT_RELAXED vec3 color;
+    GLINT_RELAXED float metallic;
     float roughness;
 };
 
@@ -45,12 +47,13 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
         vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
         base.roughness *= texel.g;
-        base.metallic *= texel.b;
+        GLINT_RELAXED float metallic = texel.b;
+        base.metallic *= metallic;
     }
-    vec3 f0 = vec3(hasLobe(features, GLINT_IOR) ? dielectricF0(GLINT_MATERIAL(hit).ior) : 0.04);
-    float f90 = 1.0;
+    GLINT_RELAXED vec3 f0 = vec3(hasLobe(features, GLINT_IOR) ? dielectricF0(GLINT_MATERIAL(hit).ior) : 0.04);
+    GLINT_RELAXED float f90 = 1.0;
     if (hasLobe(features, GLINT_SPECULAR)) {
-        float specular = GLINT_MATERIAL(hit).specularFactor;
+        GLINT_RELAXED float specular = GLINT_MATERIAL(hit).specularFactor;
         vec3 specularColor = GLINT_MATERIAL(hit).specularColorFactor;
         if (hasInput(features, GLINT_SPECULAR_TEXTURE)) {
             specular *= sampleSlot(hit, kTextureSpecular, features).a;
@@ -70,11 +73,12 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
 void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
     base.metallic = 0.0;
-    vec3 specular = GLINT_MATERIAL(hit).specularColorFactor;
+    GLINT_RELAXED vec3 specular = GLINT_MATERIAL(hit).specularColorFactor;
     float glossiness = GLINT_MATERIAL(hit).glossinessFactor;
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
         vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
-        specular *= texel.rgb;
+        GLINT_RELAXED vec3 tint = texel.rgb;
+        specular *= tint;
         glossiness *= texel.a;
     }
     base.roughness = 1.0 - glossiness;
@@ -88,7 +92,8 @@ void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
     vec2 direction = GLINT_MATERIAL(hit).anisotropyDirection;
     float strength = GLINT_MATERIAL(hit).anisotropyStrength;
     if (hasInput(features, GLINT_ANISOTROPY_TEXTURE)) {
-        vec3 texel = sampleSlot(hit, kTextureAnisotropy, features).rgb;
+        vec4 packedDirection = sampleSlot(hit, kTextureAnisotropy, features);
+        vec3 texel = packedDirection.rgb;
         vec2 turned = texel.rg * 2.0 - 1.0;
         direction = vec2(direction.x * turned.x - direction.y * turned.y,
                          direction.y * turned.x + direction.x * turned.y);
@@ -108,14 +113,15 @@ void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
 // KHR_materials_iridescence, at the angle of the view for all lights, as the reference renderer has it: the film's
 // reflectance becomes the f0 with which Schlick gives it, so that the albedos of the lobe stay known.
 void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) {
-    float factor = GLINT_MATERIAL(hit).iridescenceFactor;
+    GLINT_RELAXED float factor = GLINT_MATERIAL(hit).iridescenceFactor;
     float thickness = GLINT_MATERIAL(hit).iridescenceThicknessMaximum;
     if (hasInput(features, GLINT_IRIDESCENCE_TEXTURE)) {
         factor *= sampleSlot(hit, kTextureIridescence, features).r;
     }
     if (hasInput(features, GLINT_IRIDESCENCE_THICKNESS_TEXTURE)) {
-        thickness = mix(GLINT_MATERIAL(hit).iridescenceThicknessMinimum, thickness,
-                        sampleSlot(hit, kTextureIridescenceThickness, features).g);
+        float thinnest = GLINT_MATERIAL(hit).iridescenceThicknessMinimum;
+        vec4 texel = sampleSlot(hit, kTextureIridescenceThickness, features);
+        thickness = mix(thinnest, thickness, texel.g);
     }
     vec3 film = iridescentFresnel(nDotV, bsdf.f0, GLINT_MATERIAL(hit).iridescenceIor, thickness);
     bsdf.f0 = mix(bsdf.f0, min(schlickF0(film, bsdf.f90, nDotV), vec3(bsdf.f90)), factor);
@@ -124,7 +130,7 @@ void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) 
 // KHR_materials_transmission, KHR_materials_diffuse_transmission, KHR_materials_volume, KHR_materials_dispersion: what
 // passes the surface, out of what the diffuse lobe would have had.
 void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
-    float transmission = 0.0;
+    GLINT_RELAXED float transmission = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
         transmission = GLINT_MATERIAL(hit).transmissionFactor;
         if (hasInput(features, GLINT_TRANSMISSION_TEXTURE)) {
@@ -134,8 +140,8 @@ void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
         bsdf.diffuse *= 1.0 - transmission;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        float share = GLINT_MATERIAL(hit).diffuseTransmissionFactor;
-        vec3 color = GLINT_MATERIAL(hit).diffuseTransmissionColorFactor;
+        GLINT_RELAXED float share = GLINT_MATERIAL(hit).diffuseTransmissionFactor;
+        GLINT_RELAXED vec3 color = GLINT_MATERIAL(hit).diffuseTransmissionColorFactor;
         if (hasInput(features, GLINT_DIFFUSE_TRANSMISSION_TEXTURE)) {
             share *= sampleSlot(hit, kTextureDiffuseTransmission, features).a;
         }
@@ -162,9 +168,10 @@ void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
     if (hasLobe(features, GLINT_ATTENUATION)) {
         float thickness = GLINT_MATERIAL(hit).thicknessFactor * hit.scale;
         if (hasInput(features, GLINT_THICKNESS_TEXTURE)) {
-            thickness *= sampleSlot(hit, kTextureThickness, features).g;
+            vec4 texel = sampleSlot(hit, kTextureThickness, features);
+            thickness *= texel.g;
         }
-        vec3 transmittance = volumeTransmittance(GLINT_MATERIAL(hit).absorption, thickness);
+        GLINT_RELAXED vec3 transmittance = volumeTransmittance(GLINT_MATERIAL(hit).absorption, thickness);
         bsdf.transmitted *= transmittance;
         bsdf.diffuseTransmitted *= transmittance;
     }
@@ -177,19 +184,21 @@ void applySheen(Hit hit, Features features, inout Bsdf bsdf) {
         bsdf.sheenColor *= sampleSlot(hit, kTextureSheenColor, features).rgb;
     }
     if (hasInput(features, GLINT_SHEEN_ROUGHNESS_TEXTURE)) {
-        roughness *= sampleSlot(hit, kTextureSheenRoughness, features).a;
+        vec4 texel = sampleSlot(hit, kTextureSheenRoughness, features);
+        roughness *= texel.a;
     }
     bsdf.sheenAlpha = max(roughness * roughness, kMinSheenAlpha);
 }
 
 void applyClearcoat(Hit hit, Features features, inout Surface surface) {
-    float factor = GLINT_MATERIAL(hit).clearcoatFactor;
+    GLINT_RELAXED float factor = GLINT_MATERIAL(hit).clearcoatFactor;
     float roughness = GLINT_MATERIAL(hit).clearcoatRoughnessFactor;
     if (hasInput(features, GLINT_CLEARCOAT_TEXTURE)) {
         factor *= sampleSlot(hit, kTextureClearcoat, features).r;
     }
     if (hasInput(features, GLINT_CLEARCOAT_ROUGHNESS_TEXTURE)) {
-        roughness *= sampleSlot(hit, kTextureClearcoatRoughness, features).g;
+        vec4 texel = sampleSlot(hit, kTextureClearcoatRoughness, features);
+        roughness *= texel.g;
     }
     surface.bsdf.clearcoat = factor;
     surface.bsdf.clearcoatAlpha = max(roughness * roughness, kMinAlpha);
@@ -251,7 +260,7 @@ Surface evaluateSurface(Hit hit, Features features) {
     surface.emission = emission(hit, features) * (1.0 - coatReflectance(surface, features));
     surface.occlusion = 1.0;
     if (hasInput(features, GLINT_OCCLUSION_TEXTURE)) {
-        float texel = sampleSlot(hit, kTextureOcclusion, features).r;
+        GLINT_RELAXED float texel = sampleSlot(hit, kTextureOcclusion, features).r;
         surface.occlusion = 1.0 + GLINT_MATERIAL(hit).occlusionStrength * (texel - 1.0);
     }
     return surface;

@@ -8,7 +8,7 @@ struct Surface {
     vec3 normal;     // on the viewer's side
     float roughness; // sqrt of the larger alpha
     vec3 emission;
-    float occlusion; // of ambient light only
+    GLINT_RELAXED float occlusion; // of ambient light only
 };
 
 vec3 toSurface(Surface surface, vec3 direction) {
@@ -28,14 +28,14 @@ vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, ve
 }
 
 // What the coat reflects of a uniform white sky, and 0 without one.
-float coatReflectance(Surface surface, Features features) {
+GLINT_RELAXED float coatReflectance(Surface surface, Features features) {
     return hasLobe(features, GLINT_CLEARCOAT) ? clearcoatFresnel(surface.bsdf.clearcoat, coatViewCosine(surface.bsdf))
                                               : 0.0;
 }
 
 // Share of what the base reflects or lets through that coat and sheen let out again.
-float baseShare(Surface surface, Features features) {
-    float share = 1.0 - coatReflectance(surface, features);
+GLINT_RELAXED float baseShare(Surface surface, Features features) {
+    GLINT_RELAXED float share = 1.0 - coatReflectance(surface, features);
     if (hasLobe(features, GLINT_SHEEN)) {
         share *= belowSheen(surface.bsdf, surface.bsdf.sheenAlbedo);
     }
@@ -43,6 +43,6 @@ float baseShare(Surface surface, Features features) {
 }
 
 // Share of the light of a uniform sky that the microfacets let in to the diffuse lobes.
-float diffusePassed(Surface surface) {
+GLINT_RELAXED float diffusePassed(Surface surface) {
     return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
 }

@@ -12,8 +12,9 @@ bool readsSecondSet(Hit hit, uint slot, Features features) {
            (!hasInput(features, GLINT_TEXCOORD_0) || GLINT_MATERIAL(hit).textures[slot].texCoord == 1u);
 }
 
-// The value of one texture slot of the hit's material.
-vec4 sampleSlot(Hit hit, uint slot, Features features) {
+// The value of one texture slot of the hit's material. Read in 32 bits, with coordinates of as many, whatever the
+// precision of the result.
+GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
     TextureRecord record = GLINT_MATERIAL(hit).textures[slot];
     bool second = readsSecondSet(hit, slot, features);
     vec2 uv = second ? hit.texCoords[1] : hit.texCoords[0];
@@ -24,10 +25,12 @@ vec4 sampleSlot(Hit hit, uint slot, Features features) {
                        dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
     }
     if (GLINT_TEXTURE_LOD_CONES == 0) {
-        return textureLod(GLINT_SAMPLER(record), uv, 0.0);
+        vec4 finest = textureLod(GLINT_SAMPLER(record), uv, 0.0);
+        return finest;
     }
     vec4 gradients = coneGradients(hit.footprint, uvEdges, record.texels, record.anisotropy);
-    return textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
+    vec4 texel = textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
+    return texel;
 }
 
 // Tangent and bitangent at the hit: from the TANGENT attribute, or from the derivatives of position by the UV set that
@@ -53,7 +56,8 @@ void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out v
 
 // The normal that a normal texture gives.
 vec3 mappedNormal(Hit hit, uint slot, float scale, Features features) {
-    vec3 texel = sampleSlot(hit, slot, features).xyz * 2.0 - 1.0;
+    vec4 packedNormal = sampleSlot(hit, slot, features);
+    vec3 texel = packedNormal.xyz * 2.0 - 1.0;
     vec3 tangent;
     vec3 bitangent;
     tangentFrame(hit, slot, features, tangent, bitangent);

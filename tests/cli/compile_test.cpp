@@ -98,16 +98,18 @@ TEST_F(CompileCommand, HitShadersAloneAreOfThePipelineTracer) {
 
 TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
     writeTinyScene(path(""), {.variants = true});
-    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--strategy", "uber", "--variant", "Day",
-                   "--hit-lobes", "base", "--energy-compensation", "off", "--texture-lod", "mip0"})
-                  .exit,
-              0);
+    ASSERT_EQ(
+        run({"compile", scene(), "-o", "package", "--strategy", "uber", "--variant", "Day", "--hit-lobes",
+             "base", "--energy-compensation", "off", "--texture-lod", "mip0", "--precision", "16"})
+            .exit,
+        0);
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("scenes")[0].at("variant"), "Day");
     const nlohmann::json& settings = manifest.at("settings");
     EXPECT_EQ(settings.at("hitLobes"), nlohmann::json({"unlit", "specularGlossiness", "ior", "specular"}));
     EXPECT_EQ(settings.at("energyCompensation"), false);
     EXPECT_EQ(settings.at("textureLod"), "mip0");
+    EXPECT_EQ(settings.at("precision"), 16);
     const nlohmann::json inspected = run({"inspect", "package", "--json"}).json();
     EXPECT_EQ(inspected.at("settings"), settings);
     EXPECT_EQ(inspected.at("scenes")[0].at("variant"), "Day");

@@ -99,6 +99,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--merge", "all"}, "--package"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--hit-lobes", "base"}, "--package"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--texture-lod", "mip0"}, "--package"},
+        {{"compile", "a.gltf", "-o", "x", "--precision", "8"}, "none of 32, 16"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--energy-compensation", "off"}, "--package"},
         {{"compare", "a.png"}, "B is required"},
         {{"compare", "a.png", "b.png", "--max-error", "-1"}, "from 0 to"},

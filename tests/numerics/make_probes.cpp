@@ -49,7 +49,8 @@ public:
     explicit Sources(std::vector<fs::path> folders) : folders_(std::move(folders)) {
         texts_["generated/features.glsl"] = glint::featureDefines();
         // What a scene chooses, who compiles the text defines.
-        texts_["generated/scene.glsl"] = "";
+        texts_["generated/scene.glsl"] =
+            "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";
     }
 
     std::optional<std::string_view> find(std::string_view name) {
@@ -96,8 +97,10 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (!cpp) {
         return cpp.error();
     }
-    const std::map<std::string, std::string> files{
-        {"probes.glsl", *glsl}, {"probes.inc", *cpp}, {"probe_list.inc", listProbes(*glsl)}};
+    const std::map<std::string, std::string> files{{"probes.glsl", *glsl},
+                                                   {"probes.inc", *cpp},
+                                                   {"probes_text.inc", "R\"glsl(" + *glsl + ")glsl\"\n"},
+                                                   {"probe_list.inc", listProbes(*glsl)}};
     for (const auto& [name, text] : files) {
         if (glint::Status status = glint::writeFile(output / name, text); !status) {
             return status;

@@ -3,10 +3,10 @@
 #include "evaluate.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cstdlib>
 #include <future>
-#include <limits>
 #include <thread>
 
 namespace glint::numerics {
@@ -76,6 +76,7 @@ struct Batch {
     std::vector<float> inputs;
     std::vector<float> device;
     std::vector<float> textbook;
+    std::vector<std::vector<float>> fewer;
 };
 
 struct Chunk {
@@ -88,11 +89,13 @@ struct ChunkResult {
     ErrorStatistics single;
     ErrorStatistics textbook;
     std::uint64_t undecided = 0;
+    std::vector<ProbeResult::Fewer> fewer;
 };
 
 ChunkResult compareChunk(const Probe& probe, const Calls& ours, const Calls& textbook, const Batch& batch,
                          Chunk chunk) {
     ChunkResult result;
+    result.fewer.resize(batch.fewer.size());
     std::array<double, kMaxInputs> inputs{};
     std::array<double, kMaxOutputs> truth{};
     std::array<double, kMaxOutputs> textbookTruth{};
@@ -106,6 +109,12 @@ ChunkResult compareChunk(const Probe& probe, const Calls& ours, const Calls& tex
         result.undecided +=
             compare(probe, batch.device.data() + output, truth.data(), given, result.device) ? 0 : 1;
         compare(probe, single.data(), truth.data(), given, result.single);
+        for (std::size_t k = 0; k < batch.fewer.size(); ++k) {
+            result.fewer[k].undecided += compare(probe, batch.fewer[k].data() + output, truth.data(), given,
+                                                 result.fewer[k].statistics)
+                                             ? 0
+                                             : 1;
+        }
         if (textbook.twice != nullptr) {
             if (probe.textbookAgainstItself) {
                 textbook.twice(inputs.data(), textbookTruth.data());
@@ -166,58 +175,14 @@ MeasureOptions optionsFromEnvironment() {
             fromEnvironment("GLINT_NUMERIC_SEED", defaults.seed)};
 }
 
-void ErrorStatistics::add(double error, int output, const float* inputs, int inputCount) {
-    if (error > worst_) {
-        worst_ = error;
-        worstOutput_ = output;
-        worstInputs_.assign(inputs, inputs + inputCount);
-    }
-    if (error <= 0.0) {
-        ++exact_;
-        return;
-    }
-    const double bin = kBinsPerOctave * (std::log2(error) + kOctaves - 1);
-    ++bins_[static_cast<std::size_t>(std::clamp(bin, 0.0, kBinsPerOctave * kOctaves - 1.0))];
+std::vector<float> firstInputs(const Probe& probe, std::uint64_t seed, std::uint32_t count) {
+    std::vector<float> inputs;
+    fillInputs(probe, seed, 0, count, inputs);
+    return inputs;
 }
 
-void ErrorStatistics::addNotFinite(int output, const float* inputs, int inputCount) {
-    ++notFinite_;
-    add(std::numeric_limits<double>::infinity(), output, inputs, inputCount);
-}
-
-void ErrorStatistics::merge(const ErrorStatistics& other) {
-    exact_ += other.exact_;
-    for (std::size_t i = 0; i < bins_.size(); ++i) {
-        bins_[i] += other.bins_[i];
-    }
-    notFinite_ += other.notFinite_;
-    if (other.worst_ > worst_) {
-        worst_ = other.worst_;
-        worstOutput_ = other.worstOutput_;
-        worstInputs_ = other.worstInputs_;
-    }
-}
-
-double ErrorStatistics::median() const {
-    std::uint64_t total = exact_;
-    for (const std::uint64_t bin : bins_) {
-        total += bin;
-    }
-    std::uint64_t below = exact_;
-    if (2 * below >= total) {
-        return 0.0;
-    }
-    for (std::size_t i = 0; i < bins_.size(); ++i) {
-        below += bins_[i];
-        if (2 * below >= total) {
-            return std::exp2(static_cast<double>(i + 1) / kBinsPerOctave - (kOctaves - 1));
-        }
-    }
-    return std::numeric_limits<double>::infinity();
-}
-
-Result<ProbeResult> measure(ProbeDevice& device, const std::string& glsl, const Probe& probe,
-                            const MeasureOptions& options) {
+Result<ProbeResult> measure(ProbeDevice& device, const Probe& probe, const MeasureOptions& options,
+                            std::span<const ProbePrecision> fewer) {
     const Result<Calls> ours = findCalls(probe.name);
     if (!ours) {
         return ours.error();
@@ -227,24 +192,37 @@ Result<ProbeResult> measure(ProbeDevice& device, const std::string& glsl, const 
     if (!textbook) {
         return textbook.error();
     }
-    Result<ProbePipeline> pipeline = device.compile(glsl, probe.name, probe.inputs, probe.allOutputs());
+    Result<ProbePipeline> pipeline = device.compile(probe.name, probe.inputs, probe.allOutputs());
     if (!pipeline) {
         return pipeline.error();
     }
     Result<ProbePipeline> textbookPipeline =
-        hasTextbook ? device.compile(glsl, probe.textbook, probe.inputs, probe.allOutputs())
+        hasTextbook ? device.compile(probe.textbook, probe.inputs, probe.allOutputs())
                     : Result<ProbePipeline>(ProbePipeline{});
     if (!textbookPipeline) {
         return textbookPipeline.error();
     }
 
+    std::vector<ProbePipeline> fewerPipelines;
+    for (const ProbePrecision precision : fewer) {
+        Result<ProbePipeline> made = device.compile(probe.name, probe.inputs, probe.allOutputs(), precision);
+        if (!made) {
+            return made.error();
+        }
+        fewerPipelines.push_back(std::move(*made));
+    }
+
     ProbeResult result;
+    for (const ProbePrecision precision : fewer) {
+        result.fewer.push_back({precision, {}, 0});
+    }
     result.inputs = probe.inputLimit == 0 ? options.inputs : std::min(options.inputs, probe.inputLimit);
     result.seed = options.seed;
     if (hasTextbook) {
         result.textbook.emplace();
     }
     Batch batch;
+    batch.fewer.resize(fewer.size());
     for (std::uint64_t done = 0; done < result.inputs; done += ProbeDevice::kBatch) {
         const auto count =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(ProbeDevice::kBatch, result.inputs - done));
@@ -259,12 +237,22 @@ Result<ProbeResult> measure(ProbeDevice& device, const std::string& glsl, const 
                 return status.error();
             }
         }
+        for (std::size_t k = 0; k < fewer.size(); ++k) {
+            batch.fewer[k].resize(batch.device.size());
+            if (Status status = device.run(fewerPipelines[k], batch.inputs, batch.fewer[k]); !status) {
+                return status.error();
+            }
+        }
         const auto chunks = forChunks(
             count, [&](Chunk chunk) { return compareChunk(probe, *ours, *textbook, batch, chunk); });
         for (const ChunkResult& chunk : chunks) {
             result.device.merge(chunk.device);
             result.single.merge(chunk.single);
             result.undecided += chunk.undecided;
+            for (std::size_t k = 0; k < fewer.size(); ++k) {
+                result.fewer[k].statistics.merge(chunk.fewer[k].statistics);
+                result.fewer[k].undecided += chunk.fewer[k].undecided;
+            }
             if (hasTextbook) {
                 result.textbook->merge(chunk.textbook);
             }

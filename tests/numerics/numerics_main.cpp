@@ -1,5 +1,7 @@
-// glint_numerics: measures every function of the shaders and writes the table of docs/numerics.md.
+// glint_numerics: measures every function of the shaders and writes the table of docs/numerics.md, or the
+// precision ladder of docs/accuracy.md.
 #include "base/files.h"
+#include "ladder_report.h"
 #include "report.h"
 
 #include <CLI/CLI.hpp>
@@ -20,24 +22,26 @@ struct Settings {
     std::string document;
     std::string json;
     std::string function;  // empty: all
+    std::string device;
+    bool ladder = false;
+    int rounds = numerics::LadderOptions{}.rounds;
+    std::string marker;
+    std::string from;  // JSON of a ladder that was measured before
 };
 
 Result<numerics::Report> measureAll(const Settings& settings) {
     const numerics::MeasureOptions& options = settings.measure;
-    Result<std::unique_ptr<numerics::ProbeDevice>> device = numerics::ProbeDevice::create();
+    Result<std::unique_ptr<numerics::ProbeDevice>> device =
+        numerics::ProbeDevice::create({settings.device, true});
     if (!device) {
         return device.error();
-    }
-    const Result<std::string> glsl = numerics::readProbes();
-    if (!glsl) {
-        return glsl.error();
     }
     numerics::Report report{(*device)->description(), options, {}};
     for (const numerics::Probe& probe : numerics::allProbes()) {
         if (!settings.function.empty() && probe.function != settings.function) {
             continue;
         }
-        Result<numerics::ProbeResult> result = numerics::measure(**device, *glsl, probe, options);
+        Result<numerics::ProbeResult> result = numerics::measure(**device, probe, options);
         if (!result) {
             return result.error();
         }
@@ -60,9 +64,10 @@ Result<numerics::Report> measureAll(const Settings& settings) {
                             : makeError("validation", "", messages.front(), "");
 }
 
-Status writeReport(const Settings& settings, const numerics::Report& report) {
+// Into the files that were asked for.
+Status writeReport(const Settings& settings, const std::string& json, const std::string& markdown) {
     if (!settings.json.empty()) {
-        if (Status status = writeFile(settings.json, numerics::toJson(report)); !status) {
+        if (Status status = writeFile(settings.json, json); !status) {
             return status;
         }
     }
@@ -74,19 +79,58 @@ Status writeReport(const Settings& settings, const numerics::Report& report) {
         return bytes.error();
     }
     const Result<std::string> document =
-        numerics::replaceRegion({bytes->begin(), bytes->end()}, numerics::toMarkdown(report));
+        numerics::replaceRegion({bytes->begin(), bytes->end()}, settings.marker, markdown);
     return document ? writeFile(settings.document, *document) : Status(document.error());
 }
 
-int run(const Settings& settings) {
+int fail(const Diagnostic& error) {
+    std::fprintf(stderr, "%s\n", toString(error).c_str());
+    return 1;
+}
+
+Result<numerics::Ladder> measureLadder(const Settings& settings) {
+    if (!settings.from.empty()) {
+        const Result<Bytes> bytes = readFile(settings.from);
+        return bytes ? numerics::ladderFromJson({bytes->begin(), bytes->end()})
+                     : Result<numerics::Ladder>(bytes.error());
+    }
+    const Result<std::unique_ptr<numerics::ProbeDevice>> device =
+        numerics::ProbeDevice::create({settings.device, false});
+    if (!device) {
+        return device.error();
+    }
+    numerics::LadderOptions options;
+    options.inputs = settings.measure.inputs;
+    options.seed = settings.measure.seed;
+    options.rounds = settings.rounds;
+    options.function = settings.function;
+    const std::vector<numerics::Probe> probes = numerics::ladderProbes();
+    if (!options.function.empty() &&
+        std::ranges::find(probes, options.function, &numerics::Probe::function) == probes.end()) {
+        return makeError("ladder-function", "", options.function + " is not in the ladder",
+                         "leave out --function to see which are");
+    }
+    return numerics::climb(**device, options);
+}
+
+int runLadder(const Settings& settings) {
+    const Result<numerics::Ladder> ladder = measureLadder(settings);
+    if (!ladder) {
+        return fail(ladder.error());
+    }
+    std::fputs(numerics::toText(*ladder).c_str(), stdout);
+    const Status status = writeReport(settings, numerics::toJson(*ladder), numerics::toMarkdown(*ladder));
+    return status ? 0 : fail(status.error());
+}
+
+int runErrors(const Settings& settings) {
     const Result<numerics::Report> report = measureAll(settings);
     if (!report) {
-        std::fprintf(stderr, "%s\n", toString(report.error()).c_str());
-        return 1;
+        return fail(report.error());
     }
-    if (const Status status = writeReport(settings, *report); !status) {
-        std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
-        return 1;
+    const Status status = writeReport(settings, numerics::toJson(*report), numerics::toMarkdown(*report));
+    if (!status) {
+        return fail(status.error());
     }
     return std::ranges::all_of(report->rows, &numerics::ReportRow::passes) ? 0 : 1;
 }
@@ -111,8 +155,27 @@ int main(int argc, char** argv) {
         app.add_option("--report", settings.document, "Markdown file whose generated region is replaced")
             ->excludes(one);
         app.add_option("--json", settings.json, "JSON file to write");
+        app.add_option("--device", settings.device,
+                       "Part of the name of the Vulkan device (default: the first)");
+        CLI::Option* const ladder =
+            app.add_flag("--ladder", settings.ladder,
+                         "Measure what precision costs: instructions and time beside errors. Needs no ray "
+                         "tracing and no validation layers");
+        app.add_option("--rounds", settings.rounds, "Times that the ladder measures each kernel")
+            ->capture_default_str()
+            ->check(CLI::Range(1, 1000))
+            ->needs(ladder);
+        app.add_option("--from", settings.from,
+                       "Take the ladder from the JSON of an earlier run, perhaps elsewhere")
+            ->needs(ladder)
+            ->check(CLI::ExistingFile);
+        app.add_option("--marker", settings.marker,
+                       "Name of the region of --report (default: numerics, or ladder)");
         CLI11_PARSE(app, argc, argv);
-        return run(settings);
+        if (settings.marker.empty()) {
+            settings.marker = settings.ladder ? "ladder" : "numerics";
+        }
+        return settings.ladder ? runLadder(settings) : runErrors(settings);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "glint_numerics: error: %s\n", error.what());
         return 1;

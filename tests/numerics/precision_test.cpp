@@ -1,6 +1,5 @@
 // The shaders' functions on the device and as C++ in single precision, against themselves in double
 // precision.
-#include "base/files.h"
 #include "evaluate.h"
 #include "measure.h"
 #include "report.h"
@@ -28,9 +27,7 @@ TEST_P(Precision, IsWithinItsBounds) {
     if (!device) {
         GTEST_SKIP() << "no device to test on: " << toString(device.error());
     }
-    const Result<std::string> glsl = readProbes();
-    ASSERT_TRUE(glsl.ok()) << toString(glsl.error());
-    const Result<ProbeResult> result = measure(**device, *glsl, probe, optionsFromEnvironment());
+    const Result<ProbeResult> result = measure(**device, probe, optionsFromEnvironment());
     ASSERT_TRUE(result.ok()) << toString(result.error());
 
     EXPECT_EQ(result->device.notFinite(), 0U) << "device: " << describe(*result, result->device);

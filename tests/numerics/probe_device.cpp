@@ -1,106 +1,100 @@
 #include "probe_device.h"
 
-#include "evaluate.h"
+#include "compute_device.h"
 #include "shader_modules.h"
 #include "spirv/compiler.h"
 #include "vulkan_error.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <bit>
 #include <cstring>
+#include <utility>
 
 namespace glint::numerics {
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
+// What timed kernels multiply their inputs by, in turn.
+constexpr std::size_t kOnes = 16;
 
 struct Pushed {
     VkDeviceAddress inputs = 0;
     VkDeviceAddress outputs = 0;
+    VkDeviceAddress ones = 0;
     std::uint32_t count = 0;
+    std::uint32_t repeats = 0;
 };
-
-// Between the #version line and the rest: what the scene decides, and what PROBE means on the device.
-std::string prelude() {
-    return fmt::format(
-        "#define GLINT_ENERGY_COMPENSATION 1\n"
-        "#define PROBE(name) void probe##name(float i[{}], inout float o[{}])\n",
-        kMaxInputs, kMaxOutputs);
-}
-
-// Arrays are indexed by constants only, so that the optimiser takes them apart.
-std::string entry(std::string_view probe, int inputs, int outputs) {
-    std::string text = fmt::format(R"(
-layout(local_size_x = {}) in;
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Floats {{ float data[]; }};
-layout(push_constant, scalar) uniform Block {{ Floats inputs; Floats outputs; uint count; }} block;
-void main() {{
-    uint element = gl_GlobalInvocationID.x;
-    if (element >= block.count) {{
-        return;
-    }}
-    float i[{}];
-    float o[{}];
-)",
-                                   kGroup, kMaxInputs, kMaxOutputs);
-    for (int k = 0; k < inputs; ++k) {
-        text += fmt::format("    i[{}] = block.inputs.data[element * {}u + {}u];\n", k, inputs, k);
-    }
-    for (int k = 0; k < outputs; ++k) {
-        text += fmt::format("    o[{}] = 0.0;\n", k);
-    }
-    text += fmt::format("    probe{}(i, o);\n", probe);
-    for (int k = 0; k < outputs; ++k) {
-        text += fmt::format("    block.outputs.data[element * {}u + {}u] = o[{}];\n", outputs, k, k);
-    }
-    return text + "}\n";
-}
 
 }  // namespace
 
-Result<std::unique_ptr<ProbeDevice>> ProbeDevice::create() {
-    HeadlessOptions options;
-    options.validation = Validation::Synchronization;
-    Result<std::unique_ptr<Context>> context = Context::createHeadless(options);
-    if (!context) {
-        return context.error();
-    }
+Result<std::unique_ptr<ProbeDevice>> ProbeDevice::create(const ProbeDeviceOptions& options) {
     std::unique_ptr<ProbeDevice> device(new ProbeDevice);
-    device->context_ = std::move(*context);
+    if (options.validates) {
+        HeadlessOptions headless;
+        headless.validation = Validation::Synchronization;
+        headless.deviceName = options.name;
+        Result<std::unique_ptr<Context>> context = Context::createHeadless(headless);
+        if (!context) {
+            return context.error();
+        }
+        device->context_ = std::move(*context);
+    } else {
+        Result<std::unique_ptr<Context::State>> bare = createComputeDevice(options.name);
+        if (!bare) {
+            return bare.error();
+        }
+        device->bare_ = std::move(*bare);
+    }
     if (Status status = device->initialise(); !status) {
         return status.error();
     }
     return device;
 }
 
+ProbeDevice::~ProbeDevice() = default;
+
+Context::State& ProbeDevice::state() const {
+    return context_ ? context_->state() : *bare_;
+}
+
 Status ProbeDevice::initialise() {
-    Context::State& state = context_->state();
-    pool_ = std::make_unique<MemoryPool>(state);
-    constexpr VkBufferUsageFlags kUsage =
-        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-    Result<Buffer> inputs =
-        createBuffer(state, *pool_, sizeof(float) * kMaxInputs * kBatch, kUsage, MemoryUse::Upload);
-    if (!inputs) {
-        return inputs.error();
+    pool_ = std::make_unique<MemoryPool>(state());
+    constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                          VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    const auto create = [&](Buffer& buffer, VkDeviceSize floats, MemoryUse use) -> Status {
+        Result<Buffer> made = createBuffer(state(), *pool_, sizeof(float) * floats, kUsage, use);
+        if (!made) {
+            return made.error();
+        }
+        buffer = std::move(*made);
+        return okStatus();
+    };
+    Status status = create(inputs_, VkDeviceSize{kMaxInputs} * kBatch, MemoryUse::Upload);
+    if (status) {
+        status = create(outputs_, VkDeviceSize{kMaxOutputs} * kBatch, MemoryUse::Readback);
     }
-    inputs_ = std::move(*inputs);
-    Result<Buffer> outputs =
-        createBuffer(state, *pool_, sizeof(float) * kMaxOutputs * kBatch, kUsage, MemoryUse::Readback);
-    if (!outputs) {
-        return outputs.error();
+    if (status) {
+        status = create(timedInputs_, VkDeviceSize{kMaxInputs} * kBatch, MemoryUse::Device);
     }
-    outputs_ = std::move(*outputs);
-    Result<CommandRunner> runner = CommandRunner::create(state);
+    if (status) {
+        status = create(ones_, kOnes, MemoryUse::Device);
+    }
+    if (!status) {
+        return status;
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state());
     if (!runner) {
         return runner.error();
     }
     runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+    Result<Timer> timer = Timer::create(state(), 1);
+    if (!timer) {
+        return timer.error();
+    }
+    timer_ = std::move(*timer);
     return createLayout();
 }
 
 Status ProbeDevice::createLayout() {
-    Context::State& state = context_->state();
     VkPushConstantRange range{};
     range.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
     range.size = sizeof(Pushed);
@@ -109,50 +103,60 @@ Status ProbeDevice::createLayout() {
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = state.vk.CreatePipelineLayout(state.handles.device, &info, nullptr, &layout);
+    const VkResult result = state().vk.CreatePipelineLayout(state().handles.device, &info, nullptr, &layout);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
-    layout_ = UniquePipelineLayout(state, layout);
+    layout_ = UniquePipelineLayout(state(), layout);
     return okStatus();
 }
 
-Result<ProbePipeline> ProbeDevice::compile(const std::string& glsl, std::string_view probe, int inputs,
-                                           int outputs) {
-    Context::State& state = context_->state();
-    // Everything after the directives that must come first.
-    const std::size_t firstLine = glsl.find("#line");
-    std::string text = glsl;
-    text.insert(firstLine == std::string::npos ? 0 : firstLine, prelude());
-    text += entry(probe, inputs, outputs);
-    const Result<std::vector<std::uint32_t>> words =
-        compileShader({std::string(probe), ShaderStage::Compute, text, {}}, {});
+Result<ProbePipeline> ProbeDevice::make(std::string_view probe, const std::string& glsl, int inputs,
+                                        int outputs, ProbePrecision precision) {
+    ShaderCompileOptions options;
+    options.halvesAll = precision == ProbePrecision::Half;
+    Result<std::vector<std::uint32_t>> words =
+        compileShader({std::string(probe), ShaderStage::Compute, glsl, {}}, options);
     if (!words) {
         return words.error();
     }
-    Result<UniquePipeline> pipeline = createComputePipeline(state, *words, layout_.get());
+    Result<UniquePipeline> pipeline = createComputePipeline(state(), *words, layout_.get());
     if (!pipeline) {
         return pipeline.error();
     }
-    return ProbePipeline{std::move(*pipeline), inputs, outputs};
+    return ProbePipeline{std::move(*pipeline), inputs, outputs, std::move(*words)};
+}
+
+Result<ProbePipeline> ProbeDevice::compile(std::string_view probe, int inputs, int outputs,
+                                           ProbePrecision precision) {
+    return make(probe, probeKernel(probe, inputs, outputs, precision), inputs, outputs, precision);
+}
+
+Result<ProbePipeline> ProbeDevice::compileTimed(std::string_view probe, int inputs, int outputs,
+                                                ProbePrecision precision) {
+    return make(probe, timedKernel(probe, inputs, outputs, precision), inputs, outputs, precision);
+}
+
+void ProbeDevice::dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, const Buffer& inputs,
+                           std::uint32_t threads, std::uint32_t count, std::uint32_t repeats) const {
+    const DeviceTable& vk = state().vk;
+    const Pushed pushed{inputs.address, outputs_.address, ones_.address, count, repeats};
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline.get());
+    vk.CmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), &pushed);
+    vk.CmdDispatch(commands, (threads + kProbeGroup - 1) / kProbeGroup, 1, 1);
 }
 
 Status ProbeDevice::run(const ProbePipeline& pipeline, std::span<const float> inputs,
                         std::span<float> outputs) {
-    Context::State& state = context_->state();
-    std::memcpy(inputs_.mapped, inputs.data(), inputs.size_bytes());
-    const Pushed pushed{
-        inputs_.address, outputs_.address,
-        static_cast<std::uint32_t>(outputs.size()) / static_cast<std::uint32_t>(pipeline.outputs)};
+    setInputs(inputs);
+    const auto count =
+        static_cast<std::uint32_t>(outputs.size()) / static_cast<std::uint32_t>(pipeline.outputs);
     Result<VkCommandBuffer> commands = runner_->begin();
     if (!commands) {
         return commands.error();
     }
-    state.vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline.get());
-    state.vk.CmdPushConstants(*commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
-                              &pushed);
-    state.vk.CmdDispatch(*commands, (pushed.count + kGroup - 1) / kGroup, 1, 1);
-    recordDependency(state, *commands,
+    dispatch(*commands, pipeline, inputs_, count, count, 1);
+    recordDependency(state(), *commands,
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
     if (Status status = runner_->submitAndWait(); !status) {
@@ -162,12 +166,50 @@ Status ProbeDevice::run(const ProbePipeline& pipeline, std::span<const float> in
     return okStatus();
 }
 
+void ProbeDevice::setInputs(std::span<const float> inputs) {
+    std::memcpy(inputs_.mapped, inputs.data(), inputs.size_bytes());
+}
+
+Result<double> ProbeDevice::time(const ProbePipeline& pipeline, std::uint32_t count, std::uint32_t threads,
+                                 std::uint32_t repeats) {
+    Result<VkCommandBuffer> commands = runner_->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    const DeviceTable& vk = state().vk;
+    const VkBufferCopy copy{0, 0, sizeof(float) * count * static_cast<VkDeviceSize>(pipeline.inputs)};
+    vk.CmdCopyBuffer(*commands, inputs_.handle.get(), timedInputs_.handle.get(), 1, &copy);
+    vk.CmdFillBuffer(*commands, ones_.handle.get(), 0, VK_WHOLE_SIZE, std::bit_cast<std::uint32_t>(1.0F));
+    recordDependency(state(), *commands,
+                     {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
+    timer_->recordReset(*commands);
+    timer_->recordBegin(*commands, 0);
+    dispatch(*commands, pipeline, timedInputs_, threads, count, repeats);
+    timer_->recordEnd(*commands, 0);
+    if (Status status = runner_->submitAndWait(); !status) {
+        return status.error();
+    }
+    const Result<std::vector<double>> times = timer_->read(1);
+    return times ? Result<double>(times->front()) : times.error();
+}
+
 std::string ProbeDevice::description() const {
-    return context_->deviceName() + ", " + context_->driverName();
+    return state().limits.deviceName + ", " + state().limits.driverName;
+}
+
+bool ProbeDevice::hasHalf() const {
+    return state().handles.shaderFloat16;
+}
+
+bool ProbeDevice::isCpu() const {
+    VkPhysicalDeviceProperties properties{};
+    state().instance.GetPhysicalDeviceProperties(state().handles.physicalDevice, &properties);
+    return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
 }
 
 std::vector<std::string> ProbeDevice::messages() const {
-    return context_->validationMessages();
+    return context_ ? context_->validationMessages() : std::vector<std::string>();
 }
 
 }  // namespace glint::numerics

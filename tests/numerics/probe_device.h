@@ -1,12 +1,16 @@
-// Runs probes on the Vulkan device, with the validation layers on.
+// Runs probes on the Vulkan device.
 #pragma once
 
 #include "commands.h"
+#include "evaluate.h"
+#include "probe_kernel.h"
 #include "resources.h"
+#include "timer.h"
 
 #include <glint/context.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,40 +18,76 @@
 
 namespace glint::numerics {
 
-// A compute pipeline that applies one probe to each of up to ProbeDevice::kBatch inputs.
+// A compute pipeline around one probe.
 struct ProbePipeline {
     UniquePipeline pipeline;
     int inputs = 0;
     int outputs = 0;
+    std::vector<std::uint32_t> spirv;
+};
+
+struct ProbeDeviceOptions {
+    std::string name;  // part of the wanted device's name; empty: the first that will do
+    // With the validation layers, on a device that can run Glint; without: on any that computes.
+    bool validates = true;
 };
 
 class ProbeDevice {
 public:
     static constexpr std::uint32_t kBatch = 65536;
 
-    // Errors: those of Context::createHeadless.
-    static Result<std::unique_ptr<ProbeDevice>> create();
+    // Errors: those of Context::createHeadless or createComputeDevice.
+    static Result<std::unique_ptr<ProbeDevice>> create(const ProbeDeviceOptions& options = {});
+    ~ProbeDevice();
 
-    // Compiles the flattened probes with `probe` as the entry. Errors: those of compileShader, "vulkan-call".
-    Result<ProbePipeline> compile(const std::string& glsl, std::string_view probe, int inputs, int outputs);
+    // The probe for up to kBatch inputs. Errors: those of compileShader, "vulkan-call".
+    Result<ProbePipeline> compile(std::string_view probe, int inputs, int outputs,
+                                  ProbePrecision precision = ProbePrecision::Single);
+    // timedKernel(). Errors likewise.
+    Result<ProbePipeline> compileTimed(std::string_view probe, int inputs, int outputs,
+                                       ProbePrecision precision);
 
     // outputs.size() / pipeline.outputs elements, at most kBatch.
     Status run(const ProbePipeline& pipeline, std::span<const float> inputs, std::span<float> outputs);
 
+    // Puts the inputs of time() where pipelines find them, at most kBatch elements.
+    void setInputs(std::span<const float> inputs);
+    // Milliseconds of device time of `threads` threads, at most kMaxThreads, that evaluate `repeats` times
+    // each, over `count` elements. Errors: "timings-unavailable", "vulkan-call".
+    Result<double> time(const ProbePipeline& pipeline, std::uint32_t count, std::uint32_t threads,
+                        std::uint32_t repeats);
+    static constexpr std::uint32_t kMaxThreads = kBatch * kMaxOutputs;
+
     std::string description() const;
+    // Whether it computes in 16 bits.
+    bool hasHalf() const;
+    bool isCpu() const;
+    // Of the validation layers.
     std::vector<std::string> messages() const;
 
 private:
     ProbeDevice() = default;
+    Context::State& state() const;
     Status initialise();
     Status createLayout();
+    Result<ProbePipeline> make(std::string_view probe, const std::string& glsl, int inputs, int outputs,
+                               ProbePrecision precision);
+    // Records one dispatch, which reads from `inputs`.
+    void dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, const Buffer& inputs,
+                  std::uint32_t threads, std::uint32_t count, std::uint32_t repeats) const;
 
+    // One of the two.
     std::unique_ptr<Context> context_;
+    std::unique_ptr<Context::State> bare_;
     std::unique_ptr<MemoryPool> pool_;
     Buffer inputs_;
     Buffer outputs_;
+    // In the device's own memory: what timed kernels read.
+    Buffer timedInputs_;
+    Buffer ones_;
     UniquePipelineLayout layout_;
     std::unique_ptr<CommandRunner> runner_;
+    std::optional<Timer> timer_;
 };
 
 }  // namespace glint::numerics

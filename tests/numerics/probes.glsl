@@ -401,7 +401,8 @@ PROBE(EvaluateUnderSheen) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
     WRITE3(0, f);
-    o[3] = largest(evaluateBsdf(b, GIVEN_FEATURES_WITHOUT_SHEEN, VEC3(31))) + 1e-4;
+    vec3 bare = evaluateBsdf(b, GIVEN_FEATURES_WITHOUT_SHEEN, VEC3(31));
+    o[3] = max(bare.x, max(bare.y, bare.z)) + 1e-4;
 }
 
 PROBE(BsdfPdf) {

@@ -1,29 +1,14 @@
 #include "report.h"
 
-#include "base/files.h"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace glint::numerics {
 namespace {
 
-constexpr std::string_view kBegin = "<!-- begin numerics -->\n";
-constexpr std::string_view kEnd = "<!-- end numerics -->";
-
 bool within(const ErrorStatistics& statistics, const Bounds& bounds) {
     return statistics.notFinite() == 0 && statistics.worst() <= bounds.worst &&
            statistics.median() <= bounds.median;
-}
-
-std::string formatError(double error) {
-    if (error == 0.0) {
-        return "exact";
-    }
-    if (error < 1e-10) {
-        return "< 1e-10";
-    }
-    return std::isfinite(error) ? fmt::format("{:.1e}", error) : "not finite";
 }
 
 // Inputs that fit into a table; the JSON has them all.
@@ -50,12 +35,14 @@ bool ReportRow::passes() const {
                                     probe.undecidedShare * static_cast<double>(result.inputs));
 }
 
-Result<std::string> readProbes() {
-    Result<Bytes> bytes = readFile(GLINT_PROBES_GLSL);
-    if (!bytes) {
-        return bytes.error();
+std::string formatError(double error) {
+    if (error == 0.0) {
+        return "exact";
     }
-    return std::string(bytes->begin(), bytes->end());
+    if (error < 1e-10) {
+        return "< 1e-10";
+    }
+    return std::isfinite(error) ? fmt::format("{:.1e}", error) : "not finite";
 }
 
 std::string formatInputs(std::span<const float> inputs) {
@@ -107,14 +94,17 @@ std::string toJson(const Report& report) {
     return json.dump(2) + "\n";
 }
 
-Result<std::string> replaceRegion(const std::string& document, const std::string& region) {
-    const std::size_t begin = document.find(kBegin);
-    const std::size_t end = document.find(kEnd);
+Result<std::string> replaceRegion(const std::string& document, const std::string& name,
+                                  const std::string& region) {
+    const std::string first = fmt::format("<!-- begin {} -->\n", name);
+    const std::string last = fmt::format("<!-- end {} -->", name);
+    const std::size_t begin = document.find(first);
+    const std::size_t end = document.find(last);
     if (begin == std::string::npos || end == std::string::npos || end < begin) {
         return makeError("report-marker", "", "the document lacks the markers of the generated region",
-                         fmt::format("add the lines {}and {}", kBegin, kEnd));
+                         fmt::format("add the lines {}and {}", first, last));
     }
-    return document.substr(0, begin + kBegin.size()) + region + document.substr(end);
+    return document.substr(0, begin + first.size()) + region + document.substr(end);
 }
 
 }  // namespace glint::numerics

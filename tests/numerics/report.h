@@ -24,17 +24,18 @@ struct Report {
     std::vector<ReportRow> rows;
 };
 
-// The flattened text of all probes, from the build. Errors: those of readFile.
-Result<std::string> readProbes();
-
 // "(0.5, 1, -2e-07)", with the digits that identify a float.
 std::string formatInputs(std::span<const float> inputs);
 
 std::string toMarkdown(const Report& report);
 std::string toJson(const Report& report);
 
-// `document` with the text between the markers "<!-- begin numerics -->" and "<!-- end numerics -->"
-// replaced. Error "report-marker" where it lacks them.
-Result<std::string> replaceRegion(const std::string& document, const std::string& region);
+// As the table has it: "exact", "< 1e-10", "1.2e-07", "not finite".
+std::string formatError(double error);
+
+// `document` with the text between the markers "<!-- begin NAME -->" and "<!-- end NAME -->" replaced. Error
+// "report-marker" where it lacks them.
+Result<std::string> replaceRegion(const std::string& document, const std::string& name,
+                                  const std::string& region);
 
 }  // namespace glint::numerics

@@ -11,7 +11,10 @@ namespace glint::testing {
 
 Context& sharedContext() {
     static const std::unique_ptr<Context> context = [] {
-        Result<std::unique_ptr<Context>> made = Context::createHeadless({Validation::Synchronization, {}});
+        HeadlessOptions options;
+        options.validation = Validation::Synchronization;
+        options.shaderFloat16 = true;
+        Result<std::unique_ptr<Context>> made = Context::createHeadless(options);
         if (!made) {
             ADD_FAILURE() << toString(made.error());
             std::abort();

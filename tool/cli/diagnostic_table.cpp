@@ -87,6 +87,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"glb-version", kError, "A GLB is of another version."},
     {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
     {"gltf", kError, "A scene can't be read, for a reason that has no id of its own."},
+    {"half-precision", kError, "A package computes in 16-bit float, which the device can't."},
     {"image-data", kError, "An image has no source, or two."},
     {"image-decode", kError, "An image can't be decoded."},
     {"image-extension", kError, "The file name of an image has an unknown extension."},

@@ -170,6 +170,7 @@ Json toJson(const InspectedPackage& inspected) {
              {{"hitLobes", manifest.hitLobes},
               {"energyCompensation", manifest.energyCompensation},
               {"textureLod", manifest.textureLod},
+              {"precision", package::bitsOf(package.precision())},
               {"shadows", std::string(package::nameOf(package.shape().shadows))},
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
               {"positionFetch", package.positionFetch()},
@@ -201,6 +202,7 @@ std::string toText(const InspectedPackage& inspected) {
          {"hit lobes", hitLobesText(manifest)},
          {"energy compensation", manifest.energyCompensation ? "on" : "off"},
          {"texture LOD", manifest.textureLod},
+         {"precision", fmt::format("{}", package::bitsOf(package.precision()))},
          {"cases", fmt::format("{}", inspected.caseCount())},
          {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),
                                 inspected.uniqueFiles(), formatBytes(inspected.spirvBytes()))}});

@@ -316,6 +316,7 @@ void settleProfile(PlanArguments& arguments) {
 void AccuracyArguments::apply(CompileSettings& settings) const {
     settings.energyCompensation = energyCompensation == "on";
     settings.textureLod = textureLod == "mip0" ? TextureLod::Mip0 : TextureLod::Cones;
+    settings.precision = halves() ? package::ShadingPrecision::Half : package::ShadingPrecision::Single;
 }
 
 std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments) {
@@ -326,9 +327,14 @@ std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArgument
     CLI::Option& lod = addChoice(command, "--texture-lod", arguments.textureLod, {"cones", "mip0"},
                                  "which level of a texture is read; cones: by the\n"
                                  "footprint of the ray; mip0: the finest");
+    CLI::Option& precision = addChoice(command, "--precision", arguments.precision, {"32", "16"},
+                                       "bits of shading; 16: materials, Fresnel and weights of\n"
+                                       "lobes are computed in 16-bit float; geometry, densities\n"
+                                       "and light keep 32");
     energy.group("Shaders");
     lod.group("Shaders");
-    return {&energy, &lod};
+    precision.group("Shaders");
+    return {&energy, &lod, &precision};
 }
 
 CLI::Option& addVariant(CLI::App& command, std::string& variant) {

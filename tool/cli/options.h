@@ -69,6 +69,11 @@ void settleProfile(PlanArguments& arguments);
 struct AccuracyArguments {
     std::string energyCompensation = "on";
     std::string textureLod = "cones";
+    std::string precision = "32";
+    // Whether shaders compute in 16-bit float, too.
+    bool halves() const {
+        return precision == "16";
+    }
     void apply(CompileSettings& settings) const;
 };
 std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments);

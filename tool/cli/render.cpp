@@ -66,17 +66,19 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
     return package;
 }
 
-// Of the package in a folder, if there is one. What is wrong with it is told when it is used.
-bool fetchesPositions(const std::string& folder) {
-    const Result<Package> package = folder.empty() ? Result<Package>(Diagnostic{}) : Package::load(folder);
-    return package && package->positionFetch();
-}
-
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
-    options.positionFetch = arguments.tracing.positionFetch || fetchesPositions(arguments.package);
+    options.positionFetch = arguments.tracing.positionFetch;
+    options.shaderFloat16 = arguments.accuracy.halves();
+    // Of the package in a folder, if there is one. What is wrong with it is told when it is used.
+    if (!arguments.package.empty()) {
+        if (const Result<Package> package = Package::load(arguments.package)) {
+            options.positionFetch = package->positionFetch();
+            options.shaderFloat16 = package->precision() == package::ShadingPrecision::Half;
+        }
+    }
     return Context::createHeadless(options);
 }
 

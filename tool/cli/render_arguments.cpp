@@ -129,7 +129,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
             "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
-            "--shadows,\n--hit-record, --effects and --profile)")
+            "--precision,\n--shadows, --hit-record, --effects and --profile)")
         .group("Shaders");
     addRenderReports(command, *arguments);
     command.callback([arguments, decided, then, &command] {

@@ -42,6 +42,7 @@ struct CompileSettings {
     bool addsLight = false;
     bool energyCompensation = true;  // of light that bounces between microfacets more than once
     TextureLod textureLod = TextureLod::Cones;
+    package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;            // threads; 0: one a core
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // the flattened sources, in glsl/

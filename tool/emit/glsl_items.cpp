@@ -56,6 +56,11 @@ void forEachToken(std::string_view text, const Visit& visit) {
     }
 }
 
+// Says in how many bits, not what is declared.
+bool isPrecision(std::string_view word) {
+    return word == "GLINT_RELAXED" || word == "mediump" || word == "highp";
+}
+
 // What a declaration is, told from its tokens outside of all brackets.
 class Shape {
 public:
@@ -102,6 +107,9 @@ private:
         ++groups_;
     }
     void addOuter(std::string_view token) {
+        if (isPrecision(token)) {
+            return;
+        }
         ended_ = token == ";";
         if (startsWord(token.front()) && !assigned_) {
             isConst_ = words_ == 0 ? token == "const" : isConst_;

@@ -56,6 +56,7 @@ Json settingsOf(const CompileSettings& settings) {
     return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
             {"energyCompensation", settings.energyCompensation},
             {"textureLod", toString(settings.textureLod)},
+            {"precision", package::bitsOf(settings.precision)},
             {"shadows", package::nameOf(settings.shadows)},
             {"hitRecord", package::nameOf(settings.hitRecord)},
             {"sky", settings.environmentMap ? "map" : "gradient"},

@@ -109,8 +109,13 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
 }
 
 // What a module knows of itself, before anything else of its text.
-std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKey& key) {
+std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKey& key,
+                          package::ShadingPrecision precision) {
     std::string defines;
+    if (precision == package::ShadingPrecision::Half) {
+        // Or else what names no precision takes that of its neighbours, mediump included.
+        defines += "precision highp float;\nprecision highp int;\n";
+    }
     const ShaderStage stage = stageOf(info, key.tracer);
     if (stage != ShaderStage::Vertex && stage != ShaderStage::Fragment) {
         defines += fmt::format("#define GLINT_TRACER {}\n#define GLINT_RAY_GENERATION {}\n", key.tracer,
@@ -131,7 +136,7 @@ void insertDefines(std::string& text, const std::string& defines) {
 
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
                                 std::string_view caseName, const SourceSet& sources,
-                                const kainjow::mustache::data& context) {
+                                const kainjow::mustache::data& context, package::ShadingPrecision precision) {
     const package::RoleInfo& info = *package::findRole(key.role);
     ModuleSource module{key, stageOf(info, key.tracer), moduleName(source, info, key, caseName), {}, {}};
     std::string text;
@@ -148,7 +153,7 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
     } else {
         return makeError("source-include", origin, "there is no such shader");
     }
-    insertDefines(text, moduleDefines(info, key));
+    insertDefines(text, moduleDefines(info, key, precision));
     Result<std::string> flattened = flatten(origin, text, sources.lookup(), FlattenSide::Glsl);
     if (!flattened) {
         return flattened.error();
@@ -195,7 +200,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
         const auto* const source = std::ranges::find(kSources, key.role, &RoleSource::role);
         Result<ModuleSource> module =
             makeModule(source->source, key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
-                       sources, context);
+                       sources, context, settings.precision);
         if (!module) {
             return module.error();
         }

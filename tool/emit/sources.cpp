@@ -50,6 +50,10 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
+    text += fmt::format("#define GLINT_PRECISION {}\n", package::bitsOf(settings.precision));
+    // Of what keeps its meaning in 16 bits.
+    text += fmt::format("#define GLINT_RELAXED{}\n",
+                        settings.precision == package::ShadingPrecision::Half ? " mediump" : "");
     text += fmt::format("#define GLINT_SHADOWS_DEFERRED {}\n",
                         flag(settings.shadows == package::ShadowPlacement::Deferred));
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",

@@ -220,6 +220,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.hitRecord = settings.hitRecord;
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
+    header.precision = settings.precision;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.effects = plan.effects.effects;

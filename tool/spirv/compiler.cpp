@@ -130,7 +130,7 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
         return translated;
     }
     Result<std::vector<std::uint32_t>> optimized =
-        optimizeSpirv(*translated, source.name, source.functionsApart, options.debugInfo);
+        optimizeSpirv(*translated, source.name, source.functionsApart, options.debugInfo, options.halvesAll);
     if (!optimized) {
         return optimized;
     }

@@ -21,10 +21,13 @@ struct ShaderSource {
 
 struct ShaderCompileOptions {
     bool debugInfo = false;  // keep names
+    // Every operation on floats in 16 bits, not only what is mediump: for measurements of what that costs.
+    bool halvesAll = false;
 };
 
-// Vulkan 1.2, SPIR-V 1.5: so that every device with ray queries or ray tracing pipelines can load it.
-// Thread-safe. Errors: "glsl" (what glslang says, first error first), "spirv-optimize", "spirv-validate".
+// mediump is 16-bit float. Vulkan 1.2, SPIR-V 1.5: so that every device with ray queries or ray tracing
+// pipelines can load it. Thread-safe. Errors: "glsl" (what glslang says, first error first),
+// "spirv-optimize", "spirv-validate".
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
 

@@ -1,6 +1,7 @@
 #include "spirv/optimize.h"
 
 #include "spirv/call_graph.h"
+#include "spirv/half.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
@@ -62,7 +63,7 @@ bool tracesByPipeline(const std::vector<std::uint32_t>& words) {
     return false;
 }
 
-void registerPasses(spvtools::Optimizer& optimizer, bool keepNames, bool keepMembers) {
+void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
@@ -71,6 +72,9 @@ void registerPasses(spvtools::Optimizer& optimizer, bool keepNames, bool keepMem
     registerFolding(optimizer);
     optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
     optimizer.RegisterPerformancePasses();
+}
+
+void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
     // What the performance passes uncover late, folded once more: features are decided through two masks.
     registerFolding(optimizer);
     optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
@@ -158,11 +162,38 @@ Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
     return okStatus();
 }
 
+// What is of relaxed precision, or every operation on floats, in 16 bits. Between inlining, so that
+// neighbours share what is converted, and clearing away.
+Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bool all) {
+    const auto fold = [](spvtools::Optimizer& optimizer) {
+        registerFolding(optimizer);
+        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass());
+    };
+    const auto convert = [all](spvtools::Optimizer& optimizer) {
+        if (all) {
+            optimizer.RegisterPass(spvtools::CreateRelaxFloatOpsPass());
+        }
+        optimizer.RegisterPass(spvtools::CreateConvertRelaxedToHalfPass());
+    };
+    const auto share = [](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPass(spvtools::CreateSimplificationPass())
+            .RegisterPass(spvtools::CreateRedundancyEliminationPass());
+    };
+    if (Status status = runPasses(words, name, fold); !status) {
+        return status;
+    }
+    hideExtractions(words);
+    Status status = runPasses(words, name, convert);
+    showExtractions(words);
+    return status ? runPasses(words, name, share) : status;
+}
+
 }  // namespace
 
 Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
                                                  const std::string& name,
-                                                 const std::vector<std::string>& apart, bool keepNames) {
+                                                 const std::vector<std::string>& apart, bool keepNames,
+                                                 bool halvesAll) {
     std::vector<std::uint32_t> optimized = words;
     if (!apart.empty()) {
         if (Status status = inlineByLevel(optimized, name, apart); !status) {
@@ -172,10 +203,16 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
     // Payloads have no offsets: the stages of a pipeline must agree on their members. Debuggers show them
     // all.
     const bool keepMembers = keepNames || tracesByPipeline(optimized);
-    const auto registerAll = [&](spvtools::Optimizer& optimizer) {
-        registerPasses(optimizer, keepNames, keepMembers);
-    };
-    if (Status status = runPasses(optimized, name, registerAll); !status) {
+    const auto inlineAll = [&](spvtools::Optimizer& optimizer) { registerInlining(optimizer, keepNames); };
+    const auto clearUp = [&](spvtools::Optimizer& optimizer) { registerClearing(optimizer, keepMembers); };
+    Status status = runPasses(optimized, name, inlineAll);
+    if (status && (halvesAll || relaxesPrecision(optimized))) {
+        status = makeHalves(optimized, name, halvesAll);
+    }
+    if (status) {
+        status = runPasses(optimized, name, clearUp);
+    }
+    if (!status) {
         return status.error();
     }
     // Drivers may inline as they like.

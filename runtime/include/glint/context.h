@@ -27,6 +27,8 @@ struct DeviceHandles {
     bool samplerAnisotropy = false;
     // VK_KHR_ray_tracing_position_fetch is enabled on the device: packages run that need it.
     bool positionFetch = false;
+    // VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device: packages run that need it.
+    bool shaderFloat16 = false;
     // package::Tracer bits whose extensions and features are enabled on the device: those that its
     // DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -43,6 +45,8 @@ struct HeadlessOptions {
     // VK_KHR_ray_tracing_position_fetch, for packages that need it. Error "device-features" where it is
     // missing.
     bool positionFetch = false;
+    // 16-bit float arithmetic, for packages that need it. Error "device-features" where it is missing.
+    bool shaderFloat16 = false;
 };
 
 // package::Tracer bits that a device can be created with; 0: Glint does not run on it.
@@ -59,8 +63,9 @@ struct PositionFetchFeatures {
 // Points into static memory or itself; neither copy nor move.
 struct DeviceRequirements {
     // `tracers`: which to enable, some of deviceTracers(). Packages run whose tracer is among them.
-    // positionFetch: for packages that need it.
-    explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false);
+    // positionFetch, shaderFloat16: for packages that need them.
+    explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false,
+                                bool shaderFloat16 = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 

@@ -57,6 +57,8 @@ public:
     // Whether shaders read positions of hit triangles from acceleration structures:
     // DeviceHandles::positionFetch.
     bool positionFetch() const;
+    // With Half the shaders compute in 16-bit float, too: DeviceHandles::shaderFloat16.
+    package::ShadingPrecision precision() const;
     std::uint32_t caseCount() const;
     // Buckets of a visibility buffer: 0 for misses, 1 + shader ID for hits.
     std::uint32_t bucketCount() const;

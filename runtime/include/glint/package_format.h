@@ -14,7 +14,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::uint32_t kVersion = 6;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -45,6 +45,12 @@ enum class ShadowPlacement : std::uint32_t {
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
+};
+
+// What of shading is computed in how many bits.
+enum class ShadingPrecision : std::uint32_t {
+    Single = 0,  // all in 32-bit float
+    Half = 1,    // what keeps its meaning there in 16-bit float: the device needs shaderFloat16
 };
 
 // How hits are counted into buckets and copied in their order. All give each hit one slot; which is fastest
@@ -78,7 +84,7 @@ struct PackageHeader {
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
     std::uint32_t effects;         // Effect bits
     std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
-    std::uint32_t pad;
+    ShadingPrecision precision;
 };
 
 enum class SectionKind : std::uint32_t {

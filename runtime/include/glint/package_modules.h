@@ -102,6 +102,10 @@ constexpr std::string_view nameOf(HitRecordFormat format) {
     return format == HitRecordFormat::Packed ? "packed" : "full";
 }
 
+constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
+    return precision == ShadingPrecision::Single ? 32 : 16;
+}
+
 constexpr std::string_view nameOf(Ordering ordering) {
     constexpr std::string_view kNames[] = {"global-atomics", "wave-loop",       "wave-aggregated",
                                            "wave-ballot",    "local-histogram", "unknown"};

@@ -184,6 +184,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     EXPECT_EQ(usual["settings"]["hitLobes"].size(), featureNames(kLobeMask).size());
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");
+    EXPECT_EQ(usual["settings"]["precision"], 32);
     EXPECT_TRUE(usual["scenes"][0]["variant"].is_null());
 
     Scene scene = makeSampleScene();
@@ -192,12 +193,14 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     settings.plan.keys.keptLobes = bit(Feature::Unlit) | bit(Feature::Ior);
     settings.energyCompensation = false;
     settings.textureLod = TextureLod::Mip0;
+    settings.precision = package::ShadingPrecision::Half;
     const auto package = compilePackage(scene, settings);
     ASSERT_TRUE(package) << toString(package.error());
     const nlohmann::json other = manifestOf(*package);
     EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
     EXPECT_EQ(other["settings"]["energyCompensation"], false);
     EXPECT_EQ(other["settings"]["textureLod"], "mip0");
+    EXPECT_EQ(other["settings"]["precision"], 16);
     EXPECT_EQ(other["scenes"][0]["variant"], "Night");
     const auto& dropped = other["dropped"];
     EXPECT_TRUE(std::any_of(dropped.begin(), dropped.end(),

@@ -48,6 +48,20 @@ TEST(DropUnused, DropsWhatNothingReaches) {
                         "void main() { kept(float(kUsed)); }\n");
 }
 
+// A precision is no part of what is declared.
+TEST(DropUnused, SeesThroughPrecision) {
+    const std::string used = "GLINT_RELAXED vec3 used(GLINT_RELAXED vec3 x) { return x; }\n";
+    const std::string text = dropUnused(kStart + "#line 1 \"a.glsl\"\n" + used +
+                                        "GLINT_RELAXED float a(GLINT_RELAXED float x) { return x; }\n"
+                                        "mediump vec3 b() { return vec3(0.0); }\n"
+                                        "const highp float kC = 1.0;\n"
+                                        "void main() { used(vec3(1.0)); }\n");
+    EXPECT_TRUE(has(text, used)) << text;
+    EXPECT_FALSE(has(text, "float a(")) << text;
+    EXPECT_FALSE(has(text, "vec3 b(")) << text;
+    EXPECT_FALSE(has(text, "kC")) << text;
+}
+
 TEST(DropUnused, KeepsWhatItCantTell) {
     for (const char* const text :
          {"float a(float x);\nvoid main() {}\n", "int a, b;\nvoid main() {}\n",

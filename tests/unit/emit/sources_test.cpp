@@ -57,14 +57,19 @@ TEST(SceneSource, HoldsTheSettings) {
     const std::string usual = sceneSource({}, settings);
     EXPECT_TRUE(defines(usual, "GLINT_ENERGY_COMPENSATION", "1"));
     EXPECT_TRUE(defines(usual, "GLINT_TEXTURE_LOD_CONES", "1"));
+    EXPECT_TRUE(defines(usual, "GLINT_PRECISION", "32"));
+    EXPECT_NE(usual.find("#define GLINT_RELAXED\n"), std::string::npos);
     EXPECT_TRUE(defines(usual, "GLINT_ALPHA_TESTED", "0"));
     EXPECT_TRUE(defines(usual, "GLINT_HAS_MASKED", "1"));
     settings.energyCompensation = false;
     settings.textureLod = TextureLod::Mip0;
+    settings.precision = package::ShadingPrecision::Half;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     const std::string other = sceneSource({}, settings);
     EXPECT_TRUE(defines(other, "GLINT_ENERGY_COMPENSATION", "0"));
     EXPECT_TRUE(defines(other, "GLINT_TEXTURE_LOD_CONES", "0"));
+    EXPECT_TRUE(defines(other, "GLINT_PRECISION", "16"));
+    EXPECT_TRUE(defines(other, "GLINT_RELAXED", "mediump"));
     EXPECT_TRUE(defines(other, "GLINT_ALPHA_TESTED", "1"));
 }
 

@@ -174,6 +174,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.strategies = spec.strategies;
     header.tracers = spec.tracers;
     header.alphaTested = spec.alphaTested;
+    header.precision = spec.precision;
     header.effects = kEffects;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;

@@ -41,6 +41,7 @@ struct PackageSpec {
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
     std::uint32_t tracers = package::kTracerRayQuery;
     std::uint32_t alphaTested = 0;
+    package::ShadingPrecision precision = package::ShadingPrecision::Single;
     std::uint32_t caseCount = 0;
     std::uint32_t interopHash = 0;
     std::vector<ModuleSpec> modules;

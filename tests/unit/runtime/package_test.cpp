@@ -44,6 +44,7 @@ protected:
 PackageSpec makeRichSpec() {
     PackageSpec spec = test::makeSpec();
     spec.alphaTested = 1;
+    spec.precision = package::ShadingPrecision::Half;
     spec.textures = {{0, 1}, {0, 0}};
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].textures[0].textureIndex = 1;
@@ -70,6 +71,7 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_TRUE(package.supports(package::kStrategyUber));
     EXPECT_TRUE(package.supports(package::kStrategyVisibility));
     EXPECT_TRUE(package.alphaTested());
+    EXPECT_EQ(package.precision(), package::ShadingPrecision::Half);
     EXPECT_EQ(package.caseCount(), 2U);
     EXPECT_EQ(package.bucketCount(), 3U);
     EXPECT_EQ(package.string(package.cases()[1].name), "Textured");
@@ -296,6 +298,7 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"twice", [](PackageSpec& s) { s.primitives[1] = s.primitives[0]; }},
         {"alpha policy", [](PackageSpec& s) { s.alphaTested = 0; }},
         {"alpha policy value", [](PackageSpec& s) { s.alphaTested = 2; }},
+        {"precision", [](PackageSpec& s) { s.precision = package::ShadingPrecision{2}; }},
         {"geometry flags", [](PackageSpec& s) { s.primitives[0].geometryFlags |= 1U << 31; }},
         {"alpha mode", [](PackageSpec& s) { s.primitives[0].alphaMode = 3; }},
         {"key short of its case",

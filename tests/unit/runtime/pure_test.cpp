@@ -224,6 +224,11 @@ TEST(RequirementsTest, TracersAreThoseWithEveryFeature) {
     EXPECT_EQ(tracersOf(report), 0U);
 }
 
+TEST(RequirementsTest, HalfPrecisionIsEnabledWhereItIsAskedFor) {
+    EXPECT_EQ(DeviceRequirements().vulkan12.shaderFloat16, VK_FALSE);
+    EXPECT_EQ(DeviceRequirements(package::kAllTracers, false, true).vulkan12.shaderFloat16, VK_TRUE);
+}
+
 // What a device is created with names nothing of a tracer that was not asked for.
 TEST(RequirementsTest, OnlyTheTracersAskedForAreEnabled) {
     const auto enabled = [](std::uint32_t tracers) {

@@ -1,0 +1,47 @@
+#include "ladder_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace glint::numerics {
+namespace {
+
+// Between neighbours in proportion, as R's type 7 (Hyndman and Fan 1996, "Sample Quantiles in Statistical
+// Packages").
+double quantile(const std::vector<double>& sorted, double share) {
+    const double place = share * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+}
+
+// How many of the least, and of the greatest, values an interval leaves out that holds the population's
+// median with a chance of 95 %: the most for which a binomial of that many trials and a half has at most 5 %
+// in both tails. 0 where there are too few values.
+std::size_t outside(std::size_t count) {
+    constexpr double kTails = 0.05;
+    double term = std::exp2(-static_cast<double>(count));
+    double tail = term;
+    std::size_t cut = 0;
+    while (cut + 1 < count / 2) {
+        term *= static_cast<double>(count - cut) / static_cast<double>(cut + 1);
+        if (2.0 * (tail + term) > kTails) {
+            break;
+        }
+        tail += term;
+        ++cut;
+    }
+    return cut;
+}
+
+}  // namespace
+
+Spread spreadOf(std::vector<double> values) {
+    std::ranges::sort(values);
+    const std::size_t cut = outside(values.size());
+    return {quantile(values, 0.5), values[cut], values[values.size() - 1 - cut], quantile(values, 0.25),
+            quantile(values, 0.75)};
+}
+
+}  // namespace glint::numerics

@@ -1,0 +1,180 @@
+// Shading in 16 bits beside that in 32: nothing that is infinite or no number, and nearly the same picture.
+#include "gltf/import.h"
+#include "image/compare.h"
+#include "render/pixel_test.h"
+#include "render/rooms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+CompileSettings settingsOf(package::Strategy strategy, package::ShadingPrecision precision) {
+    CompileSettings settings;
+    settings.strategies = strategy;
+    settings.precision = precision;
+    settings.effects = {false, package::kEffectShadow | package::kEffectReflection |
+                                   package::kEffectRefraction | package::kEffectIndirectDiffuse};
+    return settings;
+}
+
+LinearImage rendered(const Scene& scene, package::Strategy strategy, package::ShadingPrecision precision,
+                     const RenderSetup& setup) {
+    const LoadedScene loaded(scene, settingsOf(strategy, precision));
+    FrameCounters counters;
+    LinearImage image = loaded.ok() ? loaded.render(strategy, setup, &counters) : LinearImage{};
+    EXPECT_EQ(counters.nonFinite, 0U);
+    return image;
+}
+
+// `bound`: of relMSE, about eight times what was measured on lavapipe.
+void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
+    RenderSetup setup = defaultSetup(scene, 64, 36);
+    setup.frame.maxReflectionRoughness = 1.0F;
+    setup.samples = 4;
+    const LinearImage single = rendered(scene, strategy, package::ShadingPrecision::Single, setup);
+    const LinearImage half = rendered(scene, strategy, package::ShadingPrecision::Half, setup);
+    ASSERT_EQ(single.pixels.size(), half.pixels.size());
+    ASSERT_FALSE(half.pixels.empty());
+    const Result<ImageDifference> difference = compareImages(half, single, "half", "single");
+    ASSERT_TRUE(difference) << toString(difference.error());
+    EXPECT_EQ(difference->nonFinite, 0U);
+    EXPECT_EQ(difference->referenceNonFinite, 0U);
+    EXPECT_LE(difference->relMse, bound);
+    // 16 bits were used.
+    EXPECT_GT(difference->relMse, 0.0);
+    std::printf("relMSE %.2e, largest relative error %.2e\n", difference->relMse, difference->relative.value);
+    expectNoValidationMessages();
+}
+
+TEST(Half, TheGalleryIsNearlyTheSame) {
+    ImportOptions options;
+    options.decodeImages = true;
+    const Result<Scene> scene = importScene(GLINT_GALLERY_SCENE, options);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    expectAlike(*scene, package::kStrategyUber, 2e-6);
+}
+
+TEST(Half, ARoomOfMaterialsIsNearlyTheSame) {
+    expectAlike(roomOfMaterials(), package::kStrategyVisibility, 2e-6);
+}
+
+TEST(Half, HitShadersShadeSoToo) {
+    expectAlike(roomWithFence(), package::kStrategyHitShaders, 2e-7);
+}
+
+// Each at an end of what files may say.
+std::vector<Material> extremeMaterials() {
+    std::vector<Material> list;
+    for (const float roughness : {0.0F, 0.01F, 1.0F}) {
+        for (const float metallic : {0.0F, 1.0F}) {
+            for (const float colour : {0.0F, 1e-7F, 1.0F}) {
+                Material material;
+                material.roughnessFactor = roughness;
+                material.metallicFactor = metallic;
+                material.baseColorFactor = {colour, 1.0F, colour, 1.0F};
+                list.push_back(material);
+            }
+        }
+    }
+    const std::size_t plain = list.size();
+    for (std::size_t i = 0; i < plain; ++i) {
+        Material& material = list[i];
+        switch (i % 6) {
+            case 0:
+                material.clearcoat = {true, 1.0F, 0.0F, 1.0F};
+                break;
+            case 1:
+                material.sheen = {true, {1.0F, 1.0F, 1.0F}, i % 4 == 1 ? 0.0F : 1.0F};
+                break;
+            case 2:
+                material.specular = {true, 1.0F, {1e9F, 1.0F, 0.0F}};
+                break;
+            case 3:
+                material.emissiveFactor = {1.0F, 1.0F, 1e-8F};
+                material.emissiveStrength = 1e6F;
+                material.hasEmissiveStrength = true;
+                break;
+            case 4:
+                material.ior = {true, i % 4 == 0 ? 0.0F : 1.0000001F};
+                material.transmission = {true, 1.0F};
+                break;
+            default:
+                material.iridescence.given = true;
+                material.iridescence.factor = 1.0F;
+                break;
+        }
+    }
+    return list;
+}
+
+// Quads of those materials, from facing the camera to edge-on, with vertex colours from 0 to 1e6, under lamps
+// of a millionth and a million.
+Scene extremeScene() {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    const std::vector<Material> materials = extremeMaterials();
+    constexpr int kColumns = 6;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const auto column = static_cast<float>(i % kColumns);
+        const std::size_t whole = i / kColumns;
+        const auto row = static_cast<float>(whole);
+        const float turn = 1.5F * row / (static_cast<float>(materials.size()) / kColumns);
+        Primitive quad = makeQuad(addMaterial(scene, materials[i]),
+                                  {0.33F * column - 1.0F, 0.6F * row - 0.9F, -1.0F - 0.1F * column},
+                                  {0.3F * std::cos(turn), 0.0F, -0.3F * std::sin(turn)}, {0.0F, 0.5F, 0.0F});
+        if (i % 3 == 0) {
+            quad.colors.assign(4, {i % 2 == 0 ? 1e6F : 0.5F, 1.0F, 1e-30F, 1.0F});
+            quad.colorContent = ColorContent::Varying;
+        }
+        addInstance(scene, addMesh(scene, std::move(quad)));
+    }
+    addDirectionalLight(scene, {0.0F, 0.0F, -1.0F}, 1e6F);
+    addDirectionalLight(scene, {1.0F, 0.0F, -1e-4F}, 1e-6F);
+    return scene;
+}
+
+TEST(Half, ExtremesStayFinite) {
+    const Scene scene = extremeScene();
+    RenderSetup setup = defaultSetup(scene, 96, 64);
+    setup.frame.maxReflectionRoughness = 1.0F;
+    setup.samples = 2;
+    const auto finite = [](const LinearImage& image) {
+        return !image.pixels.empty() && std::ranges::all_of(image.pixels, [](const Pixel& pixel) {
+            return std::ranges::all_of(pixel, [](float value) { return std::isfinite(value); });
+        });
+    };
+    const LinearImage half = rendered(scene, package::kStrategyUber, package::ShadingPrecision::Half, setup);
+    EXPECT_TRUE(finite(half));
+    expectNoValidationMessages();
+}
+
+// A device that was made without the feature says so, by its name.
+TEST(Half, NeedsTheFeature) {
+    const Scene scene = roomWithFence();
+    const auto compiled =
+        compilePackage(scene, settingsOf(package::kStrategyUber, package::ShadingPrecision::Half));
+    ASSERT_TRUE(compiled) << toString(compiled.error());
+    std::vector<package::EmbeddedFile> files;
+    for (const PackageFile& file : compiled->files) {
+        files.push_back({file.name, file.bytes});
+    }
+    const Result<Package> package = Package::load(files);
+    ASSERT_TRUE(package) << toString(package.error());
+    EXPECT_EQ(package->precision(), package::ShadingPrecision::Half);
+    const Result<std::unique_ptr<Context>> context = Context::createHeadless({});
+    ASSERT_TRUE(context) << toString(context.error());
+    const auto uploaded = GpuScene::upload(**context, *package, makeSceneView(scene).view());
+    ASSERT_FALSE(uploaded);
+    EXPECT_EQ(uploaded.error().id, "half-precision");
+    EXPECT_NE(uploaded.error().hint.find("--precision 32"), std::string::npos);
+}
+
+}  // namespace
