@@ -106,7 +106,8 @@ private:
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayQuery = (tracers & package::kTracerRayQuery) != 0;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
-        facts.positionFetch = bed_.positionFetch();
+        facts.positionFetch = bed_.features().positionFetch;
+        facts.float16 = bed_.features().float16;
         const ReferenceOptions options{arguments_.referenceError,
                                        static_cast<std::uint32_t>(arguments_.referenceSamples)};
         Result<Reference> reference = makeReference(console_, bed_, facts, options, store_);

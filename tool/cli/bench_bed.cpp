@@ -18,20 +18,26 @@ namespace glint {
 
 namespace {
 
-// The device with position fetch where it has that.
-Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, bool& positionFetch) {
+// The device with as many of its optional features as it has: those that the default needs, and those that
+// the sweep could use.
+Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, DeviceOptions& features) {
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
-    // Where shaders can be compiled for it, and the layers know it.
-    options.positionFetch = arguments.tracing.positionFetch || supportsPositionFetch();
-    Result<std::unique_ptr<Context>> context = Context::createHeadless(options);
-    positionFetch = context.ok() && options.positionFetch;
-    if (context || arguments.tracing.positionFetch) {
-        return context;
+    Result<std::unique_ptr<Context>> context = Diagnostic{};
+    for (const DeviceOptions tried :
+         {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
+        // Where shaders can be compiled for it, and the layers know it.
+        options.positionFetch =
+            arguments.tracing.positionFetch || (tried.positionFetch && supportsPositionFetch());
+        options.shaderFloat16 = arguments.accuracy.halves() || tried.float16;
+        context = Context::createHeadless(options);
+        if (context) {
+            features = {options.positionFetch, options.shaderFloat16};
+            break;
+        }
     }
-    options.positionFetch = false;
-    return Context::createHeadless(options);
+    return context;
 }
 
 SceneSize sizeOf(const SceneViewData& data) {
@@ -105,7 +111,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     bed->cameraName_ = camera->name;
     bed->size_ = sizeOf(data);
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
-    Result<std::unique_ptr<Context>> context = openDevice(base, bed->positionFetch_);
+    Result<std::unique_ptr<Context>> context = openDevice(base, bed->features_);
     if (!context) {
         return context.error();
     }

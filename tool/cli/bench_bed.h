@@ -62,6 +62,12 @@ private:
     bool ordersHits_ = false;
 };
 
+// What some devices have.
+struct DeviceOptions {
+    bool positionFetch = false;  // and the compiler
+    bool float16 = false;
+};
+
 struct SceneSize {
     std::uint64_t triangles = 0;  // of all instances
     std::uint32_t instances = 0;
@@ -91,9 +97,8 @@ public:
     const std::string& cameraName() const {
         return cameraName_;
     }
-    // Whether device and compiler have it.
-    bool positionFetch() const {
-        return positionFetch_;
+    const DeviceOptions& features() const {
+        return features_;
     }
     const SceneSize& sceneSize() const {
         return size_;
@@ -118,7 +123,7 @@ private:
     std::unique_ptr<Environment> environment_;
     CameraView camera_;
     std::string cameraName_;
-    bool positionFetch_ = false;
+    DeviceOptions features_;
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;

@@ -40,6 +40,7 @@ constexpr Argument kArguments[] = {
     {"hit-lobes", [](RenderArguments& a) -> Place { return &a.plan.hitLobes; }},
     {"energy-compensation", [](RenderArguments& a) -> Place { return &a.accuracy.energyCompensation; }},
     {"texture-lod", [](RenderArguments& a) -> Place { return &a.accuracy.textureLod; }},
+    {"precision", [](RenderArguments& a) -> Place { return &a.accuracy.precision; }},
     {"alpha", [](RenderArguments& a) -> Place { return &a.plan.alpha; }},
     {"hit-record", [](RenderArguments& a) -> Place { return &a.tracing.hitRecord; }},
     {"strategy", [](RenderArguments& a) -> Place { return &a.tracing.strategies.front(); }},
