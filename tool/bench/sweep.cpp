@@ -221,10 +221,14 @@ std::vector<Configuration> pairs(std::span<const Setting> settings, const Config
 }
 
 std::vector<Rated> withTiesSettled(std::span<const Rated> points) {
+    // What is certain may still be nothing that anybody would choose by.
+    constexpr double kNegligible = 0.01;
+    const Rated& base = points.front();
+    const auto isSame = [](double a, double b) { return std::abs(a - b) <= kNegligible * std::abs(b); };
     std::vector<Rated> settled(points.begin(), points.end());
     for (Rated& point : settled) {
-        point.time = point.timeTie ? points.front().time : point.time;
-        point.error = point.errorTie ? points.front().error : point.error;
+        point.time = point.timeTie || isSame(point.time, base.time) ? base.time : point.time;
+        point.error = point.errorTie || isSame(point.error, base.error) ? base.error : point.error;
     }
     return settled;
 }

@@ -28,8 +28,8 @@ struct Rated {
     bool errorTie = false;
 };
 
-// With the time and the error of the first, the default, where a point is tied with it: else noise would
-// decide which of the same things is better.
+// With the time and the error of the first, the default, where a point is tied with it or within 1 %: else
+// noise would decide which of the same things is better.
 std::vector<Rated> withTiesSettled(std::span<const Rated> points);
 
 // The Pareto front: indices of those to which no other is as good or better in both and better in one, from

@@ -93,7 +93,7 @@ public:
 
 private:
     static constexpr std::size_t kProposals = 12;
-    static constexpr std::size_t kQuickProposals = 6;
+    static constexpr std::size_t kQuickProposals = 4;
 
     std::size_t searches() const {
         constexpr std::size_t kSearches = 3;

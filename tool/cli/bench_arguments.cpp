@@ -15,9 +15,9 @@ namespace {
 constexpr std::int64_t kRounds = 11;
 constexpr std::int64_t kQuickRounds = 6;  // the fewest with a confidence interval of 95 %
 constexpr double kReferenceError = 0.005;
-constexpr double kQuickReferenceError = 0.02;
+constexpr double kQuickReferenceError = 0.03;
 constexpr std::int64_t kReferenceSamples = 16384;
-constexpr std::int64_t kQuickReferenceSamples = 512;
+constexpr std::int64_t kQuickReferenceSamples = 256;
 constexpr const char* kQuickSize = "80x45";
 
 // The option as it would be given again, a name and its value.

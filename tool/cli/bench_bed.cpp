@@ -53,6 +53,14 @@ SceneSize sizeOf(const SceneViewData& data) {
     return size;
 }
 
+// The settings that `decides` picks, as words.
+template <typename Decides>
+std::string decided(const RenderArguments& arguments, const Decides& decides) {
+    bench::Configuration configuration = configurationOf(arguments);
+    std::erase_if(configuration, [&](const auto& choice) { return !decides(choice.first); });
+    return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
+}
+
 // A pass of a case counts with those of the others.
 std::string nameOfPass(const std::string& name) {
     const bool isCase = name.starts_with("shade ") && name != "shade miss";
@@ -168,30 +176,37 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderArgum
 Result<Mount> BenchBed::mount(const bench::Configuration& configuration, const std::string& package) {
     RenderArguments arguments = withSettings(base_, configuration);
     arguments.package = package;
-    // What decides about the package, for mounts to share it.
-    bench::Configuration decided = configurationOf(arguments);
-    std::erase_if(decided, [](const auto& choice) {
-        // Of --effects auto the limit of roughness decides, too.
-        return bench::stageOf(choice.first) == bench::Stage::Render && choice.first != "max-roughness";
-    });
-    const std::string key = fmt::format("{} {}", package, fmt::join(wordsOf(decided), " "));
-    std::shared_ptr<MountedPackage> shared = mounted_[key].lock();
+    const std::string key =
+        fmt::format("{} {}", package, decided(arguments, [](std::string_view setting) {
+                        // Of --effects auto the limit of roughness decides, too.
+                        return bench::stageOf(setting) == bench::Stage::Compile || setting == "max-roughness";
+                    }));
+    std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {
         Result<std::shared_ptr<MountedPackage>> made = mountPackage(arguments);
         if (!made) {
             return made.error();
         }
         shared = std::move(*made);
-        mounted_[key] = shared;
+        packages_[key] = shared;
     }
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(arguments));
+    const std::string rendererKey =
+        fmt::format("{} {}", key, decided(arguments, [](std::string_view setting) {
+                        return setting == "ordering" || setting == "batch-effects";
+                    }));
+    std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
     if (!renderer) {
-        return renderer.error();
+        Result<std::unique_ptr<Renderer>> made =
+            Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(arguments));
+        if (!made) {
+            return made.error();
+        }
+        renderer = std::move(*made);
+        renderers_[rendererKey] = renderer;
     }
     Mount mount;
     mount.package_ = std::move(shared);
-    mount.renderer_ = std::move(*renderer);
+    mount.renderer_ = std::move(renderer);
     mount.frame_ = frameOptions(arguments, camera_, environment_.get());
     mount.samples_ = static_cast<std::uint32_t>(arguments.samples);
     mount.ordersHits_ = (strategyOf(arguments) & package::kOrderedStrategies) != 0;

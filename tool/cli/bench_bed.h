@@ -56,7 +56,7 @@ public:
 private:
     friend class BenchBed;
     std::shared_ptr<MountedPackage> package_;
-    std::unique_ptr<Renderer> renderer_;
+    std::shared_ptr<Renderer> renderer_;
     FrameOptions frame_;
     std::uint32_t samples_ = 1;
     bool ordersHits_ = false;
@@ -82,7 +82,7 @@ public:
 
     // `configuration` over the base. `package`: a folder with a package of the scene, used instead of
     // compiling one; empty: none. Compiles, uploads and makes pipelines, as far as no mount that still is
-    // there has the same package. Errors of each.
+    // there has the same. Errors of each.
     Result<Mount> mount(const bench::Configuration& configuration, const std::string& package = {});
 
     Context& context() {
@@ -127,7 +127,9 @@ private:
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;
-    std::map<std::string, std::weak_ptr<MountedPackage>> mounted_;
+    // By what decides about them.
+    std::map<std::string, std::weak_ptr<MountedPackage>> packages_;
+    std::map<std::string, std::weak_ptr<Renderer>> renderers_;
 };
 
 }  // namespace glint

@@ -33,7 +33,7 @@ Rated measured(const Configuration& configuration) {
     point.time = samples * (value("ssr") == "16" ? 0.7 : 1.0) * (value("texture-lod") == "mip0" ? 1.2 : 1.0) *
                  (value("strategy") == "uber" ? 0.9 : 1.0);
     point.error =
-        0.1 / samples + (value("ssr") == "16" ? 0.001 : 0.0) + (value("texture-lod") == "mip0" ? 0.0 : 0.02);
+        0.1 / samples + (value("ssr") == "16" ? 0.003 : 0.0) + (value("texture-lod") == "mip0" ? 0.0 : 0.02);
     return point;
 }
 
