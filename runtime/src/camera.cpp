@@ -79,17 +79,31 @@ Status checkCamera(const CameraView& camera) {
     return okStatus();
 }
 
-gpu::vec2 sampleJitter(std::uint32_t sampleIndex) {
+namespace {
+
+// Two numbers in [0, 1) of a seed, 0 of the seed 0: the finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+std::array<double, 2> shiftOf(std::uint32_t seed) {
+    std::uint64_t bits = std::uint64_t{seed} * 0x9E3779B97F4A7C15ULL;
+    bits = (bits ^ bits >> 30U) * 0xBF58476D1CE4E5B9ULL;
+    bits = (bits ^ bits >> 27U) * 0x94D049BB133111EBULL;
+    bits ^= bits >> 31U;
+    return {static_cast<double>(bits >> 32U) * 0x1p-32, static_cast<double>(bits & 0xFFFFFFFFU) * 0x1p-32};
+}
+
+}  // namespace
+
+gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed) {
     // 1/g and 1/g², g the real root of x³ = x + 1.
     constexpr double kAlpha = 0.7548776662466927;
     constexpr double kBeta = 0.5698402909980532;
     // Rounding to float may give 0.5, which is outside.
-    const auto offset = [&](double step) {
-        const double value = 0.5 + step * sampleIndex;
+    const std::array<double, 2> shift = shiftOf(seed);
+    const auto offset = [&](double step, double start) {
+        const double value = 0.5 + start + step * sampleIndex;
         const double fraction = value - std::floor(value) - 0.5;
         return std::min(static_cast<float>(fraction), std::nextafter(0.5F, 0.0F));
     };
-    return {offset(kAlpha), offset(kBeta)};
+    return {offset(kAlpha, shift[0]), offset(kBeta, shift[1])};
 }
 
 void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,

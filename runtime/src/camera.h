@@ -14,8 +14,9 @@ namespace glint {
 Status checkCamera(const CameraView& camera);
 
 // Offset of a sample from its pixel's centre, in pixels: 0 for sample 0, then Roberts' R2 sequence ("The
-// Unreasonable Effectiveness of Quasirandom Sequences", 2018) in [-0.5, 0.5).
-gpu::vec2 sampleJitter(std::uint32_t sampleIndex);
+// Unreasonable Effectiveness of Quasirandom Sequences", 2018) in [-0.5, 0.5). With a seed other than 0 the
+// sequence starts elsewhere, by a shift of the whole that wraps around (Cranley and Patterson 1976).
+gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed = 0);
 
 // Fills position to pixelWidth, and worldToClip, for an image of width x height pixels. The ray of pixel
 // (x, y) goes through p = (2 (x + 0.5 + jitter.x) / width - 1, 1 - 2 (y + 0.5 + jitter.y) / height) of the

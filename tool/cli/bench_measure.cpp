@@ -18,9 +18,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long a GPU renders before a picture counts: its clocks fall while the host works, and come up within
-// milliseconds.
-constexpr std::chrono::milliseconds kWarmUp{5};
+// How long a GPU renders before a round, and before each picture that counts: its clocks fall while the host
+// works between rounds, and take a while to come up.
+constexpr std::chrono::milliseconds kRoundWarmUp{250};
+constexpr std::chrono::milliseconds kWarmUp{10};
 
 // A permutation of [0, count): Fisher and Yates, as std::shuffle differs between libraries.
 std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
@@ -130,6 +131,9 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // spreads small seeds over 64 bits
     std::mt19937_64 random(options_.seed + kOdd * seed);
     for (std::uint32_t round = 0; round < options_.rounds; ++round) {
+        if (Status warm = warmUp(baseEntry_.front(), kRoundWarmUp); !warm) {
+            return warm;
+        }
         for (const std::size_t i : shuffled(all.size(), random)) {
             if (Status exposed = expose(*all[i], options_.seed + round); !exposed) {
                 return exposed;
@@ -141,12 +145,19 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
     return okStatus();
 }
 
-Status Measurer::expose(Entry& entry, std::uint32_t seed) const {
+Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) const {
     const Clock::time_point start = Clock::now();
-    while (!bed_.onCpu() && Clock::now() - start < kWarmUp) {
-        if (const Result<LinearImage> warm = entry.mount.exposeSamples(0, 1); !warm) {
+    while (!bed_.onCpu() && Clock::now() - start < time) {
+        if (const Result<LinearImage> warm = entry.mount.exposeSamples(0, 16); !warm) {
             return warm.error();
         }
+    }
+    return okStatus();
+}
+
+Status Measurer::expose(Entry& entry, std::uint32_t seed) const {
+    if (Status warm = warmUp(entry, kWarmUp); !warm) {
+        return warm;
     }
     Result<Exposure> exposure = entry.mount.expose(seed);
     if (!exposure) {

@@ -5,6 +5,7 @@
 #include "cli/bench_point.h"
 #include "cli/console.h"
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -53,6 +54,7 @@ private:
     };
     Result<Entry> mount(BenchPoint& point) const;
     Status measureBatch(std::span<Entry> entries, std::uint64_t seed);
+    Status warmUp(const Entry& entry, std::chrono::milliseconds time) const;
     Status expose(Entry& entry, std::uint32_t seed) const;
     void keep(std::span<Entry*> entries, std::uint32_t round);
 

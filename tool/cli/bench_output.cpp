@@ -22,12 +22,46 @@ namespace fs = std::filesystem;
 
 constexpr const char* kImages = "images";
 
-Status add(std::vector<PageImage>& pictures, const std::string& name, const DisplayImage& image) {
+// Files, and what the page has of them.
+struct Pictures {
+    std::vector<PageImage> files;
+    std::vector<PageImage> ofPage;
+};
+
+// Means over `factor` x `factor` pixels; what is left over at the right and below is cut off.
+DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
+    DisplayImage small{image.width / factor, image.height / factor, {}};
+    for (std::uint32_t y = 0; y < small.height; ++y) {
+        for (std::uint32_t x = 0; x < small.width; ++x) {
+            std::array<std::uint32_t, 3> sum{};
+            for (std::uint32_t i = 0; i < factor * factor; ++i) {
+                const std::size_t row = std::size_t{y} * factor + i / factor;
+                const auto& pixel = image.pixels[row * image.width + std::size_t{x} * factor + i % factor];
+                for (std::size_t c = 0; c < 3; ++c) {
+                    sum[c] += pixel[c];
+                }
+            }
+            std::array<std::uint8_t, 3> mean{};
+            for (std::size_t c = 0; c < 3; ++c) {
+                mean[c] = static_cast<std::uint8_t>((sum[c] + factor * factor / 2) / (factor * factor));
+            }
+            small.pixels.push_back(mean);
+        }
+    }
+    return small;
+}
+
+Status add(Pictures& pictures, std::uint32_t factor, const std::string& name, const DisplayImage& image) {
     Result<Bytes> png = encodePng(image, name);
     if (!png) {
         return png.error();
     }
-    pictures.push_back({name, std::move(*png)});
+    Result<Bytes> small = factor == 1 ? *png : encodePng(shrunk(image, factor), name);
+    if (!small) {
+        return small.error();
+    }
+    pictures.files.push_back({name, std::move(*png)});
+    pictures.ofPage.push_back({name, std::move(*small)});
     return okStatus();
 }
 
@@ -40,19 +74,21 @@ DisplayImage shown(const LinearImage& image, double exposure) {
     return display;
 }
 
-Result<std::vector<PageImage>> picturesOf(const BenchReport& report) {
+Result<Pictures> picturesOf(const BenchReport& report) {
     const double exposure = report.reference.exposure;
-    std::vector<PageImage> pictures;
+    const std::uint32_t factor = pictureScale(report);
+    Pictures pictures;
     const LinearImage reference = exposed(report.reference.image, exposure);
-    Status added = add(pictures, kReferenceImage, shown(report.reference.image, exposure));
+    Status added = add(pictures, factor, kReferenceImage, shown(report.reference.image, exposure));
     for (std::size_t i = 0; added && i < report.points.size(); ++i) {
         const LinearImage& image = report.points[i].image;
-        added = add(pictures, imageName(i), shown(image, exposure));
+        added = add(pictures, factor, imageName(i), shown(image, exposure));
         if (added) {
-            added = add(pictures, errorImageName(i), differenceMap(exposed(image, exposure), reference));
+            added =
+                add(pictures, factor, errorImageName(i), differenceMap(exposed(image, exposure), reference));
         }
     }
-    return added ? Result(std::move(pictures)) : Result<std::vector<PageImage>>(added.error());
+    return added ? Result(std::move(pictures)) : Result<Pictures>(added.error());
 }
 
 // Of an earlier bench that had more configurations.
@@ -93,7 +129,7 @@ Status checkBenchFolder(const fs::path& folder) {
 }
 
 Status writeBench(const BenchReport& report, const fs::path& folder) {
-    const Result<std::vector<PageImage>> pictures = picturesOf(report);
+    const Result<Pictures> pictures = picturesOf(report);
     if (!pictures) {
         return pictures.error();
     }
@@ -103,7 +139,7 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
         return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
                          "give another -o");
     }
-    for (const PageImage& picture : *pictures) {
+    for (const PageImage& picture : pictures->files) {
         if (Status written = writeFile(folder / picture.name, picture.png); !written) {
             return written;
         }
@@ -122,10 +158,10 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
     if (Status written = writeFile(folder / kReportFile, toText(json)); !written) {
         return written;
     }
-    if (Status written = writeFile(folder / kPageFile, makePage(json, *pictures)); !written) {
+    if (Status written = writeFile(folder / kPageFile, makePage(json, pictures->ofPage)); !written) {
         return written;
     }
-    removeOthers(folder, *pictures);
+    removeOthers(folder, pictures->files);
     return okStatus();
 }
 

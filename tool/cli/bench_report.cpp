@@ -220,7 +220,7 @@ BenchMachine hostMachine() {
     machine.cores = std::thread::hardware_concurrency();
     utsname system{};
     if (uname(&system) == 0) {
-        machine.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+        machine.system = fmt::format("{} {}", system.sysname, system.machine);
     }
     return machine;
 }
@@ -237,6 +237,12 @@ std::string imageName(std::size_t point) {
 
 std::string errorImageName(std::size_t point) {
     return fmt::format("images/{:03}_error.png", point);
+}
+
+std::uint32_t pictureScale(const BenchReport& report) {
+    constexpr std::uint32_t kWidest = 320;
+    const std::uint32_t extent = std::min(report.scene.width, 2 * report.scene.height);
+    return std::max(1U, (extent + kWidest - 1) / kWidest);
 }
 
 std::string shellWords(const std::vector<std::string>& words) {
@@ -317,6 +323,7 @@ Json toJson(const BenchReport& report) {
               {"confidence", bench::kConfidence},
               {"quick", report.quick},
               {"batch", report.batch},
+              {"pictureScale", pictureScale(report)},
               {"seconds", report.seconds},
               {"metric", nameOf(report.metric)}}},
             {"reference", referenceToJson(report)},

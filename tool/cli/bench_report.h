@@ -75,6 +75,10 @@ std::string imageName(std::size_t point);
 std::string errorImageName(std::size_t point);
 inline constexpr const char* kReferenceImage = "images/reference.png";
 
+// The page holds pictures that are smaller by this in width and height, so that it stays one that can be
+// sent: those of the folder are whole.
+std::uint32_t pictureScale(const BenchReport& report);
+
 // A command line that renders a point: "glint render scene.gltf -o picture.png --spp 4".
 std::string renderCommand(const BenchReport& report, const BenchPoint& point);
 // As the shell takes them: quoted where one has a character that means something to it.

@@ -92,6 +92,20 @@ TEST(CameraTest, JitterStartsAtTheCentreAndFillsThePixel) {
     }
     EXPECT_EQ(cells.size(), 64U);
     EXPECT_NEAR(sum / 512, 0.0, 5e-3);
+    // Another seed is another start of the same sequence.
+    const gpu::vec2 start = sampleJitter(0, 7);
+    EXPECT_NE(start.x, 0.0F);
+    EXPECT_NE(start.y, start.x);
+    double mean = 0.0;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const gpu::vec2 jitter = sampleJitter(i, 7);
+        EXPECT_GE(jitter.x, -0.5F);
+        EXPECT_LT(jitter.x, 0.5F);
+        const double turned = double{sampleJitter(i).x} + double{start.x} - double{jitter.x};
+        EXPECT_NEAR(turned, std::round(turned), 1e-6);
+        mean += double{jitter.x} / 1000.0;
+    }
+    EXPECT_NEAR(mean, 0.0, 1e-3);
     const gpu::vec2 last = sampleJitter(std::numeric_limits<std::uint32_t>::max());
     EXPECT_TRUE(last.x >= -0.5F && last.x < 0.5F);
 }
