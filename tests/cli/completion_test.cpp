@@ -11,8 +11,8 @@
 namespace glint::testing {
 namespace {
 
-const std::vector<std::string> kCommands{"compile", "explain", "inspect", "diff",
-                                         "lint",    "render",  "compare", "completion"};
+const std::vector<std::string> kCommands{"compile", "explain", "inspect", "diff",      "lint",
+                                         "render",  "bench",   "compare", "completion"};
 
 class Completion : public CommandTest {
 protected:

@@ -31,8 +31,8 @@ protected:
     }
 };
 
-const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect",   "diff",
-                                         "lint",    "render",         "compare", "completion"};
+const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect", "diff",
+                                         "lint",    "render",         "bench",   "compare", "completion"};
 
 // The text below each heading of the second level.
 std::map<std::string, std::string> sectionsOf(const std::string& document) {

@@ -17,7 +17,7 @@ constexpr std::int64_t kQuickRounds = 6;  // the fewest with a confidence interv
 constexpr double kReferenceError = 0.005;
 constexpr double kQuickReferenceError = 0.03;
 constexpr std::int64_t kReferenceSamples = 16384;
-constexpr std::int64_t kQuickReferenceSamples = 256;
+constexpr std::int64_t kQuickReferenceSamples = 768;
 constexpr const char* kQuickSize = "80x45";
 
 // The option as it would be given again, a name and its value.
@@ -89,7 +89,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "Pareto front")
         .group(sweep);
     addChoices(command, "--only", arguments.only, bench::settingNames(),
-               "sweep these settings alone, separated by commas")
+               "sweep these settings alone, separated by commas\n(default: all)")
         .type_name("LIST")
         ->group(sweep);
     addInteger(command, "--rounds", arguments.rounds, 0, 1000,
@@ -98,7 +98,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                            kRounds, kQuickRounds))
         .group(sweep);
     addInteger(command, "--batch", arguments.batch, 1, 64,
-               "configurations on the device at a time, besides the\ndefault")
+               "configurations on the device at a time, besides the one\nthat all are compared with")
         .group(sweep);
     addTexts(command, "--candidate", arguments.candidateWords, "NAME=DIR",
              "measure this package of the scene, too; may be repeated")
@@ -109,11 +109,10 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "the error that configurations are ordered by; trimmed:\nrelMSE without the 0.1 % of pixels "
               "that are worst, which\nfireflies decide otherwise")
         .group(errors);
-    addReal(
-        command, "--reference-error", arguments.referenceError, 0.0, 1.0,
-        fmt::format("root of the relMSE that the reference itself may have;\n0: {}, with --quick {} (0 to "
-                    "1, default: 0)",
-                    kReferenceError, kQuickReferenceError))
+    addReal(command, "--reference-error", arguments.referenceError, 0.0, 1.0,
+            fmt::format("relative error that the reference itself may have;\n0: {}, with --quick {} (0 to "
+                        "1, default: 0)",
+                        kReferenceError, kQuickReferenceError))
         .group(errors);
     addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
                fmt::format("samples a pixel of the reference at most; 0: {}, with\n--quick {}",

@@ -171,7 +171,9 @@ CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector
                         const std::vector<std::string>& choices, const std::string& help) {
     CLI::Option* option =
         command
-            .add_option(flags, values, withNote(help, fmt::format("(default: {})", fmt::join(values, ","))))
+            .add_option(
+                flags, values,
+                values.empty() ? help : withNote(help, fmt::format("(default: {})", fmt::join(values, ","))))
             ->type_name(fmt::format("{}", fmt::join(choices, ",")))
             ->delimiter(',')
             ->allow_extra_args(false);
