@@ -108,8 +108,8 @@ void fillEnvironment(const Environment::State& environment, const FrameOptions& 
 
 gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptions& options) {
     gpu::FrameConstants constants{};
-    fillCamera(options.camera, state.size.width, state.size.height, sampleJitter(options.sampleIndex, options.seed),
-               constants);
+    fillCamera(options.camera, state.size.width, state.size.height,
+               sampleJitter(options.sampleIndex, options.seed), constants);
     constants.sampleIndex = options.sampleIndex;
     constants.seed = options.seed;
     constants.lightCount = state.scene.lightCount;

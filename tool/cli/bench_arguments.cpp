@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kRounds = 11;
 constexpr std::int64_t kQuickRounds = 6;  // the fewest with a confidence interval of 95 %
 constexpr double kReferenceError = 0.005;
-constexpr double kQuickReferenceError = 0.03;
+constexpr double kQuickReferenceError = 0.04;
 constexpr std::int64_t kReferenceSamples = 16384;
 constexpr std::int64_t kQuickReferenceSamples = 768;
 constexpr const char* kQuickSize = "80x45";
