@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <system_error>
@@ -30,11 +31,12 @@ struct Pictures {
 
 // Means over `factor` x `factor` pixels; what is left over at the right and below is cut off.
 DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
+    const std::uint32_t area = std::max(1U, factor * factor);
     DisplayImage small{image.width / factor, image.height / factor, {}};
     for (std::uint32_t y = 0; y < small.height; ++y) {
         for (std::uint32_t x = 0; x < small.width; ++x) {
             std::array<std::uint32_t, 3> sum{};
-            for (std::uint32_t i = 0; i < factor * factor; ++i) {
+            for (std::uint32_t i = 0; i < area; ++i) {
                 const std::size_t row = std::size_t{y} * factor + i / factor;
                 const auto& pixel = image.pixels[row * image.width + std::size_t{x} * factor + i % factor];
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -43,7 +45,7 @@ DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
             }
             std::array<std::uint8_t, 3> mean{};
             for (std::size_t c = 0; c < 3; ++c) {
-                mean[c] = static_cast<std::uint8_t>((sum[c] + factor * factor / 2) / (factor * factor));
+                mean[c] = static_cast<std::uint8_t>((sum[c] + area / 2) / area);
             }
             small.pixels.push_back(mean);
         }
