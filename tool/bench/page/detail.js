@@ -46,7 +46,7 @@ function numberRows(point) {
         }
     }
     const facts = [["Rays", count(point.rays)], ["Cases", count(point.cases)], ["Pipelines", count(point.pipelines)],
-                   ["Package", bytesText(point.bytes)]];
+                   ["Buffers and images", bytesText(point.bytes)]];
     return [...rows, ...facts.filter(([, text]) => text !== NONE).map(([term, text]) => row(term, text))];
 }
 
