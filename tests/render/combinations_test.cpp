@@ -164,8 +164,10 @@ TEST_P(Combinations, PackedHitsAreClose) {
     double sum = 0.0;
     for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel) {
-            const double difference = visibility.pixels[i][channel] - exact.pixels[i][channel];
-            sum += difference * difference;
+            // Against what is there: a sharp highlight that moves by a few per cent outweighs all else.
+            const double truth = exact.pixels[i][channel];
+            const double difference = visibility.pixels[i][channel] - truth;
+            sum += difference * difference / (truth * truth + 0.01);
         }
     }
     EXPECT_LT(std::sqrt(sum / (3.0 * static_cast<double>(exact.pixels.size()))), 5e-3);
