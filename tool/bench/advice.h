@@ -13,7 +13,6 @@ namespace glint::bench {
 struct Offer {
     Interval time;
     Interval error;
-    bool sameImage = false;  // as the default, bit by bit
 };
 
 // What is asked for: at least one of them.

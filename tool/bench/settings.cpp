@@ -47,7 +47,8 @@ struct Row {
     std::string_view name;
     std::string_view what;
     Stage stage;
-    // Its value in the reference; nothing: it changes time alone.
+    // Its value in the reference; empty: that of the default, as it is part of what is asked for, or as all
+    // values converge to the same; nothing: it changes time alone.
     std::optional<std::string_view> exact;
     Values values;
     Values few;  // with quick
@@ -55,10 +56,10 @@ struct Row {
 
 // Values of `clamp` and `effects` depend on the scene.
 constexpr Row kRows[] = {
-    {"spp", "samples a pixel", Stage::Render, "64", kSamples, kFewSamples},
-    {"shadow-spp", "shadow rays a sample to each light that has a size", Stage::Render, "1", kShadowSamples,
+    {"spp", "samples a pixel", Stage::Render, "", kSamples, kFewSamples},
+    {"shadow-spp", "shadow rays a sample to each light that has a size", Stage::Render, "", kShadowSamples,
      kFewShadowSamples},
-    {"ao-spp", "rays a sample of ambient occlusion", Stage::Render, "4", kShadowSamples, kFewShadowSamples},
+    {"ao-spp", "rays a sample of ambient occlusion", Stage::Render, "", kShadowSamples, kFewShadowSamples},
     {"effects", "which effects there are", Stage::Compile, "", {}, {}},
     {"max-roughness", "rougher surfaces send no reflection ray", Stage::Render, "1", kRoughness,
      kFewRoughness},
@@ -250,9 +251,7 @@ std::vector<Setting> settingsFor(const Facts& facts, const Configuration& base, 
 Configuration exactValues(const Facts& facts) {
     Configuration exact;
     for (const Row& row : kRows) {
-        // Effects and shadow samples are part of what is asked for, or converge anyway.
-        const bool keeps = row.name == "effects" || row.name == "shadow-spp" || row.name == "ao-spp";
-        if (row.exact && !keeps) {
+        if (row.exact && !row.exact->empty()) {
             exact.emplace(row.name, *row.exact);
         }
     }

@@ -23,8 +23,7 @@ struct Facts {
     bool furtherLobes = false;  // materials whose hits lose a lobe with --hit-lobes base
     bool textures = false;
     bool sizedLights = false;  // a light that casts soft shadows
-    bool rayQuery = false;     // of the device, as are the next three
-    bool rayPipeline = false;
+    bool rayPipeline = false;  // of the device, as are the next two
     bool positionFetch = false;
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // of the default configuration, by name

@@ -104,7 +104,6 @@ private:
     Status makeTruth(const PlanOptions& plan) {
         bench::Facts facts = factsOf(arguments_.render, bed_.scene(), plan);
         const std::uint32_t tracers = bed_.context().handles().tracers;
-        facts.rayQuery = (tracers & package::kTracerRayQuery) != 0;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
         facts.float16 = bed_.features().float16;
@@ -197,7 +196,7 @@ private:
         std::size_t best = 0;
         for (std::size_t i = 0; i < report_.points.size(); ++i) {
             const BenchPoint& point = report_.points[i];
-            offers.push_back({timeOf(report_, i), errorOf(point, report_.metric), point.sameImage});
+            offers.push_back({timeOf(report_, i), errorOf(point, report_.metric)});
             fastest = offers[i].time.median < offers[fastest].time.median ? i : fastest;
             best = offers[i].error.median < offers[best].error.median ? i : best;
         }

@@ -1,7 +1,7 @@
 #include "cli/bench_arguments.h"
 
 #include "bench/settings.h"
-#include "cli/bench_report.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,22 +19,6 @@ constexpr double kQuickReferenceError = 0.04;
 constexpr std::int64_t kReferenceSamples = 16384;
 constexpr std::int64_t kQuickReferenceSamples = 768;
 constexpr const char* kQuickSize = "80x45";
-
-// The option as it would be given again, a name and its value.
-void addWords(const CLI::Option& option, std::vector<std::string>& words) {
-    const std::string name = option.get_name();
-    if (option.get_positional()) {
-        words.insert(words.end(), option.results().begin(), option.results().end());
-    } else if (option.get_items_expected_max() == 0) {
-        words.push_back(name);
-    } else if (option.get_delimiter() == ',') {
-        words.insert(words.end(), {name, fmt::format("{}", fmt::join(option.results(), ","))});
-    } else {
-        for (const std::string& value : option.results()) {
-            words.insert(words.end(), {name, value});
-        }
-    }
-}
 
 // What decides about the picture but is swept by no bench: of these a point's command has those that were
 // given.

@@ -2,6 +2,7 @@
 
 #include "cli/bench_settings.h"
 #include "cli/commit.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -243,25 +244,6 @@ std::uint32_t pictureScale(const BenchReport& report) {
     constexpr std::uint32_t kWidest = 320;
     const std::uint32_t extent = std::min(report.scene.width, 2 * report.scene.height);
     return std::max(1U, (extent + kWidest - 1) / kWidest);
-}
-
-std::string shellWords(const std::vector<std::string>& words) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
-    std::string text;
-    for (const std::string& word : words) {
-        text += text.empty() ? "" : " ";
-        if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
-            text += word;
-            continue;
-        }
-        text += '\'';
-        for (const char c : word) {
-            text += c == '\'' ? "'\\''" : std::string(1, c);
-        }
-        text += '\'';
-    }
-    return text;
 }
 
 std::string renderCommand(const BenchReport& report, const BenchPoint& point) {

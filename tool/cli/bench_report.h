@@ -81,8 +81,6 @@ std::uint32_t pictureScale(const BenchReport& report);
 
 // A command line that renders a point: "glint render scene.gltf -o picture.png --spp 4".
 std::string renderCommand(const BenchReport& report, const BenchPoint& point);
-// As the shell takes them: quoted where one has a character that means something to it.
-std::string shellWords(const std::vector<std::string>& words);
 
 Json toJson(const BenchReport& report);
 std::string toText(const BenchReport& report);

@@ -2,6 +2,7 @@
 #include "cli/bench_report.h"
 #include "cli/bench_settings.h"
 #include "cli/table.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

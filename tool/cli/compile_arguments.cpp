@@ -1,6 +1,7 @@
 #include "cli/compile_arguments.h"
 
 #include "cli/settings_file.h"
+#include "cli/words.h"
 #include "emit/embed_source.h"
 
 #include <CLI/CLI.hpp>
@@ -74,23 +75,6 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     addCacheOptions(command, arguments.cache);
     addDepfileOptions(command, arguments.depfile);
     addFarmOptions(command, arguments, dry);
-}
-
-// The option as it would be given again.
-void addWords(const CLI::Option& option, std::vector<std::string>& words) {
-    const std::string name = option.get_name();
-    if (option.get_items_expected_max() == 0) {
-        words.push_back(name);
-        return;
-    }
-    const std::string join = name.starts_with("--") ? name + "=" : name;
-    if (option.get_delimiter() == ',') {
-        words.push_back(join + fmt::format("{}", fmt::join(option.results(), ",")));
-        return;
-    }
-    for (const std::string& value : option.results()) {
-        words.push_back(join + value);
-    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The same model as a script for each shell.
 #include "cli/completion.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,15 +33,6 @@ std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
         names.push_back(command.name);
     }
     return names;
-}
-
-// In single quotes, as bash and zsh take them.
-std::string shellQuoted(std::string_view text) {
-    std::string result = "'";
-    for (const char c : text) {
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return result + "'";
 }
 
 // --- bash ---------------------------------------------------------------------------------------

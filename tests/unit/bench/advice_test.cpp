@@ -11,7 +11,7 @@ Offer offer(double time, double error, double spread = 0.01) {
     const auto around = [spread](double value) {
         return Interval{value, value * (1.0 - spread), value * (1.0 + spread), value, value};
     };
-    return {around(time), around(error), false};
+    return {around(time), around(error)};
 }
 
 const std::vector<Offer> kOffers{offer(10, 0.1), offer(5, 0.4), offer(20, 0.01), offer(9, 0.1005)};

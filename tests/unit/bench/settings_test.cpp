@@ -37,7 +37,7 @@ Configuration usual() {
 Facts rich() {
     Facts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
-    facts.rayQuery = facts.rayPipeline = facts.positionFetch = facts.float16 = true;
+    facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.white = 2.0;
     return facts;
@@ -110,6 +110,7 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     EXPECT_EQ(exact.at("ssr"), "off");
     EXPECT_FALSE(exact.contains("strategy"));
     EXPECT_FALSE(exact.contains("effects"));
+    EXPECT_FALSE(exact.contains("spp"));
     Facts still = rich();
     still.effects = {"shadow"};
     EXPECT_FALSE(exactValues(still).contains("max-roughness"));
