@@ -55,10 +55,8 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, std::uint32_t ef
     if (!size.ordered) {
         return;
     }
-    std::vector<gpu::BucketRecord> buckets(size.bucketCount);
-    std::memcpy(buckets.data(), bytes + kRoundCounterBytes, buckets.size() * sizeof(gpu::BucketRecord));
-    std::vector<std::uint32_t> counts(buckets.size());
-    std::ranges::transform(buckets, counts.begin(), &gpu::BucketRecord::count);
+    std::vector<std::uint32_t> counts(size.bucketCount);
+    std::memcpy(counts.data(), bytes + kRoundCounterBytes, counts.size() * sizeof(counts[0]));
     counters.bucketCounts.resize(counts.size());
     std::ranges::transform(counts, counters.bucketCounts, counters.bucketCounts.begin(), std::plus<>{});
     for (EffectCounters& effect : counters.effects) {

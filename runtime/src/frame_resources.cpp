@@ -32,7 +32,7 @@ std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
 }  // namespace
 
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
-    const VkDeviceSize buckets = size.ordered ? sizeof(gpu::BucketRecord) * size.bucketCount : 0;
+    const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
     return kCounterBytes + round * (kRoundCounterBytes + buckets);
 }
 
@@ -118,7 +118,9 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     // A bit a hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
-    const VkDeviceSize bucketBytes = size.ordered ? sizeof(gpu::BucketRecord) * size.bucketCount : 0;
+    const VkDeviceSize tiles = (hits + gpu::kMaxTileHits - 1) / gpu::kMaxTileHits;
+    const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
+    const VkDeviceSize countBytes = size.ordered ? bucketBytes + sizeof(std::uint32_t) : 0;
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
@@ -136,12 +138,16 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         {frame.rays, rays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
-        {frame.orderedHits, slots * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
         {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.buckets, bucketBytes, kCleared, MemoryUse::Device},
-        {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.bucketKeys, tiles * gpu::kMaxTileHits * size.keyBytes, kStorage, MemoryUse::Device},
+        {frame.bucketCounts, countBytes, kCleared, MemoryUse::Device},
+        {frame.bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
+        {frame.bucketCursors, bucketBytes, kStorage, MemoryUse::Device},
+        {frame.rayDispatch, lists * gpu::kDispatchCountOfRays * sizeof(gpu::DispatchArguments), kIndirect,
+         MemoryUse::Device},
         {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.counters, kCounterBytes, kCleared, MemoryUse::Device},
         {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,

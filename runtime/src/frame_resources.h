@@ -34,7 +34,10 @@ struct FrameResources {
     Buffer visitedHits;  // a bit a hit; where the order is checked
     Buffer shadows;      // where shadow rays are deferred
     Buffer shadowDispatch;
-    Buffer buckets;
+    Buffer bucketKeys;  // as hits; ends at a whole tile
+    Buffer bucketCounts;
+    Buffer bucketBegins;
+    Buffer bucketCursors;
     Buffer rayDispatch;
     Buffer bucketDispatch;
     Buffer counters;
@@ -43,10 +46,10 @@ struct FrameResources {
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
 
-    std::array<const Buffer*, 14> buffers() const {
-        return {&constants,   &samples,        &radiance, &rays,           &hits,
-                &orderedHits, &visitedHits,    &shadows,  &shadowDispatch, &buckets,
-                &rayDispatch, &bucketDispatch, &counters, &readback};
+    std::array<const Buffer*, 17> buffers() const {
+        return {&constants,     &samples,     &radiance,       &rays,           &hits,         &orderedHits,
+                &visitedHits,   &shadows,     &bucketKeys,     &shadowDispatch, &bucketCounts, &bucketBegins,
+                &bucketCursors, &rayDispatch, &bucketDispatch, &counters,       &readback};
     }
 };
 
@@ -62,6 +65,7 @@ struct FrameSize {
     bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
     std::uint32_t hitBytes = sizeof(gpu::HitRecord);
+    std::uint32_t keyBytes = 1;  // of a hit's bucket
     bool deferredShadows = false;
     bool environmentMap = false;
     bool rayPipeline = false;  // lists are dispatched as rays of a ray tracing pipeline

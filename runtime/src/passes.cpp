@@ -64,16 +64,13 @@ private:
 
     // What a round of rays starts with.
     void clearLists() {
-        fill(state_.frame.buckets, VK_WHOLE_SIZE, 0);
-        if (state_.choice.strategy == package::kStrategySortedUber) {
-            // Slots between buckets hold no hit.
-            fill(state_.frame.orderedHits, VK_WHOLE_SIZE, gpu::kNoHit);
-        }
+        fill(state_.frame.bucketCounts, VK_WHOLE_SIZE, 0);
         fill(state_.frame.visitedHits, VK_WHOLE_SIZE, 0);
     }
 
-    void dispatchRays(const std::string& name, ModuleRole role) {
-        passes_.dispatchList(name, pass(role), state_.frame.rayDispatch, 0);
+    void dispatchRays(const std::string& name, ModuleRole role,
+                      std::uint32_t arguments = gpu::kDispatchRays) {
+        passes_.dispatchList(name, pass(role), state_.frame.rayDispatch, arguments);
         passes_.barrier(dependencies().passToPass);
     }
 
@@ -118,7 +115,8 @@ private:
         const VkDeviceSize place = readbackRound(state_.size, round);
         copy(state_.frame.counters, 0, kRoundCounterBytes, place);
         if (state_.size.ordered) {
-            copy(state_.frame.buckets, 0, state_.frame.buckets.bytes, place + kRoundCounterBytes);
+            copy(state_.frame.bucketCounts, 0, sizeof(std::uint32_t) * state_.size.bucketCount,
+                 place + kRoundCounterBytes);
         }
     }
 
@@ -135,9 +133,14 @@ private:
 
     void recordOrder() {
         dispatchRays("trace", ModuleRole::Trace);
-        dispatchRays("count", ModuleRole::BucketCount);
-        passes_.dispatchOnce("offset", pass(ModuleRole::BucketOffset));
-        dispatchRays("copy", ModuleRole::BucketCopy);
+        if (state_.choice.ordering == package::Ordering::TileSort) {
+            dispatchRays("count", ModuleRole::BucketCount, gpu::kDispatchCount);
+            dispatchRays("copy", ModuleRole::BucketCopy, gpu::kDispatchTiles);
+        } else {
+            dispatchRays("count", ModuleRole::BucketCount);
+            passes_.dispatchOnce("offset", pass(ModuleRole::BucketOffset));
+            dispatchRays("copy", ModuleRole::BucketCopy);
+        }
         if (state_.choice.checksOrder) {
             // Not by the number of rays: without any, buckets have to be empty.
             passes_.dispatchPixels("check order", pass(ModuleRole::OrderCheck));

@@ -149,7 +149,10 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.shadowDispatch = frame.shadowDispatch.address;
     constants.orderedHits = frame.orderedHits.address;
     constants.visitedHits = frame.visitedHits.address;
-    constants.buckets = frame.buckets.address;
+    constants.bucketKeys = frame.bucketKeys.address;
+    constants.bucketCounts = frame.bucketCounts.address;
+    constants.bucketBegins = frame.bucketBegins.address;
+    constants.bucketCursors = frame.bucketCursors.address;
     constants.rayDispatch = frame.rayDispatch.address;
     constants.bucketDispatch = frame.bucketDispatch.address;
     constants.counters = frame.counters.address;

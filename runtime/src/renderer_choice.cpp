@@ -47,27 +47,53 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                      "compile the package with --tracer all");
 }
 
-// As measured: docs/reflections.md, "Orderings". On a CPU an atomic costs little more than what saves one. On
-// a GPU hits of one bucket wait for each other in memory, unless their workgroup or subgroup adds them up
-// first.
-package::Ordering orderingFor(VkPhysicalDeviceType device, std::uint32_t bucketCount) {
-    if (device == VK_PHYSICAL_DEVICE_TYPE_CPU) {
-        return package::Ordering::GlobalAtomics;
-    }
-    return bucketCount <= gpu::kMaxLocalBuckets ? package::Ordering::LocalHistogram
-                                                : package::Ordering::WaveBallot;
+// Whether tile-sort has the shared memory that it takes.
+bool sortsTiles(const DeviceLimits& limits) {
+    return limits.core.maxComputeSharedMemorySize >= gpu::kTileSharedBytes;
 }
 
-package::Ordering orderingOn(const Context::State& context, std::uint32_t bucketCount) {
-    VkPhysicalDeviceProperties properties{};
-    context.instance.GetPhysicalDeviceProperties(context.handles.physicalDevice, &properties);
-    return orderingFor(properties.deviceType, bucketCount);
+// As measured: docs/performance.md, "Ordering". On a CPU an atomic costs little more than what saves one. On
+// a GPU hits of one bucket wait for each other in memory, unless their workgroup or subgroup adds them up
+// first.
+package::Ordering orderingFor(const DeviceLimits& limits, std::uint32_t bucketCount) {
+    if (limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+        return package::Ordering::GlobalAtomics;
+    }
+    if (bucketCount > gpu::kMaxLocalBuckets) {
+        return package::Ordering::WaveBallot;
+    }
+    return sortsTiles(limits) ? package::Ordering::TileSort : package::Ordering::LocalHistogram;
+}
+
+bool isLocal(package::Ordering ordering) {
+    return ordering == package::Ordering::LocalHistogram || ordering == package::Ordering::TileSort;
+}
+
+Status checkOrdering(const DeviceLimits& limits, package::Ordering ordering, std::uint32_t bucketCount) {
+    if (ordering >= package::Ordering::Count) {
+        return notOne("ordering");
+    }
+    const std::string name(nameOf(ordering));
+    if (isLocal(ordering) && bucketCount > gpu::kMaxLocalBuckets) {
+        return makeError("renderer-options", "",
+                         "the ordering " + name + " holds " + std::to_string(gpu::kMaxLocalBuckets) +
+                             " buckets, the package has " + std::to_string(bucketCount),
+                         "use another ordering, or merge cases");
+    }
+    if (ordering == package::Ordering::TileSort && !sortsTiles(limits)) {
+        return makeError("renderer-options", "",
+                         "the ordering " + name + " takes " + std::to_string(gpu::kTileSharedBytes) +
+                             " bytes of shared memory, and the device has " +
+                             std::to_string(limits.core.maxComputeSharedMemorySize),
+                         "use another ordering");
+    }
+    return okStatus();
 }
 
 }  // namespace
 
 package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount) {
-    return orderingOn(context.state(), bucketCount);
+    return orderingFor(context.state().limits, bucketCount);
 }
 
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
@@ -87,18 +113,11 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     PipelineChoice choice;
     choice.strategy = options.strategy;
     choice.tracer = *tracer;
-    choice.ordering = options.ordering.value_or(orderingOn(context, package.bucketCount()));
+    choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
     choice.batchEffects = options.batchEffects;
-    if (choice.ordering >= package::Ordering::Count) {
-        return notOne("ordering");
-    }
-    if (choice.ordering == package::Ordering::LocalHistogram &&
-        package.bucketCount() > gpu::kMaxLocalBuckets) {
-        return makeError("renderer-options", "",
-                         "the ordering local-histogram holds " + std::to_string(gpu::kMaxLocalBuckets) +
-                             " buckets, the package has " + std::to_string(package.bucketCount()),
-                         "use another ordering, or merge cases");
+    if (Status status = checkOrdering(context.limits, choice.ordering, package.bucketCount()); !status) {
+        return status.error();
     }
     return choice;
 }
@@ -116,6 +135,8 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
+    // As in hit/bucket_key.glsl.
+    size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
     size.environmentMap = package.environmentMap();
     size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&
                            package.shape().shadows == package::ShadowPlacement::Deferred;

@@ -26,6 +26,9 @@ struct RequiredFeature {
 constexpr RequiredFeature kFeatures[] = {
     GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
     GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
+    // Keys of hits by bucket have one or two bytes.
+    GLINT_FEATURE(vulkan11, storageBuffer16BitAccess),
+    GLINT_FEATURE(vulkan12, storageBuffer8BitAccess),
     GLINT_FEATURE(vulkan12, bufferDeviceAddress),
     GLINT_FEATURE(vulkan12, scalarBlockLayout),
     GLINT_FEATURE(vulkan12, runtimeDescriptorArray),

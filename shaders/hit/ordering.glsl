@@ -1,6 +1,6 @@
 // Adds the hits of a workgroup to their buckets, by the module's ordering: GLINT_ORDERING is package::Ordering. The
-// module says before it includes this file which word of a BucketRecord it adds to, GLINT_BUCKET_WORD, and whether it
-// needs to know each hit's number in its bucket, GLINT_HITS_NUMBERED.
+// module says before it includes this file which words of FrameConstants it adds to, GLINT_BUCKET_WORDS, and whether it
+// needs to know each hit's number in its bucket, GLINT_HITS_NUMBERED. The ordering tile-sort is apart: hit/tile_sort.glsl.
 //
 // Threads beyond the list take part, with kNoBucket: no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
@@ -15,7 +15,7 @@
 const uint kNoBucket = 0xFFFFFFFFu;
 
 uint addToBucket(uint bucket, uint hits) {
-    return atomicAdd(GLINT_FRAME.buckets.data[bucket].GLINT_BUCKET_WORD, hits);
+    return atomicAdd(GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket], hits);
 }
 
 // Adds to a bucket that the whole subgroup names; gives each thread the number of the first. One atomic, by the first

@@ -75,10 +75,9 @@ vec3 missDirection(HitRecord record) {
     return vec3(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY, record.distance_orDirectionZ);
 }
 
-// Bucket of a stored hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to the misses,
+// Bucket of what a ray hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to the misses,
 // whose pass shows it in an error colour and counts it.
-uint bucketOf(uint index) {
-    uint geometry = storedGeometry(index);
+uint bucketOfGeometry(uint geometry) {
     if (geometry == kMissGeometry) {
         return 0u;
     }

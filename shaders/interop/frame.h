@@ -14,8 +14,15 @@ GLINT_CONSTANT(kMaxRayGroupsX, 32768u);
 // Threads of the single workgroup that scans the buckets.
 GLINT_CONSTANT(kScanGroupSize, 256u);
 
-// Buckets that the ordering by local histograms holds in shared memory: 4 KiB of the 16 that Vulkan guarantees.
+// Buckets that the orderings local-histogram and tile-sort hold in shared memory.
 GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
+// The ordering tile-sort: threads of a workgroup, and workgroups that count at most.
+GLINT_CONSTANT(kTileGroupSize, 256u);
+GLINT_CONSTANT(kMaxCountGroups, 1024u);
+// Hits that the largest tile has: keys end at a multiple of it.
+GLINT_CONSTANT(kMaxTileHits, 6144u);
+// Shared memory that tile-sort takes at most, bytes: hits of a tile, a word a bucket, sums of the scan.
+GLINT_CONSTANT(kTileSharedBytes, 29696u);
 
 // HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);
@@ -88,14 +95,6 @@ struct DispatchArguments {
     uint pad;
 };
 
-// Bucket of a hit: 0 a miss, 1 + shaderId otherwise.
-struct BucketRecord {
-    uint count;   // hits in the bucket
-    uint begin;   // first slot in the ordered list
-    uint cursor;  // next free slot while copying
-    uint pad;
-};
-
 GLINT_INTEROP_END
 
 #ifndef __cplusplus
@@ -106,7 +105,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { H
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray { ShadowRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DispatchArray { DispatchArguments data[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BucketArray { BucketRecord data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer KeyArray { uvec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer CounterArray { uint data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray { uint data[]; };
 #endif
@@ -149,6 +148,12 @@ GLINT_CONSTANT(kCounterOrderErrors, 3u);    // found by the check of the order: 
 GLINT_CONSTANT(kCounterEffects, 4u);        // kCountsOfEffect for each effect, in order of their bits
 GLINT_CONSTANT(kCounterNonFinite, 84u);     // pixels whose sample was no number: taken as black
 GLINT_CONSTANT(kCounterCount, 85u);
+
+// FrameConstants::rayDispatch: over the ray list.
+GLINT_CONSTANT(kDispatchRays, 0u);   // a thread a ray
+GLINT_CONSTANT(kDispatchCount, 1u);  // tile-sort: workgroups that count
+GLINT_CONSTANT(kDispatchTiles, 2u);  // tile-sort: a workgroup a tile
+GLINT_CONSTANT(kDispatchCountOfRays, 3u);
 
 // FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);
@@ -205,9 +210,15 @@ struct FrameConstants {
     GLINT_ADDRESS(Hit) hits;
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
-    GLINT_ADDRESS(Bucket) buckets;       // bucketCount
+    // Bucket of a hit: 0 a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in as many bytes as the
+    // number of buckets takes: 1, 2 or 4. Of each bucket: its hits, its first slot in the ordered list, and the next
+    // free one while hits are copied. Behind the counts is that of workgroups that have counted.
+    GLINT_ADDRESS(Key) bucketKeys;
+    GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount + 1
+    GLINT_ADDRESS(Counter) bucketBegins;   // bucketCount
+    GLINT_ADDRESS(Counter) bucketCursors;  // bucketCount
     GLINT_ADDRESS(Counter) visitedHits;  // a bit a hit, of the check of the order
-    GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
+    GLINT_ADDRESS(Dispatch) rayDispatch;     // kDispatch*
     GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
     GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays

@@ -13,18 +13,29 @@ void report(bool wrong) {
     }
 }
 
+struct Bucket {
+    uint count;
+    uint begin;
+    uint cursor;
+};
+
+Bucket loadBucket(uint index) {
+    return Bucket(GLINT_FRAME.bucketCounts.data[index], GLINT_FRAME.bucketBegins.data[index],
+                  GLINT_FRAME.bucketCursors.data[index]);
+}
+
 // Where the bucket after this one begins.
-uint endOfBucket(BucketRecord bucket) {
+uint endOfBucket(Bucket bucket) {
     uint alignment = GLINT_FRAME.bucketAlignment;
     return bucket.begin + (bucket.count + alignment - 1u) / alignment * alignment;
 }
 
 void checkBucket(uint index, uint slotCount) {
-    BucketRecord bucket = GLINT_FRAME.buckets.data[index];
+    Bucket bucket = loadBucket(index);
     report(index == 0u && bucket.begin != 0u);
     report(bucket.cursor != bucket.begin + bucket.count);
     bool last = index + 1u == GLINT_FRAME.bucketCount;
-    uint next = last ? slotCount : GLINT_FRAME.buckets.data[index + 1u].begin;
+    uint next = last ? slotCount : GLINT_FRAME.bucketBegins.data[index + 1u];
     report(endOfBucket(bucket) != next);
     report(GLINT_FRAME.bucketDispatch.data[index].elementCount != bucket.count);
 }
@@ -32,7 +43,7 @@ void checkBucket(uint index, uint slotCount) {
 void checkSum(uint rayCount) {
     uint sum = 0u;
     for (uint i = 0u; i < GLINT_FRAME.bucketCount; ++i) {
-        sum += GLINT_FRAME.buckets.data[i].count;
+        sum += GLINT_FRAME.bucketCounts.data[i];
     }
     report(sum != rayCount);
 }
@@ -43,7 +54,7 @@ uint bucketOfSlot(uint slot) {
     uint end = GLINT_FRAME.bucketCount;
     while (end - found > 1u) {
         uint middle = (found + end) / 2u;
-        if (GLINT_FRAME.buckets.data[middle].begin <= slot) {
+        if (GLINT_FRAME.bucketBegins.data[middle] <= slot) {
             found = middle;
         } else {
             end = middle;
@@ -61,13 +72,13 @@ bool isVisited(uint hit) {
 void checkSlot(uint slot, uint rayCount) {
     uint hit = GLINT_FRAME.orderedHits.data[slot];
     uint index = bucketOfSlot(slot);
-    BucketRecord bucket = GLINT_FRAME.buckets.data[index];
+    Bucket bucket = loadBucket(index);
     if (slot - bucket.begin >= bucket.count) {
         report(hit != kNoHit);
     } else if (hit >= rayCount) {
         report(true);
     } else {
-        report(bucketOf(hit) != index);
+        report(bucketOfGeometry(storedGeometry(hit)) != index);
         report(isVisited(hit));
     }
 }
@@ -75,7 +86,7 @@ void checkSlot(uint slot, uint rayCount) {
 void main() {
     uint thread = listIndex();
     uint threadCount = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kRayGroupSize;
-    uint rayCount = GLINT_FRAME.rayDispatch.data[0].elementCount;
+    uint rayCount = GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
     uint slotCount = GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount].elementCount;
     if (thread == 0u) {
         checkSum(rayCount);

@@ -9,11 +9,10 @@ GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
-    BucketRecord bucket = GLINT_FRAME.buckets.data[0];
-    if (index >= bucket.count) {
+    if (index >= GLINT_FRAME.bucketCounts.data[0]) {
         return;
     }
-    HitRecord hit = storedHit(GLINT_FRAME.orderedHits.data[bucket.begin + index]);
+    HitRecord hit = storedHit(GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[0] + index]);
     vec3 radiance = vec3(1.0, 0.0, 1.0);
     uint path = kPathHit;
     if (hit.geometry == kMissGeometry) {

@@ -5,5 +5,5 @@
 layout(local_size_x = 1) in;
 
 void main() {
-    GLINT_FRAME.shadowDispatch.data[0] = listDispatch(GLINT_FRAME.counters.data[kCounterShadowRays]);
+    GLINT_FRAME.shadowDispatch.data[0] = listDispatch(GLINT_FRAME.counters.data[kCounterShadowRays], kRayGroupSize);
 }

@@ -1,9 +1,10 @@
 #version 460
-// Traces the ray list into hit records.
+// Traces the ray list into hit records, and says to which bucket each belongs.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
+#include "hit/bucket_key.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "hit/trace.glsl"
@@ -12,7 +13,9 @@ GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
-    if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        storeHit(index, traceRay(GLINT_FRAME.rays.data[index], index, gl_RayFlagsCullBackFacingTrianglesEXT));
+    if (index < GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount) {
+        HitRecord hit = traceRay(GLINT_FRAME.rays.data[index], index, gl_RayFlagsCullBackFacingTrianglesEXT);
+        storeHit(index, hit);
+        storeKey(index, bucketOfGeometry(hit.geometry));
     }
 }

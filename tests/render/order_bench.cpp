@@ -1,17 +1,19 @@
-// Times the orderings: device time of the count and the copy by number of buckets and spread of the hits.
-// Each round runs everything once, so that what else the machine does slows all alike. Prints Markdown.
-//
-//   bench_ordering [ROUNDS [RAYS]]     default 31 and 57600
+// Times the orderings: device time of all passes by number of hits, of buckets and spread of the hits, beside
+// a plain copy of as many words in the same run. Each round runs everything once, in the same order, so that
+// what else the machine does slows all alike; each run goes over several copies of the problem, so that no
+// cache keeps it from the run before.
 #include "render/order_problems.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -22,129 +24,252 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 using package::Ordering;
+using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kBucketCounts[] = {1, 2, 31, 32, 33, 255, 256, 257, 1024, 1025};
 constexpr auto kOrderingCount = static_cast<std::uint32_t>(Ordering::Count);
+// Together larger than what a GPU caches.
+constexpr std::uint64_t kWordsOfCopies = 64U << 20U;
 
-double quantile(const std::vector<double>& sorted, double q) {
-    const double place = q * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-// Microseconds: the median, and half of what lies between the quartiles.
-std::string cell(std::vector<double> values) {
-    if (values.empty()) {
-        return "-";
-    }
-    std::ranges::sort(values);
-    const double spread = (quantile(values, 0.75) - quantile(values, 0.25)) / 2.0;
-    return fmt::format("{:.0f} ± {:.0f}", quantile(values, 0.5), spread);
-}
-
-struct Row {
-    std::uint32_t bucketCount = 0;
-    Spread spread{};
-    OrderProblem problem;
-    std::array<std::vector<double>, kOrderingCount> orderings;  // count and copy
-    std::vector<double> scans;
+struct Arguments {
+    std::uint32_t rounds = 11;
+    std::vector<std::uint32_t> hits{57600};
+    std::vector<std::uint32_t> buckets{2, 16, 64, 256, 1024};
+    std::vector<std::string> orderings;
+    std::string json;
+    std::uint32_t warmUpMs = 300;
 };
 
-// One run of each ordering.
-Status measure(OrderKernel& kernel, bool counts, Row& row) {
-    if (Status status = kernel.load(row.problem); !status) {
+double quantile(std::vector<double> values, double q) {
+    std::ranges::sort(values);
+    const double place = q * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+// Milliseconds of one ordering, a value a run.
+struct Times {
+    std::vector<double> count;
+    std::vector<double> offset;
+    std::vector<double> copy;
+    std::vector<double> total;
+};
+
+struct Row {
+    std::uint32_t hits = 0;
+    std::uint32_t buckets = 0;
+    Spread spread{};
+    std::map<Ordering, Times> orderings;
+    std::vector<double> plainCopy;
+};
+
+bool holds(Ordering ordering, std::uint32_t buckets) {
+    const bool isLocal = ordering == Ordering::LocalHistogram || ordering == Ordering::TileSort;
+    return !isLocal || buckets <= gpu::kMaxLocalBuckets;
+}
+
+// Whether every hit has one slot of its bucket.
+bool isOrdered(const OrderProblem& problem, std::uint32_t buckets, const OrderResult& result) {
+    std::vector<bool> seen(problem.hits.size());
+    std::uint64_t found = 0;
+    for (std::uint32_t bucket = 0; bucket < buckets; ++bucket) {
+        for (std::uint32_t i = 0; i < result.counts[bucket]; ++i) {
+            const std::uint32_t hit = result.slots[result.begins[bucket] + i];
+            if (hit >= seen.size() || seen[hit] || bucketOf(problem, hit, buckets) != bucket) {
+                return false;
+            }
+            seen[hit] = true;
+            ++found;
+        }
+    }
+    return found == seen.size();
+}
+
+Status check(OrderKernel& kernel, const OrderProblem& problem, std::uint32_t buckets, Ordering ordering) {
+    if (const Result<std::vector<OrderTime>> times = kernel.times(ordering); !times) {
+        return times.error();
+    }
+    const Result<OrderResult> result = kernel.result();
+    if (!result) {
+        return result.error();
+    }
+    if (!isOrdered(problem, buckets, *result)) {
+        return makeError("ordering", std::string(nameOf(ordering)), "a hit is not in its bucket",
+                         "run test_ordering");
+    }
+    return okStatus();
+}
+
+Status measure(OrderKernel& kernel, const Arguments& arguments, const OrderProblem& problem, Row& row,
+               const std::vector<Ordering>& orderings) {
+    const auto copies = static_cast<std::uint32_t>(kWordsOfCopies / row.hits + 2);
+    if (Status status = kernel.loadForTimes(problem, copies); !status) {
         return status;
     }
-    for (std::uint32_t i = 0; i < kOrderingCount; ++i) {
-        const auto ordering = static_cast<Ordering>(i);
-        if (ordering == Ordering::LocalHistogram && row.bucketCount > gpu::kMaxLocalBuckets) {
-            continue;
+    for (const Ordering ordering : orderings) {
+        if (Status status = check(kernel, problem, row.buckets, ordering); !status) {
+            return status;
         }
-        const Result<OrderResult> result = kernel.run(ordering);
-        if (!result) {
-            return result.error();
+    }
+    // Clocks rise with work.
+    const Clock::time_point start = Clock::now();
+    while (Clock::now() - start < std::chrono::milliseconds(arguments.warmUpMs)) {
+        if (const Result<std::vector<double>> copy = kernel.copyTimes(); !copy) {
+            return copy.error();
         }
-        if (result->errors != 0) {
-            return makeError("ordering", std::string(nameOf(ordering)), "the check found an error",
-                             "run test_ordering");
+    }
+    for (std::uint32_t round = 0; round < arguments.rounds; ++round) {
+        const Result<std::vector<double>> copy = kernel.copyTimes();
+        if (!copy) {
+            return copy.error();
         }
-        if (counts) {
-            row.orderings[i].push_back(1e3 * (result->countMs + result->copyMs));
-            row.scans.push_back(1e3 * result->offsetMs);
+        row.plainCopy.insert(row.plainCopy.end(), copy->begin(), copy->end());
+        for (const Ordering ordering : orderings) {
+            const Result<std::vector<OrderTime>> times = kernel.times(ordering);
+            if (!times) {
+                return times.error();
+            }
+            Times& kept = row.orderings[ordering];
+            for (const OrderTime& time : *times) {
+                kept.count.push_back(time.count);
+                kept.offset.push_back(time.offset);
+                kept.copy.push_back(time.copy);
+                kept.total.push_back(time.total);
+            }
         }
     }
     return okStatus();
 }
 
-void print(const Context& context, const std::vector<Row>& rows, std::uint32_t rounds, std::uint32_t rays) {
-    fmt::print(
-        "{}, {}; {} hits, {} rounds.\n"
-        "Count and copy, and the scan between them: µs, median ± half of the interquartile range.\n\n"
-        "| buckets | hits |",
-        context.deviceName(), context.driverName(), rays, rounds);
-    for (std::uint32_t i = 0; i < kOrderingCount; ++i) {
-        fmt::print(" {} |", nameOf(static_cast<Ordering>(i)));
-    }
-    fmt::print(" scan |\n|---|---|---|---|---|---|---|---|\n");
-    for (const Row& row : rows) {
-        fmt::print("| {} | {} |", row.bucketCount, nameOf(row.spread));
-        for (const std::vector<double>& values : row.orderings) {
-            fmt::print(" {} |", cell(values));
-        }
-        fmt::print(" {} |\n", cell(row.scans));
-    }
+// Bytes that an ordering has to move: each key read twice, each slot written.
+std::uint64_t bytesMoved(const Row& row) {
+    const std::uint64_t keyBytes = row.buckets <= 0x100 ? 1 : 2;
+    return row.hits * (2 * keyBytes + sizeof(std::uint32_t));
 }
 
-Status measureAll(std::uint32_t rounds, std::uint32_t rays) {
+void printHead(const Context& context, const std::vector<Ordering>& orderings, const Arguments& arguments) {
+    fmt::print(
+        "{}, {}; {} rounds.\n"
+        "All passes of an ordering, µs, median (quartiles), and as a multiple of a copy of 4 bytes a hit.\n\n"
+        "| hits | buckets | spread | copy |",
+        context.deviceName(), context.driverName(), arguments.rounds);
+    std::string rule = "|---|---|---|---|";
+    for (const Ordering ordering : orderings) {
+        fmt::print(" {} |", nameOf(ordering));
+        rule += "---|";
+    }
+    fmt::print("\n{}\n", rule);
+}
+
+void print(const Row& row, const std::vector<Ordering>& orderings) {
+    const double copy = quantile(row.plainCopy, 0.5);
+    fmt::print("| {} | {} | {} | {:.1f} |", row.hits, row.buckets, nameOf(row.spread), 1e3 * copy);
+    for (const Ordering ordering : orderings) {
+        const auto found = row.orderings.find(ordering);
+        if (found == row.orderings.end()) {
+            fmt::print(" - |");
+            continue;
+        }
+        const std::vector<double>& total = found->second.total;
+        fmt::print(" {:.1f} ({:.1f} to {:.1f}), {:.2f} |", 1e3 * quantile(total, 0.5),
+                   1e3 * quantile(total, 0.25), 1e3 * quantile(total, 0.75), quantile(total, 0.5) / copy);
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+}
+
+nlohmann::json summary(const std::vector<double>& values) {
+    return {{"median", 1e3 * quantile(values, 0.5)},
+            {"low", 1e3 * quantile(values, 0.25)},
+            {"high", 1e3 * quantile(values, 0.75)}};
+}
+
+nlohmann::json toJson(const Row& row) {
+    nlohmann::json orderings = nlohmann::json::array();
+    for (const auto& [ordering, times] : row.orderings) {
+        orderings.push_back({{"ordering", nameOf(ordering)},
+                             {"total", summary(times.total)},
+                             {"count", summary(times.count)},
+                             {"offset", summary(times.offset)},
+                             {"copy", summary(times.copy)}});
+    }
+    return {{"hits", row.hits},
+            {"buckets", row.buckets},
+            {"spread", nameOf(row.spread)},
+            {"bytesMoved", bytesMoved(row)},
+            {"plainCopy", summary(row.plainCopy)},
+            {"orderings", orderings}};
+}
+
+std::vector<Ordering> chosen(const Arguments& arguments) {
+    std::vector<Ordering> orderings;
+    for (std::uint32_t i = 0; i < kOrderingCount; ++i) {
+        const auto ordering = static_cast<Ordering>(i);
+        const auto& names = arguments.orderings;
+        if (names.empty() || std::ranges::find(names, nameOf(ordering)) != names.end()) {
+            orderings.push_back(ordering);
+        }
+    }
+    return orderings;
+}
+
+Status measureAll(const Arguments& arguments) {
     const Result<std::unique_ptr<Context>> context = Context::createHeadless();
     if (!context) {
         return context.error();
     }
-    std::map<std::uint32_t, std::unique_ptr<OrderKernel>> kernels;
-    std::vector<Row> rows;
-    for (const std::uint32_t bucketCount : kBucketCounts) {
-        Result<std::unique_ptr<OrderKernel>> kernel =
-            OrderKernel::create(**context, bucketCount - 1, package::HitRecordFormat::Full);
+    const std::vector<Ordering> orderings = chosen(arguments);
+    nlohmann::json report = {{"device", (*context)->deviceName()},
+                             {"driver", (*context)->driverName()},
+                             {"rounds", arguments.rounds},
+                             {"unit", "µs"},
+                             {"rows", nlohmann::json::array()}};
+    printHead(**context, orderings, arguments);
+    for (const std::uint32_t buckets : arguments.buckets) {
+        const Result<std::unique_ptr<OrderKernel>> kernel =
+            OrderKernel::create(**context, buckets - 1, package::HitRecordFormat::Full);
         if (!kernel) {
             return kernel.error();
         }
-        kernels.emplace(bucketCount, std::move(*kernel));
-        for (const Spread spread : kSpreads) {
-            rows.push_back({bucketCount, spread, makeProblem(spread, bucketCount, rays), {}, {}});
-        }
-    }
-    // The first round warms caches and clocks up and does not count.
-    for (std::uint32_t round = 0; round <= rounds; ++round) {
-        for (Row& row : rows) {
-            if (Status status = measure(*kernels.at(row.bucketCount), round > 0, row); !status) {
-                return status;
+        std::vector<Ordering> held;
+        std::ranges::copy_if(orderings, std::back_inserter(held),
+                             [&](Ordering ordering) { return holds(ordering, buckets); });
+        for (const std::uint32_t hits : arguments.hits) {
+            for (const Spread spread : kSpreads) {
+                Row row{hits, buckets, spread, {}, {}};
+                if (Status status =
+                        measure(**kernel, arguments, makeProblem(spread, buckets, hits), row, held);
+                    !status) {
+                    return status;
+                }
+                print(row, orderings);
+                report["rows"].push_back(toJson(row));
             }
         }
     }
-    print(**context, rows, rounds, rays);
+    if (!arguments.json.empty()) {
+        std::ofstream(arguments.json) << report.dump(1) << "\n";
+    }
     return okStatus();
-}
-
-// 0 where the text is no number.
-std::uint32_t number(const char* text) {
-    std::uint32_t value = 0;
-    const char* const end = text + std::strlen(text);
-    const auto parsed = std::from_chars(text, end, value);
-    return parsed.ec == std::errc() && parsed.ptr == end ? value : 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::uint32_t rounds = argc > 1 ? number(argv[1]) : 31;
-    const std::uint32_t rays = argc > 2 ? number(argv[2]) : 57600;
-    if (argc > 3 || rounds == 0 || rays == 0) {
-        std::fputs("usage: bench_ordering [ROUNDS [RAYS]]: two numbers of at least 1\n", stderr);
-        return 2;
-    }
     try {
-        if (const Status status = measureAll(rounds, rays); !status) {
+        Arguments arguments;
+        CLI::App app("Times the orderings of hits on the first Vulkan device; prints Markdown.");
+        const auto least = CLI::Range(1, 1 << 30);
+        app.add_option("--rounds", arguments.rounds, "Rounds, of several runs each")->check(least);
+        app.add_option("--hits", arguments.hits, "Numbers of hits")->delimiter(',')->check(least);
+        app.add_option("--buckets", arguments.buckets, "Numbers of buckets")
+            ->delimiter(',')
+            ->check(CLI::Range(1, 65536));
+        app.add_option("--orderings", arguments.orderings, "Which orderings; default all")->delimiter(',');
+        app.add_option("--warm-up", arguments.warmUpMs, "Milliseconds of work before each measurement");
+        app.add_option("--json", arguments.json, "Also writes this file, with the split by pass");
+        CLI11_PARSE(app, argc, argv);
+        if (const Status status = measureAll(arguments); !status) {
             std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
             return 1;
         }

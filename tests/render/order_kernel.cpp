@@ -57,7 +57,7 @@ Result<std::unique_ptr<OrderKernel>> OrderKernel::create(Context& context, std::
     if (Status status = kernel->createPipelines(); !status) {
         return status.error();
     }
-    Result<Timer> timer = Timer::create(context.state(), kTimes);
+    Result<Timer> timer = Timer::create(context.state(), kTimesOfRun * kMaxCopies);
     if (!timer) {
         return timer.error();
     }

@@ -9,6 +9,7 @@
 #include <glint/context.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,20 +26,27 @@ struct OrderProblem {
 
 // A word that is overwritten between the copy and the check.
 struct OrderFault {
-    enum class Where { Slots, Buckets };
+    enum class Where { Slots, Counts, Begins, Cursors };
     Where where = Where::Slots;
     std::size_t word = 0;
     std::uint32_t value = 0;
 };
 
 struct OrderResult {
-    std::vector<gpu::BucketRecord> buckets;
+    std::vector<std::uint32_t> counts;  // by bucket, as are the following
+    std::vector<std::uint32_t> begins;
+    std::vector<std::uint32_t> cursors;
     std::vector<gpu::DispatchArguments> dispatches;  // by bucket, then over all slots
     std::vector<std::uint32_t> slots;                // as many as there is room for
     std::uint32_t errors = 0;                        // that the check found
-    double countMs = 0.0;                            // device time; 0 where the device tells none
-    double offsetMs = 0.0;
-    double copyMs = 0.0;
+};
+
+// Device time, milliseconds.
+struct OrderTime {
+    double count = 0.0;
+    double offset = 0.0;  // 0 where there is no such pass
+    double copy = 0.0;
+    double total = 0.0;  // all of them, with nothing between that takes the time of one
 };
 
 class OrderKernel {
@@ -56,19 +64,37 @@ public:
     // Slots that hold no hit are kNoHit.
     Result<OrderResult> run(package::Ordering ordering, std::span<const OrderFault> faults = {});
 
+    // The same problem several times over, for times(): so that caches do not keep what the run before read.
+    // Without records of the hits, which only the check reads.
+    Status loadForTimes(const OrderProblem& problem, std::uint32_t copies);
+    // A run on each of the copies, and then each again as a whole. Errors: "timings-unavailable".
+    Result<std::vector<OrderTime>> times(package::Ordering ordering);
+    // Device time of copying as many words as there are hits from one of the copies to the next,
+    // milliseconds.
+    Result<std::vector<double>> copyTimes();
+    // What the last call of times() has put in order; errors are not counted.
+    Result<OrderResult> result();
+
 private:
     struct Buffers;
-    static constexpr std::uint32_t kTimes = 3;  // stretches of the timer: count, offset, copy
+    // Stretches of the timer.
+    static constexpr std::uint32_t kMaxCopies = 8;
+    static constexpr std::uint32_t kTimesOfRun = 4;
 
     OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord);
     Status createPipelines();
-    Status createBuffers(const OrderProblem& problem, Buffers& buffers) const;
+    Result<std::unique_ptr<Buffers>> createBuffers(const OrderProblem& problem, bool withHits) const;
+    void recordStart(VkCommandBuffer commands, const Buffers& buffers) const;
     void recordPasses(VkCommandBuffer commands, package::Ordering ordering, const Buffers& buffers,
-                      std::span<const OrderFault> faults) const;
+                      const std::function<void(std::uint32_t pass)>& between) const;
+    void recordCheck(VkCommandBuffer commands, const Buffers& buffers,
+                     std::span<const OrderFault> faults) const;
     void recordInput(VkCommandBuffer commands, const Buffers& buffers) const;
     void recordOutput(VkCommandBuffer commands, const Buffers& buffers) const;
     OrderResult readResult(const Buffers& buffers) const;
     void bind(VkCommandBuffer commands, package::ModuleKey key) const;
+    void wait(VkCommandBuffer commands) const;
+    Result<std::vector<double>> readTimes(std::uint32_t count) const;
 
     Context::State& context_;
     std::uint32_t caseCount_;
@@ -77,7 +103,7 @@ private:
     std::map<package::ModuleKey, UniquePipeline> pipelines_;
     std::optional<Timer> timer_;
     std::optional<CommandRunner> runner_;
-    std::unique_ptr<Buffers> buffers_;
+    std::vector<std::unique_ptr<Buffers>> buffers_;
 };
 
 }  // namespace glint::testing

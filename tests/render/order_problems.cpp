@@ -1,19 +1,63 @@
 #include "render/order_problems.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 namespace glint::testing {
 
 namespace {
 
 constexpr std::uint32_t kSeed = 5;
-constexpr std::uint32_t kMeanRun = 32;
+// Pictures: pixels of a row; of a tile's edge; between the centres of regions.
+constexpr std::uint32_t kWidth = 4096;
+constexpr std::uint32_t kTile = 8;
+constexpr std::uint32_t kRegion = 40;
+
+// 32 bits that have nothing to do with those of its neighbours: the finaliser of MurmurHash3.
+std::uint32_t scramble(std::uint32_t value) {
+    value = (value ^ value >> 16U) * 0x85EBCA6BU;
+    value = (value ^ value >> 13U) * 0xC2B2AE35U;
+    return value ^ value >> 16U;
+}
+
+// Number of the region that a pixel is in: that of the nearest centre, of which each cell of a grid has one
+// (Worley 1996).
+std::uint32_t regionOf(std::uint32_t x, std::uint32_t y) {
+    std::uint32_t nearest = 0;
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (std::uint32_t cell = 0; cell < 9; ++cell) {
+        // One more than the cell, so that none is below 0.
+        const std::uint32_t cellX = x / kRegion + cell % 3;
+        const std::uint32_t cellY = y / kRegion + cell / 3;
+        const std::uint32_t region = scramble(cellX + 0x10001U * cellY);
+        const std::int64_t dx = std::int64_t{cellX} * kRegion + region % kRegion - (x + kRegion);
+        const std::int64_t dy = std::int64_t{cellY} * kRegion + (region >> 8U) % kRegion - (y + kRegion);
+        if (const std::int64_t distance = dx * dx + dy * dy; distance < least) {
+            least = distance;
+            nearest = region;
+        }
+    }
+    return nearest;
+}
+
+std::uint32_t regionOfRay(std::uint32_t ray) {
+    const std::uint32_t tile = ray / (kTile * kTile);
+    constexpr std::uint32_t kTilesOfRow = kWidth / kTile;
+    return regionOf(tile % kTilesOfRow * kTile + ray % kTile,
+                    tile / kTilesOfRow * kTile + ray % (kTile * kTile) / kTile);
+}
 
 class Buckets {
 public:
-    Buckets(Spread spread, std::uint32_t count) : spread_(spread), count_(count) {}
+    Buckets(Spread spread, std::uint32_t count) : spread_(spread), count_(count) {
+        double sum = 0.0;
+        for (std::uint32_t bucket = 0; bucket < count; ++bucket) {
+            sum += 1.0 / (bucket + 1);
+            sums_.push_back(sum);
+        }
+    }
 
     std::uint32_t of(std::uint32_t ray) {
         switch (spread_) {
@@ -23,15 +67,12 @@ public:
                 return (count_ - 1) - ray % count_;
             case Spread::Random:
                 return below(count_);
-            case Spread::Skewed: {
-                const double power = std::pow(static_cast<double>(count_), unit());
-                return std::min(static_cast<std::uint32_t>(power) - 1, count_ - 1);
+            case Spread::Zipf: {
+                const auto found = std::ranges::upper_bound(sums_, unit() * sums_.back());
+                return std::min(static_cast<std::uint32_t>(found - sums_.begin()), count_ - 1);
             }
-            case Spread::Runs:
-                if (below(kMeanRun) == 0 || ray == 0) {
-                    run_ = below(count_);
-                }
-                return run_;
+            case Spread::Picture:
+                return regionOfRay(ray) % count_;
         }
         return 0;
     }
@@ -48,7 +89,7 @@ private:
 
     Spread spread_;
     std::uint32_t count_;
-    std::uint32_t run_ = 0;
+    std::vector<double> sums_;  // of shares, by bucket
     std::mt19937_64 random_{kSeed};
 };
 
@@ -62,10 +103,10 @@ const char* nameOf(Spread spread) {
             return "in turn";
         case Spread::Random:
             return "random";
-        case Spread::Skewed:
-            return "skewed";
-        case Spread::Runs:
-            return "runs";
+        case Spread::Zipf:
+            return "Zipf";
+        case Spread::Picture:
+            return "picture";
     }
     return "unknown";
 }

@@ -11,11 +11,11 @@ enum class Spread {
     OneBucket,  // every hit in the last
     InTurn,     // each bucket once, then again: no two neighbours share one
     Random,
-    Skewed,  // by a uniform logarithm: half of the hits in the first square root of the buckets
-    Runs,    // of 32 neighbours on average: what neighbouring rays hit is mostly the same
+    Zipf,     // the n-th bucket has 1 / n of the hits of the first
+    Picture,  // regions of some 40 pixels' width, in tiles of 8 x 8 pixels: as rays of a picture come
 };
-inline constexpr Spread kSpreads[] = {Spread::OneBucket, Spread::InTurn, Spread::Random, Spread::Skewed,
-                                      Spread::Runs};
+inline constexpr Spread kSpreads[] = {Spread::OneBucket, Spread::InTurn, Spread::Random, Spread::Zipf,
+                                      Spread::Picture};
 
 const char* nameOf(Spread spread);
 

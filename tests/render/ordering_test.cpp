@@ -15,12 +15,14 @@ using namespace glint::testing;
 using package::HitRecordFormat;
 using package::Ordering;
 
-constexpr Ordering kOrderings[] = {Ordering::GlobalAtomics, Ordering::WaveLoop, Ordering::WaveAggregated,
-                                   Ordering::WaveBallot, Ordering::LocalHistogram};
+constexpr Ordering kOrderings[] = {Ordering::GlobalAtomics,  Ordering::WaveLoop,
+                                   Ordering::WaveAggregated, Ordering::WaveBallot,
+                                   Ordering::LocalHistogram, Ordering::TileSort};
 static_assert(std::size(kOrderings) == static_cast<std::size_t>(Ordering::Count));
 
 bool holds(Ordering ordering, std::uint32_t bucketCount) {
-    return ordering != Ordering::LocalHistogram || bucketCount <= gpu::kMaxLocalBuckets;
+    const bool isLocal = ordering == Ordering::LocalHistogram || ordering == Ordering::TileSort;
+    return !isLocal || bucketCount <= gpu::kMaxLocalBuckets;
 }
 
 std::unique_ptr<OrderKernel> makeKernel(std::uint32_t bucketCount, HitRecordFormat format) {
@@ -51,10 +53,9 @@ void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const
     std::uint32_t wrong = 0;
     std::uint32_t begin = 0;
     for (std::uint32_t bucket = 0; bucket < bucketCount; ++bucket) {
-        const gpu::BucketRecord& record = result.buckets[bucket];
-        ASSERT_EQ(record.count, counts[bucket]) << "bucket " << bucket;
-        ASSERT_EQ(record.begin, begin) << "bucket " << bucket;
-        ASSERT_EQ(record.cursor, begin + counts[bucket]) << "bucket " << bucket;
+        ASSERT_EQ(result.counts[bucket], counts[bucket]) << "bucket " << bucket;
+        ASSERT_EQ(result.begins[bucket], begin) << "bucket " << bucket;
+        ASSERT_EQ(result.cursors[bucket], begin + counts[bucket]) << "bucket " << bucket;
         expectDispatch(result.dispatches[bucket], counts[bucket]);
         const std::uint32_t room =
             (counts[bucket] + problem.alignment - 1) / problem.alignment * problem.alignment;
@@ -97,9 +98,9 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
         ASSERT_NE(kernel, nullptr);
         for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
             for (const Spread spread : kSpreads) {
-                // None, one, less than a workgroup, one in each bucket, and a last workgroup that is not
-                // full.
-                for (const std::uint32_t rays : {0U, 1U, 37U, bucketCount, 4099U}) {
+                // None, one, less than a workgroup, one in each bucket, and a last workgroup or tile that
+                // is not full.
+                for (const std::uint32_t rays : {0U, 1U, 37U, bucketCount, 4099U, 12305U}) {
                     OrderProblem problem = makeProblem(spread, bucketCount, rays);
                     problem.alignment = alignment;
                     SCOPED_TRACE(std::string(nameOf(format)) + ", " + nameOf(spread) + ", rays " +
@@ -112,8 +113,8 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
     expectNoValidationMessages();
 }
 
-// 2^5, 2^8 and 2^10 are where ballots and scans take another word or round; 1024 is the most that
-// local-histogram holds.
+// 2^5, 2^8 and 2^10 are where ballots, scans and keys take another word, round or byte; 1024 is the most that
+// local-histogram and tile-sort hold.
 INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
                          ::testing::Values(1U, 2U, 31U, 32U, 33U, 255U, 256U, 257U, 1024U, 1025U),
                          ::testing::PrintToStringParamName());
@@ -130,13 +131,12 @@ TEST(OrderingsOfManyHits, FillDispatchesOfTwoDimensions) {
     constexpr std::uint32_t kRays = gpu::kMaxRayGroupsX * gpu::kRayGroupSize + 1001;
     const std::unique_ptr<OrderKernel> kernel = makeKernel(kBuckets, HitRecordFormat::Packed);
     ASSERT_NE(kernel, nullptr);
-    expectAllOrder(*kernel, kBuckets, makeProblem(Spread::Skewed, kBuckets, kRays));
+    expectAllOrder(*kernel, kBuckets, makeProblem(Spread::Zipf, kBuckets, kRays));
     expectNoValidationMessages();
 }
 
 constexpr std::uint32_t kFaultBuckets = 5;
 constexpr std::uint32_t kFaultRays = 5 * 101;
-constexpr std::uint32_t kBucketWords = sizeof(gpu::BucketRecord) / sizeof(std::uint32_t);
 
 struct FaultCase {
     const char* name;
@@ -148,10 +148,6 @@ struct FaultCase {
 // number 2. How many errors there are at least follows from which of the rules each slot and bucket breaks.
 std::vector<FaultCase> faultCases() {
     using Where = OrderFault::Where;
-    constexpr std::size_t kCount = 0;
-    constexpr std::size_t kBegin = 1;
-    constexpr std::size_t kCursor = 2;
-    const auto word = [](std::size_t bucket, std::size_t field) { return bucket * kBucketWords + field; };
     return {
         {"a hit twice, and one lost", 1, {{Where::Slots, 130, 3}, {Where::Slots, 131, 3}}},
         // In the wrong place there, and twice.
@@ -161,18 +157,18 @@ std::vector<FaultCase> faultCases() {
         {"a hit that there is not", 1, {{Where::Slots, 130, kFaultRays}}},
         {"a hit in a gap", 1, {{Where::Slots, 128 + 101, 3}}},
         // Sum, cursor, dispatch, and a hit past the end.
-        {"the count of a bucket", 4, {{Where::Buckets, word(1, kCount), 100}}},
+        {"the count of a bucket", 4, {{Where::Counts, 1, 100}}},
         // Sum and dispatch.
         {"a hit that was not counted",
          2,
-         {{Where::Buckets, word(4, kCount), 100},
-          {Where::Buckets, word(4, kCursor), 4 * 128 + 100},
+         {{Where::Counts, 4, 100},
+          {Where::Cursors, 4, 4 * 128 + 100},
           {Where::Slots, 4 * 128 + 100, gpu::kNoHit}}},
         // Cursor; ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
-        {"where a bucket begins", 131, {{Where::Buckets, word(2, kBegin), 192}}},
-        {"where a bucket ends", 1, {{Where::Buckets, word(4, kCursor), 4 * 128 + 100}}},
+        {"where a bucket begins", 131, {{Where::Begins, 2, 192}}},
+        {"where a bucket ends", 1, {{Where::Cursors, 4, 4 * 128 + 100}}},
         // Begin, end, cursor, the first slot, the last.
-        {"where all begin", 5, {{Where::Buckets, word(0, kBegin), 1}}},
+        {"where all begin", 5, {{Where::Begins, 0, 1}}},
     };
 }
 

@@ -121,13 +121,6 @@ constexpr MemberLayout kDispatchArguments[] = {
     GLINT_MEMBER(DispatchArguments, traceDepth), GLINT_MEMBER(DispatchArguments, pad),
 };
 
-constexpr MemberLayout kBucketRecord[] = {
-    GLINT_MEMBER(BucketRecord, count),
-    GLINT_MEMBER(BucketRecord, begin),
-    GLINT_MEMBER(BucketRecord, cursor),
-    GLINT_MEMBER(BucketRecord, pad),
-};
-
 constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, worldToClip),
     GLINT_MEMBER(FrameConstants, cameraPosition),
@@ -176,7 +169,10 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, hits),
     GLINT_MEMBER(FrameConstants, packedHits),
     GLINT_MEMBER(FrameConstants, orderedHits),
-    GLINT_MEMBER(FrameConstants, buckets),
+    GLINT_MEMBER(FrameConstants, bucketKeys),
+    GLINT_MEMBER(FrameConstants, bucketCounts),
+    GLINT_MEMBER(FrameConstants, bucketBegins),
+    GLINT_MEMBER(FrameConstants, bucketCursors),
     GLINT_MEMBER(FrameConstants, visitedHits),
     GLINT_MEMBER(FrameConstants, rayDispatch),
     GLINT_MEMBER(FrameConstants, bucketDispatch),
@@ -195,8 +191,8 @@ constexpr StructLayout kStructs[] = {
     GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
     GLINT_STRUCT(MaterialRecord), GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),
     GLINT_STRUCT(RayRecord),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
-    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(BucketRecord),
-    GLINT_STRUCT(FrameConstants), GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),
+    GLINT_STRUCT(PushConstants),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

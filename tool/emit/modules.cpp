@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace glint {
@@ -24,6 +25,12 @@ constexpr std::size_t kMaxCaseNameLength = 100;
 struct RoleSource {
     ModuleRole role;
     std::string_view source;
+};
+
+// Of an ordering that has passes of its own.
+constexpr RoleSource kTileSortSources[] = {
+    {ModuleRole::BucketCount, "passes/bucket_count_tile_sort.comp"},
+    {ModuleRole::BucketCopy, "passes/bucket_copy_tile_sort.comp"},
 };
 
 constexpr RoleSource kSources[] = {
@@ -54,6 +61,14 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::RefractionWalk, "passes/refraction_walk.comp"},
     {ModuleRole::Deform, "passes/deform.comp"},
 };
+
+std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key) {
+    const bool sortsTiles = info.repeated == package::Repeated::ByOrdering &&
+                            key.index == static_cast<std::uint32_t>(package::Ordering::TileSort);
+    const std::span<const RoleSource> sources =
+        sortsTiles ? std::span<const RoleSource>(kTileSortSources) : std::span<const RoleSource>(kSources);
+    return std::ranges::find(sources, key.role, &RoleSource::role)->source;
+}
 
 ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
     switch (info.kind) {
@@ -96,8 +111,11 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
         name.resize(name.rfind('_') + 1);
         name += fmt::format("{}_{}", key.index, caseName.substr(0, kMaxCaseNameLength));
     } else if (info.repeated == package::Repeated::ByOrdering) {
-        name += fmt::format("_{}", package::nameOf(static_cast<package::Ordering>(key.index)));
-        std::ranges::replace(name, '-', '_');
+        std::string ordering = fmt::format("_{}", package::nameOf(static_cast<package::Ordering>(key.index)));
+        std::ranges::replace(ordering, '-', '_');
+        if (!name.ends_with(ordering)) {
+            name += ordering;
+        }
     } else if (info.repeated == package::Repeated::ByEffect) {
         // "effect_rays" gives reflection_rays.
         name.replace(0, name.find('_'), package::kEffects[key.index].file);
@@ -191,15 +209,15 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     std::vector<ModuleSource> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
-        const bool ofCase = package::findRole(key.role)->repeated == package::Repeated::ByCase;
+        const package::RoleInfo& info = *package::findRole(key.role);
+        const bool ofCase = info.repeated == package::Repeated::ByCase;
         if (ofCase) {
             addCase(context, scenes, plan.cases[key.index]);
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, plan.effects.effects, package::kEffects[key.index].effect);
         }
-        const auto* const source = std::ranges::find(kSources, key.role, &RoleSource::role);
         Result<ModuleSource> module =
-            makeModule(source->source, key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
+            makeModule(sourceOf(info, key), key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
                        sources, context, settings.precision);
         if (!module) {
             return module.error();

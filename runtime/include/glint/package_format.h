@@ -62,7 +62,8 @@ enum class Ordering : std::uint32_t {
         2,  // a loop over all buckets, with an atomic for each that the subgroup has: few buckets only
     WaveBallot = 3,      // lanes of equal buckets by a ballot a bit; an atomic for each distinct bucket
     LocalHistogram = 4,  // counts in shared memory, then an atomic for each bucket that the workgroup has
-    Count = 5,
+    TileSort = 5,        // sorts thousands of hits in shared memory, then an atomic for each bucket they have
+    Count = 6,
 };
 
 struct PackageHeader {

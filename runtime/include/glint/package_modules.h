@@ -107,9 +107,9 @@ constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
 }
 
 constexpr std::string_view nameOf(Ordering ordering) {
-    constexpr std::string_view kNames[] = {"global-atomics", "wave-loop",       "wave-aggregated",
-                                           "wave-ballot",    "local-histogram", "unknown"};
-    return kNames[ordering < Ordering::Count ? static_cast<std::uint32_t>(ordering) : 5];
+    constexpr std::string_view kNames[] = {"global-atomics",  "wave-loop", "wave-aggregated", "wave-ballot",
+                                           "local-histogram", "tile-sort", "unknown"};
+    return kNames[ordering < Ordering::Count ? static_cast<std::uint32_t>(ordering) : 6];
 }
 
 inline constexpr Strategy kStrategies[] = {kStrategyUber, kStrategyVisibility, kStrategySortedUber,

@@ -8,7 +8,7 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < FRAME.rayDispatch.data[0].elementCount) {
-        uint slot = atomicAdd(FRAME.buckets.data[bucketOf(FRAME.hits.data[index])].cursor, 1u);
+        uint slot = atomicAdd(FRAME.bucketCursors.data[bucketOf(FRAME.hits.data[index])], 1u);
         FRAME.orderedHits.data[slot] = index;
     }
 }

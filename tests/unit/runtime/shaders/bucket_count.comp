@@ -8,6 +8,6 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < FRAME.rayDispatch.data[0].elementCount) {
-        atomicAdd(FRAME.buckets.data[bucketOf(FRAME.hits.data[index])].count, 1u);
+        atomicAdd(FRAME.bucketCounts.data[bucketOf(FRAME.hits.data[index])], 1u);
     }
 }

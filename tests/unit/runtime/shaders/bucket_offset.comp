@@ -8,9 +8,9 @@ layout(local_size_x = 1) in;
 void main() {
     uint begin = 0u;
     for (uint bucket = 0u; bucket < FRAME.bucketCount; ++bucket) {
-        uint count = FRAME.buckets.data[bucket].count;
-        FRAME.buckets.data[bucket].begin = begin;
-        FRAME.buckets.data[bucket].cursor = begin;
+        uint count = FRAME.bucketCounts.data[bucket];
+        FRAME.bucketBegins.data[bucket] = begin;
+        FRAME.bucketCursors.data[bucket] = begin;
         FRAME.bucketDispatch.data[bucket] = listDispatch(count);
         begin += count;
     }

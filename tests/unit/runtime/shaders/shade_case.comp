@@ -7,9 +7,8 @@
 layout(local_size_x = kRayGroupSize) in;
 
 void main() {
-    BucketRecord bucket = FRAME.buckets.data[pushed.bucket];
-    if (gl_GlobalInvocationID.x < bucket.count) {
-        HitRecord hit = FRAME.hits.data[FRAME.orderedHits.data[bucket.begin + gl_GlobalInvocationID.x]];
+    if (gl_GlobalInvocationID.x < FRAME.bucketCounts.data[pushed.bucket]) {
+        HitRecord hit = FRAME.hits.data[FRAME.orderedHits.data[FRAME.bucketBegins.data[pushed.bucket] + gl_GlobalInvocationID.x]];
         FRAME.radiance.data[hit.target] = describe(hit);
     }
 }
