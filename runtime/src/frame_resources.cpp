@@ -118,7 +118,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     // A bit a hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
-    const VkDeviceSize tiles = (hits + gpu::kMaxTileHits - 1) / gpu::kMaxTileHits;
+    const VkDeviceSize tiles = (hits + gpu::kTileHits - 1) / gpu::kTileHits;
     const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
     const VkDeviceSize countBytes = size.ordered ? bucketBytes + sizeof(std::uint32_t) : 0;
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
@@ -142,7 +142,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
         {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketKeys, tiles * gpu::kMaxTileHits * size.keyBytes, kStorage, MemoryUse::Device},
+        {frame.bucketKeys, tiles * gpu::kTileHits * size.keyBytes, kStorage, MemoryUse::Device},
         {frame.bucketCounts, countBytes, kCleared, MemoryUse::Device},
         {frame.bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
         {frame.bucketCursors, bucketBytes, kStorage, MemoryUse::Device},

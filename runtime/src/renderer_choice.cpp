@@ -47,9 +47,11 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                      "compile the package with --tracer all");
 }
 
-// Whether tile-sort has the shared memory that it takes.
+// Whether tile-sort has what it takes.
 bool sortsTiles(const DeviceLimits& limits) {
-    return limits.core.maxComputeSharedMemorySize >= gpu::kTileSharedBytes;
+    return limits.core.maxComputeSharedMemorySize >= gpu::kTileSharedBytes &&
+           limits.core.maxComputeWorkGroupInvocations >= gpu::kTileMaxThreads &&
+           limits.core.maxComputeWorkGroupSize[0] >= gpu::kTileMaxThreads;
 }
 
 // As measured: docs/performance.md, "Ordering". On a CPU an atomic costs little more than what saves one. On
@@ -83,8 +85,10 @@ Status checkOrdering(const DeviceLimits& limits, package::Ordering ordering, std
     if (ordering == package::Ordering::TileSort && !sortsTiles(limits)) {
         return makeError("renderer-options", "",
                          "the ordering " + name + " takes " + std::to_string(gpu::kTileSharedBytes) +
-                             " bytes of shared memory, and the device has " +
-                             std::to_string(limits.core.maxComputeSharedMemorySize),
+                             " bytes of shared memory and workgroups of " +
+                             std::to_string(gpu::kTileMaxThreads) + " threads; the device has " +
+                             std::to_string(limits.core.maxComputeSharedMemorySize) + " and " +
+                             std::to_string(limits.core.maxComputeWorkGroupInvocations),
                          "use another ordering");
     }
     return okStatus();

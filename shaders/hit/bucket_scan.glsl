@@ -1,11 +1,12 @@
 // Where each bucket begins, by an exclusive scan of the counts, so that the order of buckets does not depend on timing;
-// and the indirect arguments of each bucket's shading. For a workgroup of kScanGroupSize threads, all of which call.
+// and the indirect arguments of each bucket's shading. For a workgroup of GLINT_SCAN_GROUP_SIZE threads, which the module
+// says before it includes this file, and all of which call.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 #include "hit/list.glsl"
 
-shared uint scanSums[kScanGroupSize];  // by subgroup: there are no more of them than threads
+shared uint scanSums[GLINT_SCAN_GROUP_SIZE];  // by subgroup: there are no more of them than threads
 
 // This thread's number in the order that scans take. A subgroup's threads follow each other in it, which nothing says
 // of gl_LocalInvocationIndex.
@@ -41,7 +42,7 @@ void clearGap(uint begin, uint end) {
 void scanBuckets() {
     uint carry = 0u;
     uint alignment = GLINT_FRAME.bucketAlignment;
-    for (uint first = 0u; first < GLINT_FRAME.bucketCount; first += kScanGroupSize) {
+    for (uint first = 0u; first < GLINT_FRAME.bucketCount; first += GLINT_SCAN_GROUP_SIZE) {
         uint bucket = first + scanThread();
         bool inside = bucket < GLINT_FRAME.bucketCount;
         uint count = inside ? atomicAdd(GLINT_FRAME.bucketCounts.data[bucket], 0u) : 0u;

@@ -16,13 +16,14 @@ GLINT_CONSTANT(kScanGroupSize, 256u);
 
 // Buckets that the orderings local-histogram and tile-sort hold in shared memory.
 GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
-// The ordering tile-sort: threads of a workgroup, and workgroups that count at most.
-GLINT_CONSTANT(kTileGroupSize, 256u);
-GLINT_CONSTANT(kMaxCountGroups, 1024u);
-// Hits that the largest tile has: keys end at a multiple of it.
-GLINT_CONSTANT(kMaxTileHits, 6144u);
-// Shared memory that tile-sort takes at most, bytes: hits of a tile, a word a bucket, sums of the scan.
-GLINT_CONSTANT(kTileSharedBytes, 29696u);
+// The ordering tile-sort: hits that a workgroup sorts; keys end at a multiple of it. Threads of a workgroup that counts,
+// and how many of those there are at most: enough for the largest GPUs, and few, as each adds to every bucket.
+GLINT_CONSTANT(kTileHits, 4096u);
+GLINT_CONSTANT(kCountGroupSize, 512u);
+GLINT_CONSTANT(kMaxCountGroups, 264u);
+// What it takes at most: threads of a workgroup, and bytes of shared memory (a word a hit, bucket and thread).
+GLINT_CONSTANT(kTileMaxThreads, 512u);
+GLINT_CONSTANT(kTileSharedBytes, 22528u);
 
 // HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);

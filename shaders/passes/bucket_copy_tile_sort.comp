@@ -4,24 +4,43 @@
 //
 // The counters of a tile, scanned in the order of buckets and then of copies, are where hits go in the sorted tile
 // (Satish, Harris and Garland, "Designing efficient sorting algorithms for manycore GPUs", 2009).
-#include "hit/bucket_scan.glsl"
+#extension GL_EXT_control_flow_attributes : require
+
+#define GLINT_SCAN_GROUP_SIZE GLINT_TILE_GROUP_SIZE
 #include "hit/tile_sort.glsl"
+#include "hit/bucket_scan.glsl"
 
-layout(local_size_x = kTileGroupSize) in;
+const uint kThreads = GLINT_TILE_GROUP_SIZE;
 
-// One word in 33 is left out, so that neither neighbouring counters nor those of neighbouring threads share a bank.
-uint padded(uint counter) {
-    return counter + counter / 32u;
+layout(local_size_x = kThreads) in;
+
+// Of a bucket, so that neighbours with hits of the same one do not wait for each other: an atomic that returns takes its
+// turn. Few, as they have to be scanned.
+const uint kCopies = clamp(1024u / kLocalBuckets, 1u, 8u);
+// Counters of a bucket, and one that is left out, so that those of neighbouring buckets lie in different banks.
+const uint kStride = kCopies > 1u ? kCopies + 1u : 1u;
+// A bucket more, of what is not in the list: behind all hits.
+const uint kCounters = (kLocalBuckets + 1u) * kStride;
+// Odd, so that threads that scan their own read from different banks.
+const uint kCountersOfThread = (kCounters + kThreads - 1u) / kThreads | 1u;
+
+shared uint tile[max(kCountersOfThread * kThreads, kTileHits)];  // counters; later the sorted hits
+shared uint slotOffsets[kLocalBuckets];                          // from a place in the sorted tile to the slot, by bucket
+
+// Place of a hit in the sorted tile. Hits of one bucket come from each copy in turn, a power of two apart: they are
+// spread over the banks.
+uint sortedPlace(uint place) {
+    return place ^ (place >> 7 & 31u);
 }
 
-const uint kPaddedCounters = kCountersOfThread * kTileGroupSize * 33u / 32u;
-
-shared uint tile[max(kPaddedCounters, kTileHits)];  // counters; later the sorted hits
-shared uint slotOffsets[kLocalBuckets];             // from a place in the sorted tile to the slot, by bucket
-
-void clearCounters() {
-    [[unroll]] for (uint i = 0u; i < kCountersOfThread; ++i) {
-        tile[padded(i * kTileGroupSize + gl_LocalInvocationIndex)] = 0u;
+// Takes slots of every bucket for the tile's hits.
+void takeSlots() {
+    for (uint bucket = gl_LocalInvocationIndex; bucket < kLocalBuckets; bucket += kThreads) {
+        uint begin = tile[bucket * kStride];
+        uint end = tile[(bucket + 1u) * kStride];
+        if (end > begin) {
+            slotOffsets[bucket] = atomicAdd(GLINT_FRAME.bucketCursors.data[bucket], end - begin) - begin;
+        }
     }
 }
 
@@ -30,25 +49,14 @@ void scanCounters() {
     uint first = scanThread() * kCountersOfThread;
     uint sum = 0u;
     [[unroll]] for (uint i = 0u; i < kCountersOfThread; ++i) {
-        sum += tile[padded(first + i)];
+        sum += tile[first + i];
     }
     uint total;
     uint begin = scanWorkgroup(sum, total);
     [[unroll]] for (uint i = 0u; i < kCountersOfThread; ++i) {
-        uint count = tile[padded(first + i)];
-        tile[padded(first + i)] = begin;
+        uint count = tile[first + i];
+        tile[first + i] = begin;
         begin += count;
-    }
-}
-
-// Takes slots of every bucket for the tile's hits.
-void takeSlots(uint hits) {
-    for (uint bucket = gl_LocalInvocationIndex; bucket < kLocalBuckets; bucket += kTileGroupSize) {
-        uint begin = tile[padded(bucket * kCopies)];
-        uint end = bucket + 1u < kLocalBuckets ? tile[padded((bucket + 1u) * kCopies)] : hits;
-        if (end > begin) {
-            slotOffsets[bucket] = atomicAdd(GLINT_FRAME.bucketCursors.data[bucket], end - begin) - begin;
-        }
     }
 }
 
@@ -59,41 +67,41 @@ void main() {
         return;
     }
     uint hits = min(rays - first, kTileHits);
-    uint firstOfThread = gl_LocalInvocationIndex * kKeysOfThread;
-    uvec4 keys[kVectorsOfThread];
-    [[unroll]] for (uint i = 0u; i < kVectorsOfThread; ++i) {
-        keys[i] = GLINT_FRAME.bucketKeys.data[(first + firstOfThread) / kKeysOfVector + i];
+    uint firstOfThread = gl_LocalInvocationIndex * kKeysOfVector;
+    uvec4 keys = GLINT_FRAME.bucketKeys.data[(first + firstOfThread) / kKeysOfVector];
+    [[unroll]] for (uint i = 0u; i < kCountersOfThread; ++i) {
+        tile[i * kThreads + gl_LocalInvocationIndex] = 0u;
     }
-    clearCounters();
-    barrier();
-    uint ranks[kKeysOfThread];
-    [[unroll]] for (uint k = 0u; k < kKeysOfThread; ++k) {
-        uint bucket = keyOf(keys[k / kKeysOfVector], k % kKeysOfVector);
-        ranks[k] = 0u;
-        if (firstOfThread + k < hits) {
-            ranks[k] = atomicAdd(tile[padded(localCounter(bucket, gl_LocalInvocationIndex))], 1u);
+    // In the upper half the bucket of a hit; in the lower its number among those of its counter, then its place in the
+    // sorted tile. In one word, as what a thread has in registers decides how many threads run at once.
+    uint sorted[kKeysOfVector];
+    [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+        sorted[k] = keyOf(keys, k) << 16;
+    }
+    if (hits < kTileHits) {
+        [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+            sorted[k] = firstOfThread + k < hits ? sorted[k] : kLocalBuckets << 16;
         }
+    }
+    barrier();
+    uint copy = gl_LocalInvocationIndex % kCopies;
+    [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+        sorted[k] |= atomicAdd(tile[(sorted[k] >> 16) * kStride + copy], 1u);
     }
     barrier();
     scanCounters();
     barrier();
-    takeSlots(hits);
-    [[unroll]] for (uint k = 0u; k < kKeysOfThread; ++k) {
-        if (firstOfThread + k < hits) {
-            uint bucket = keyOf(keys[k / kKeysOfVector], k % kKeysOfVector);
-            ranks[k] += tile[padded(localCounter(bucket, gl_LocalInvocationIndex))];
-        }
+    takeSlots();
+    [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+        sorted[k] += tile[(sorted[k] >> 16) * kStride + copy];
     }
     barrier();
-    [[unroll]] for (uint k = 0u; k < kKeysOfThread; ++k) {
-        if (firstOfThread + k < hits) {
-            uint bucket = keyOf(keys[k / kKeysOfVector], k % kKeysOfVector);
-            tile[ranks[k]] = bucket << 16 | (firstOfThread + k);
-        }
+    [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+        tile[sortedPlace(sorted[k] & 0xFFFFu)] = (sorted[k] & 0xFFFF0000u) | (firstOfThread + k);
     }
     barrier();
-    for (uint i = gl_LocalInvocationIndex; i < hits; i += kTileGroupSize) {
-        uint hit = tile[i];
-        GLINT_FRAME.orderedHits.data[slotOffsets[hit >> 16] + i] = first + (hit & 0xFFFFu);
+    for (uint place = gl_LocalInvocationIndex; place < hits; place += kThreads) {
+        uint hit = tile[sortedPlace(place)];
+        GLINT_FRAME.orderedHits.data[slotOffsets[hit >> 16] + place] = first + (hit & 0xFFFFu);
     }
 }

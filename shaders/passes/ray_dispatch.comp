@@ -7,7 +7,7 @@ layout(local_size_x = 1) in;
 
 void main() {
     uint rays = GLINT_FRAME.counters.data[kCounterRays];
-    DispatchArguments count = listDispatch(rays, kKeysOfVector * kTileGroupSize);
+    DispatchArguments count = listDispatch(rays, kKeysOfVector * kCountGroupSize);
     count.x = min(count.x, kMaxCountGroups);
     count.y = min(count.y, 1u);
     GLINT_FRAME.rayDispatch.data[kDispatchRays] = listDispatch(rays, kRayGroupSize);

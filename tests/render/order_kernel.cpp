@@ -4,6 +4,7 @@
 #include "emit/compile_modules.h"
 #include "emit/modules.h"
 #include "shader_modules.h"
+#include "spirv/compiler.h"
 #include "vulkan_error.h"
 
 #include <fmt/format.h>
@@ -18,6 +19,26 @@ using package::ModuleRole;
 
 constexpr ModuleRole kRoles[] = {ModuleRole::RayDispatch, ModuleRole::BucketCount, ModuleRole::BucketOffset,
                                  ModuleRole::BucketCopy, ModuleRole::OrderCheck};
+
+// 16 bytes a thread from one address to another.
+constexpr const char* kPlainCopy = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+layout(local_size_x = 256) in;
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Words { uvec4 data[]; };
+layout(push_constant, scalar) uniform Push {
+    Words from;
+    Words to;
+    uint vectors;
+} pushed;
+void main() {
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint index = group * 256u + gl_LocalInvocationIndex;
+    if (index < pushed.vectors) {
+        pushed.to.data[index] = pushed.from.data[index];
+    }
+}
+)";
 
 // The modules of a plan with that many cases, whatever they shade.
 Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
@@ -94,6 +115,16 @@ Status OrderKernel::createPipelines() {
         }
         pipelines_.emplace(module.key, std::move(*pipeline));
     }
+    const Result<std::vector<std::uint32_t>> copy =
+        compileShader({"plain copy", ShaderStage::Compute, kPlainCopy}, {});
+    if (!copy) {
+        return copy.error();
+    }
+    Result<UniquePipeline> pipeline = createComputePipeline(context_, *copy, layout_.get());
+    if (!pipeline) {
+        return pipeline.error();
+    }
+    plainCopy_ = std::move(*pipeline);
     return okStatus();
 }
 

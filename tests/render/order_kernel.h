@@ -70,7 +70,8 @@ public:
     // A run on each of the copies, and then each again as a whole. Errors: "timings-unavailable".
     Result<std::vector<OrderTime>> times(package::Ordering ordering);
     // Device time of copying as many words as there are hits from one of the copies to the next,
-    // milliseconds.
+    // milliseconds: by a shader that moves 16 bytes a thread, which some drivers' vkCmdCopyBuffer() is slower
+    // than.
     Result<std::vector<double>> copyTimes();
     // What the last call of times() has put in order; errors are not counted.
     Result<OrderResult> result();
@@ -101,6 +102,7 @@ private:
     package::HitRecordFormat hitRecord_;
     UniquePipelineLayout layout_;
     std::map<package::ModuleKey, UniquePipeline> pipelines_;
+    UniquePipeline plainCopy_;
     std::optional<Timer> timer_;
     std::optional<CommandRunner> runner_;
     std::vector<std::unique_ptr<Buffers>> buffers_;

@@ -59,8 +59,8 @@ std::vector<std::uint8_t> hitBytes(const OrderProblem& problem, package::HitReco
 // As the trace pass leaves them, up to the end of the last tile.
 std::vector<std::uint8_t> keyBytes(const OrderProblem& problem, std::uint32_t bucketCount) {
     const std::size_t stride = bucketCount <= 0x100 ? 1 : bucketCount <= 0x10000 ? 2 : 4;
-    const std::size_t tiles = problem.hits.size() / gpu::kMaxTileHits + 1;
-    std::vector<std::uint8_t> bytes(tiles * gpu::kMaxTileHits * stride, 0xFF);
+    const std::size_t tiles = problem.hits.size() / gpu::kTileHits + 1;
+    std::vector<std::uint8_t> bytes(tiles * gpu::kTileHits * stride, 0xFF);
     for (std::size_t i = 0; i < problem.hits.size(); ++i) {
         const std::uint32_t bucket = bucketOf(problem, i, bucketCount);
         for (std::size_t byte = 0; byte < stride; ++byte) {
@@ -417,15 +417,24 @@ Result<std::vector<double>> OrderKernel::copyTimes() {
     }
     timer_->recordReset(*commands);
     const auto runs = static_cast<std::uint32_t>(buffers_.size());
+    context_.vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, plainCopy_.get());
     for (std::uint32_t i = 0; i < runs; ++i) {
         const Buffers& from = *buffers_[i];
-        const Buffers& to = *buffers_[(i + 1) % runs];
-        // Onto itself a copy is not allowed.
-        const Buffer& target = runs > 1 ? to.slots : to.readback;
+        // What is behind the last whole vector does not count.
+        const struct {
+            VkDeviceAddress from;
+            VkDeviceAddress to;
+            std::uint32_t vectors;
+        } pushed{from.slots.address, buffers_[(i + 1) % runs]->slots.address, from.rays / 4};
+        static_assert(sizeof(pushed) <= sizeof(gpu::PushConstants));
+        context_.vk.CmdPushConstants(*commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
+                                     &pushed);
         wait(*commands);
         timer_->recordBegin(*commands, i);
-        recordCopy(context_, *commands, {from.slots, 0, target, 0, from.rays * kWord});
-        wait(*commands);
+        const std::uint32_t groups = (pushed.vectors + 255) / 256;
+        const std::uint32_t rows = groups / gpu::kMaxRayGroupsX + 1;
+        context_.vk.CmdDispatch(*commands, (groups + rows - 1) / rows, rows, 1);
+        recordDependency(context_, *commands, kPassToPass);
         timer_->recordEnd(*commands, i);
     }
     if (Status status = runner_->submitAndWait(); !status) {
