@@ -130,7 +130,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         VkBufferUsageFlags usage;
         MemoryUse use;
     } wanted[] = {
-        {frame.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
+        {frame.constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
         {frame.samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
         {frame.radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,

@@ -25,8 +25,8 @@ struct FrameResources {
     MemoryPool pool;
     std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL from creation on
     DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
-    Buffer constants;                                       // FrameConstants, host-visible
-    Buffer samples;                                         // of every effect with rays, as are the following
+    Buffer constants;  // FrameConstants: every pass reads it, so not host memory
+    Buffer samples;    // of every effect with rays, as are the following
     Buffer radiance;
     Buffer rays;
     Buffer hits;         // full or packed; where hits are ordered

@@ -11,13 +11,15 @@ inline constexpr MemoryDependency kAllToAll{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 inline constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+inline constexpr VkPipelineStageFlags2 kRasterShaders =
+    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 
 // Dependencies of the passes, which run in `stages`.
 struct PassDependencies {
     explicit PassDependencies(VkPipelineStageFlags2 stages)
         // Fills count as clears or as copies, depending on the edition of the specification.
         : clearToPasses{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                        kRasterStage | stages,
+                        kRasterStage | kRasterShaders | stages,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT |
                             VK_ACCESS_2_SHADER_WRITE_BIT},
           rasterToPasses{kRasterStage, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, stages,

@@ -10,12 +10,13 @@ constexpr VkStridedDeviceAddressRegionKHR kNoCallables{};
 
 }  // namespace
 
-PassRecorder::PassRecorder(Renderer::State& state, VkCommandBuffer commands)
+PassRecorder::PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing)
     : state_(state),
       vk_(state.context.vk),
       commands_(commands),
       pushStages_(pushStages(state.context)),
-      dependencies_(stagesOf(state.choice)) {
+      dependencies_(stagesOf(state.choice)),
+      timesPasses_(timing == Timing::Passes) {
     pushed_.frame = state.frame.constants.address;
 }
 
@@ -30,14 +31,33 @@ void PassRecorder::beginPass(const std::string& name) {
         label.pLabelName = name.c_str();
         vk_.CmdBeginDebugUtilsLabelEXT(commands_, &label);
     }
-    state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.passes.size()));
-    state_.passes.push_back(name);
+    if (timesPasses_) {
+        state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.timed.size()));
+        state_.timed.push_back(name);
+    }
 }
 
 void PassRecorder::endPass() {
-    state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.passes.size() - 1));
+    if (timesPasses_) {
+        state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.timed.size() - 1));
+    }
     if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
         vk_.CmdEndDebugUtilsLabelEXT(commands_);
+    }
+}
+
+std::uint32_t PassRecorder::beginStretch(const std::string& name) {
+    const auto stretch = static_cast<std::uint32_t>(state_.timed.size());
+    if (!timesPasses_) {
+        state_.timer.recordBegin(commands_, stretch);
+        state_.timed.push_back(name);
+    }
+    return stretch;
+}
+
+void PassRecorder::endStretch(std::uint32_t stretch) {
+    if (!timesPasses_) {
+        state_.timer.recordEnd(commands_, stretch);
     }
 }
 

@@ -11,7 +11,11 @@ namespace glint {
 
 class PassRecorder {
 public:
-    PassRecorder(Renderer::State& state, VkCommandBuffer commands);
+    PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing);
+
+    // A stretch of several passes, timed where passes are not; its number, for the end.
+    std::uint32_t beginStretch(const std::string& name);
+    void endStretch(std::uint32_t stretch);
 
     void barrier(const MemoryDependency& dependency);
     // Descriptor sets of every kind of pass but the raster pass.
@@ -49,6 +53,7 @@ private:
     VkShaderStageFlags pushStages_;
     PassDependencies dependencies_;
     gpu::PushConstants pushed_{};
+    bool timesPasses_;
 };
 
 }  // namespace glint

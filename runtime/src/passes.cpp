@@ -12,14 +12,17 @@ using package::ModuleRole;
 
 class FrameRecorder {
 public:
-    FrameRecorder(Renderer::State& state, VkCommandBuffer commands)
-        : state_(state), vk_(state.context.vk), commands_(commands), passes_(state, commands) {}
+    FrameRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing)
+        : state_(state), vk_(state.context.vk), commands_(commands), passes_(state, commands, timing) {}
 
-    void record(const FrameOptions& frame) {
-        state_.passes.clear();
+    void record(const FrameOptions& frame, const gpu::FrameConstants& constants) {
+        state_.timed.clear();
         state_.timer.recordReset(commands_);
         passes_.barrier(kAllToAll);
+        const std::uint32_t whole = passes_.beginStretch("frame");
         clear(frame);
+        static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
+        vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
         passes_.barrier(dependencies().clearToPasses);
         passes_.drawScene();
         passes_.barrier(dependencies().rasterToPasses);
@@ -28,6 +31,7 @@ public:
         passes_.barrier(dependencies().passToPass);
         recordEffects(frame.effects & state_.size.effects);
         passes_.dispatchPixels("compose", pass(ModuleRole::Compose));
+        passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
         passes_.barrier(kCopyToHost);
@@ -92,7 +96,10 @@ private:
             if (state_.choice.batchEffects && listed != withRays) {
                 continue;
             }
+            passes_.barrier(dependencies().passToPass);
+            const std::uint32_t stretch = passes_.beginStretch("hits");
             recordHits();
+            passes_.endStretch(stretch);
             finishRound(static_cast<std::uint32_t>(rounds.size()));
             rounds.push_back(listed);
             listed = 0;
@@ -126,9 +133,9 @@ private:
             passes_.dispatchPixels(name + " walk", pass(ModuleRole::RefractionWalk));
             passes_.barrier(dependencies().passToPass);
         }
+        // Effects append to the same list, in any order: they need none among themselves.
         passes_.dispatchPixels(name + " rays",
                                state_.pipelines.effectRays[package::effectNumber(info.effect)]);
-        passes_.barrier(dependencies().passToPass);
     }
 
     void recordOrder() {
@@ -199,8 +206,9 @@ private:
 
 }  // namespace
 
-void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame) {
-    FrameRecorder(state, commands).record(frame);
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,
+                 const gpu::FrameConstants& constants) {
+    FrameRecorder(state, commands, frame.timing).record(frame, constants);
 }
 
 }  // namespace glint

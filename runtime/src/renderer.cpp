@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <utility>
 
@@ -209,9 +208,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
         bindEnvironment(state_->context, *frame.environment->state(), state_->frame);
         state_->environment = frame.environment->state();
     }
-    const gpu::FrameConstants constants = makeConstants(*state_, frame);
-    std::memcpy(state_->frame.constants.mapped, &constants, sizeof(constants));
-    recordFrame(*state_, commands, frame);
+    recordFrame(*state_, commands, frame, makeConstants(*state_, frame));
     state_->recorded = true;
     return okStatus();
 }
@@ -260,14 +257,14 @@ Result<std::vector<PassTiming>> Renderer::timings() {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    const auto count = static_cast<std::uint32_t>(state_->passes.size());
+    const auto count = static_cast<std::uint32_t>(state_->timed.size());
     Result<std::vector<double>> milliseconds = state_->timer.read(count);
     if (!milliseconds) {
         return milliseconds.error();
     }
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
-        timings.push_back({state_->passes[i], (*milliseconds)[i]});
+        timings.push_back({state_->timed[i], (*milliseconds)[i]});
     }
     return timings;
 }

@@ -40,12 +40,13 @@ struct Renderer::State {
     // That set 1 names; alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
     // Of the last recording.
-    std::vector<std::string> passes;
+    std::vector<std::string> timed;     // stretches of the timer
     std::vector<std::uint32_t> rounds;  // of rays: Effect bits of each
     bool recorded = false;
 };
 
-// Records all passes of a frame whose constants are in state.frame.constants.
-void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame);
+// Records all passes of a frame.
+void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,
+                 const gpu::FrameConstants& constants);
 
 }  // namespace glint

@@ -85,6 +85,7 @@
     X(CmdCopyImageToBuffer)                     \
     X(CmdBlitImage)                             \
     X(CmdFillBuffer)                            \
+    X(CmdUpdateBuffer)                          \
     X(CmdClearColorImage)                       \
     X(CmdBindPipeline)                          \
     X(CmdBindDescriptorSets)                    \

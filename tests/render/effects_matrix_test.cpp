@@ -158,6 +158,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     EXPECT_EQ(footprint.buffers, 3U + (rays ? 8U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
+    frame.timing = Timing::Passes;
     ASSERT_TRUE((*renderer)->render(frame));
     std::vector<std::string> passes{"gbuffer", "lighting"};
     for (const char* const effect : {"reflection", "refraction"}) {

@@ -113,6 +113,7 @@ struct OrderKernel::Buffers {
     Buffer bucketDispatch;
     Buffer counters;
     Buffer readback;
+    gpu::FrameConstants values{};  // of the constants
     std::uint32_t rays = 0;
 };
 
@@ -142,7 +143,7 @@ Result<std::unique_ptr<OrderKernel::Buffers>> OrderKernel::createBuffers(const O
         VkBufferUsageFlags usage;
         MemoryUse use;
     } wanted[] = {
-        {buffers.constants, sizeof(gpu::FrameConstants), kStorage, MemoryUse::Upload},
+        {buffers.constants, sizeof(gpu::FrameConstants), kCopied, MemoryUse::Device},
         {buffers.staged, keys.size() + hits.size() + geometryBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Upload},
         {buffers.keys, keys.size(), kCopied, MemoryUse::Device},
@@ -190,7 +191,7 @@ Result<std::unique_ptr<OrderKernel::Buffers>> OrderKernel::createBuffers(const O
     constants.rayDispatch = buffers.rayDispatch.address;
     constants.bucketDispatch = buffers.bucketDispatch.address;
     constants.counters = buffers.counters.address;
-    std::memcpy(buffers.constants.mapped, &constants, sizeof(constants));
+    buffers.values = constants;
     return made;
 }
 
@@ -260,6 +261,7 @@ void OrderKernel::recordInput(VkCommandBuffer commands, const Buffers& buffers) 
         recordCopy(context_, commands, {buffers.staged, offset, *to, 0, to->bytes});
         offset += to->bytes;
     }
+    vk.CmdUpdateBuffer(commands, buffers.constants.handle.get(), 0, sizeof(buffers.values), &buffers.values);
     vk.CmdFillBuffer(commands, buffers.visited.handle.get(), 0, VK_WHOLE_SIZE, 0);
     // A slot that nobody writes is seen.
     vk.CmdFillBuffer(commands, buffers.slots.handle.get(), 0, VK_WHOLE_SIZE, gpu::kNoHit - 1);

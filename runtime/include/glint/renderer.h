@@ -121,6 +121,16 @@ struct SkyView {
 
 class Environment;
 
+// What Renderer::timings() has of a frame.
+enum class Timing : std::uint32_t {
+    // "frame", all of it; and for each round of rays "hits": from the list of rays on, what finds and shades
+    // hits.
+    Frame,
+    // Every pass. What measures it waits for what runs before, so that passes do not overlap: the sum is
+    // more than the frame takes otherwise.
+    Passes,
+};
+
 struct FrameOptions {
     CameraView camera;
     SkyView sky;
@@ -158,10 +168,11 @@ struct FrameOptions {
     std::uint32_t effects = package::kAllEffects;
     std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
     std::uint32_t seed = 0;
+    Timing timing = Timing::Frame;
 };
 
 struct PassTiming {
-    std::string name;  // also the debug label of the pass
+    std::string name;  // of a pass: also its debug label
     double milliseconds = 0.0;
 };
 
@@ -228,8 +239,9 @@ public:
     Renderer& operator=(const Renderer&) = delete;
 
     // Records one sample into a command buffer of the caller's, in the recording state, outside a render
-    // pass. One recording may be in flight at a time: frame constants are written to host-visible memory
-    // here. Afterwards output() holds the mean over samples 0..sampleIndex.
+    // pass. Recordings of a renderer share its buffers: they run one after the other, which the barrier at
+    // their begin sees to on one queue, and counters() are those of the last. Afterwards output() holds the
+    // mean over samples 0..sampleIndex.
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
     // The accumulated linear image: VK_FORMAT_R32G32B32A32_SFLOAT, layout GENERAL, last written by a compute
@@ -244,7 +256,8 @@ public:
     Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1,
                                const std::function<Status()>& afterSample = {});
 
-    // Of the last recording that has completed on the device; the caller has waited for it.
+    // Of the last recording that has completed on the device; the caller has waited for it. As its
+    // FrameOptions::timing says.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
     // Of each pixel and an effect that sends rays, row by row from the top. Waits for the device. Error

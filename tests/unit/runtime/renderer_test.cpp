@@ -170,7 +170,16 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     EXPECT_FALSE(renderer_->timings());
     EXPECT_FALSE(renderer_->counters());
     EXPECT_GT(renderer_->pipelineCreationMs(), 0.0);
-    ASSERT_TRUE(renderer_->render(makeFrame(4.0F)));
+    FrameOptions frame = makeFrame(4.0F);
+    ASSERT_TRUE(renderer_->render(frame));
+    const Result<std::vector<PassTiming>> stretches = renderer_->timings();
+    ASSERT_TRUE(stretches) << toString(stretches.error());
+    ASSERT_EQ(stretches->size(), 2U);
+    EXPECT_EQ((*stretches)[0].name, "frame");
+    EXPECT_EQ((*stretches)[1].name, "hits");
+    EXPECT_GE((*stretches)[0].milliseconds, (*stretches)[1].milliseconds);
+    frame.timing = Timing::Passes;
+    ASSERT_TRUE(renderer_->render(frame));
 
     const Result<FrameCounters> counters = renderer_->counters();
     ASSERT_TRUE(counters);
@@ -208,8 +217,11 @@ TEST_P(RendererTest, WithoutReflectionsThereAreNone) {
     ASSERT_TRUE(image);
     EXPECT_EQ(countPixels(*image, 0, 1.0F), 400U);
     EXPECT_EQ(countPixels(*image, 1, 0.0F), kWidth * kHeight);
-    EXPECT_EQ(renderer_->timings()->size(), 3U);
+    EXPECT_EQ(renderer_->timings()->size(), 1U);
     EXPECT_EQ(renderer_->counters()->rays, 0U);
+    frame.timing = Timing::Passes;
+    ASSERT_TRUE(renderer_->render(frame));
+    EXPECT_EQ(renderer_->timings()->size(), 3U);
 }
 
 TEST_P(RendererTest, SceneWithoutAnything) {
