@@ -1,5 +1,6 @@
 #include "cli/bench_bed.h"
 
+#include "cli/bench_machine.h"
 #include "cli/bench_point.h"
 #include "cli/camera.h"
 #include "cli/environment.h"
@@ -124,7 +125,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
         return context.error();
     }
     bed->context_ = std::move(*context);
-    bed->onCpu_ = bed->context_->deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    bed->onCpu_ = isOnCpu(*bed->context_);
     if (!base.environment.file.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
