@@ -20,13 +20,13 @@ constexpr std::uint64_t kMinRays = 1024;
 // Of the picture that sends them: that of checkImageSize().
 constexpr std::uint64_t kMaxRays = 64 * kMillion;
 
-// What scenes are made for, and how they are measured; everything else a calibration decides itself.
-constexpr std::string_view kTaken[] = {"--help",        "--quick",          "--rounds",
-                                       "--output",      "--seed",           "--binning",
-                                       "--ordering",    "--tracer",         "--energy-compensation",
-                                       "--texture-lod", "--precision",      "--shadows",
-                                       "--hit-record",  "--position-fetch", "--device",
-                                       "--validate",    "--cache",          "--cache-size"};
+// Options that a calibration takes: those of these groups, and these. Everything else it decides itself.
+constexpr std::string_view kTakenGroups[] = {kGroup, "Device", "Output", "Report"};
+constexpr std::string_view kTaken[] = {
+    "--quick",       "--rounds",    "--output",     "--seed",
+    "--binning",     "--ordering",  "--tracer",     "--energy-compensation",
+    "--texture-lod", "--precision", "--hit-record", "--position-fetch",
+    "--shadows"};
 
 // "250", "16k", "1M"; nothing for what is no such number.
 std::optional<std::uint64_t> parseCount(std::string_view text) {
@@ -74,10 +74,9 @@ void addCounts(CLI::App& command, const std::string& flags, std::string& value, 
         ->group(kGroup);
 }
 
-// Whether an option belongs to a calibration, or to every command.
 bool isTaken(const CLI::Option& option) {
-    const std::string name = option.get_name();
-    return option.get_group() == kGroup || std::ranges::find(kTaken, name) != std::end(kTaken);
+    return std::ranges::find(kTakenGroups, option.get_group()) != std::end(kTakenGroups) ||
+           std::ranges::find(kTaken, option.get_name()) != std::end(kTaken);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ Json entryToJson(const CalibrationEntry& entry) {
             {"shadows", entry.shadows},
             {"width", entry.width},
             {"height", entry.height},
-            {"rays", point.rays},
+            {"rays", static_cast<std::uint64_t>(point.rays)},
             {"hits", entry.hits},
             {"hitShare", point.hitShare},
             {"coherentShare", point.coherentShare},
@@ -211,7 +211,7 @@ std::string toText(const CalibrationReport& report) {
             point.coherence,
             fmt::format("{:.3g}", point.rays / kMega),
             fmt::format("{:.0f}", 100.0 * point.hitShare),
-            fmt::format("{:.2f}", point.coherentShare),
+            fmt::format("{:.2f}", std::max(point.coherentShare, 0.0)),
             fmt::format("{:.0f}", meanOf(point.work, &bench::CaseWork::instructions))};
         for (const std::string& name : names) {
             row.push_back(cellOf(entry, name));

@@ -158,6 +158,8 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     if (material.emissiveFactor[0] > 0.0F) {
         material.emissiveFactor.fill(kFaint);
     }
+    // 8 bits have no middle: it would lean by a quarter of a degree.
+    material.normalScale = kFaint;
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
         TextureInfo& info = material.textures[slot];
         if (info.texture >= 0) {
