@@ -13,10 +13,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -75,50 +77,89 @@ public:
             chosen(given.coherences, {synthetic::Coherence::Coherent, synthetic::Coherence::Incoherent});
     }
 
-    // Group by group, the report written after each: what a run that is cut short has measured stays.
+    // Compiles everything first, as that takes the whole host. Then group by group, the report written after
+    // each: what a run that is cut short has measured stays.
     Status run() {
-        std::size_t group = 0;
-        for (const synthetic::Cost cost : costs_) {
-            for (const std::uint32_t cases : cases_) {
-                const std::string name =
-                    fmt::format("group {} of {}, {} {} cases", ++group, costs_.size() * cases_.size(), cases,
-                                synthetic::nameOf(cost));
-                if (Status measured = measureGroup(static_cast<int>(cases), cost, name); !measured) {
-                    return measured;
-                }
-                report_.complete = group == costs_.size() * cases_.size();
-                report_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-                if (Status written = write(); !written) {
-                    return written;
-                }
+        std::vector<Result<CompiledGroup>> groups = compileGroups();
+        report_.compileSeconds = secondsSinceStart();
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            if (!groups[i]) {
+                return groups[i].error();
+            }
+            if (Status measured = measureGroup(*groups[i]); !measured) {
+                return measured;
+            }
+            groups[i] = Diagnostic{};  // its memory
+            report_.complete = i + 1 == groups.size();
+            report_.seconds = secondsSinceStart();
+            if (Status written = write(); !written) {
+                return written;
             }
         }
         return okStatus();
     }
 
 private:
-    Status measureGroup(int cases, synthetic::Cost cost, const std::string& name) {
-        console_.progress(name + ": compiling");
-        std::vector<synthetic::CasesOptions> scenes;
-        for (const synthetic::Coherence coherence : coherences_) {
-            synthetic::CasesOptions options{cases, cost, coherence};
-            options.lights = static_cast<int>(arguments_.calibrate.lights);
-            if (arguments_.calibrate.shares == synthetic::nameOf(synthetic::Shares::Zipf)) {
-                options.shares = synthetic::Shares::Zipf;
+    double secondsSinceStart() const {
+        return std::chrono::duration<double>(Clock::now() - start_).count();
+    }
+
+    // Of each group the options of its scenes.
+    std::vector<std::vector<synthetic::CasesOptions>> planGroups() const {
+        std::vector<std::vector<synthetic::CasesOptions>> groups;
+        for (const synthetic::Cost cost : costs_) {
+            for (const std::uint32_t cases : cases_) {
+                std::vector<synthetic::CasesOptions>& group = groups.emplace_back();
+                for (const synthetic::Coherence coherence : coherences_) {
+                    synthetic::CasesOptions& options = group.emplace_back();
+                    options.cases = static_cast<int>(cases);
+                    options.cost = cost;
+                    options.coherence = coherence;
+                    options.shares = arguments_.calibrate.shares == nameOf(synthetic::Shares::Zipf)
+                                         ? synthetic::Shares::Zipf
+                                         : synthetic::Shares::Uniform;
+                    options.lights = static_cast<int>(arguments_.calibrate.lights);
+                }
             }
-            scenes.push_back(options);
         }
-        Result<CalibrationGroup> group = makeCalibrationGroup(context_, arguments_, scenes, cache_);
+        return groups;
+    }
+
+    // Packages with the most cases have modules that compile alone for long: several packages at a time fill
+    // the cores meanwhile.
+    std::vector<Result<CompiledGroup>> compileGroups() const {
+        constexpr std::size_t kCoresPerPackage = 4;
+        const std::vector<std::vector<synthetic::CasesOptions>> plans = planGroups();
+        std::vector<Result<CompiledGroup>> groups(plans.size(), Diagnostic{});
+        console_.progress(fmt::format("compiling {} packages", plans.size()));
+        const std::uint32_t tracers = context_.handles().tracers;
+        std::atomic<std::size_t> next{0};
+        const auto work = [&] {
+            for (std::size_t i = next++; i < plans.size(); i = next++) {
+                // The largest first: nothing waits for it in the end.
+                const std::size_t group = plans.size() - 1 - i;
+                groups[group] = compileGroup(arguments_, tracers, plans[group], cache_);
+            }
+        };
+        const std::size_t wanted =
+            std::min<std::size_t>(plans.size(), std::thread::hardware_concurrency() / kCoresPerPackage);
+        std::vector<std::jthread> threads;
+        for (std::size_t i = 1; i < wanted; ++i) {
+            threads.emplace_back(work);
+        }
+        work();
+        threads.clear();  // waits for them
+        return groups;
+    }
+
+    Status measureGroup(const CompiledGroup& compiled) {
+        Result<CalibrationGroup> group = uploadGroup(context_, compiled);
         if (!group) {
             return group.error();
         }
         for (const CalibrationScene& scene : group->scenes) {
             for (const std::uint64_t rays : rays_) {
-                const std::string point = fmt::format("{} {} {} {}", cases, synthetic::nameOf(cost),
-                                                      synthetic::nameOf(scene.options.coherence), rays);
-                console_.progress(
-                    fmt::format("{}: {}, {} rays", name, synthetic::nameOf(scene.options.coherence), rays));
-                if (Status measured = measure(*group, scene, rays, point); !measured) {
+                if (Status measured = measure(*group, scene, rays); !measured) {
                     return measured;
                 }
             }
@@ -126,8 +167,11 @@ private:
         return checkValidation(console_, context_);
     }
 
-    Status measure(CalibrationGroup& group, const CalibrationScene& scene, std::uint64_t rays,
-                   const std::string& name) {
+    Status measure(CalibrationGroup& group, const CalibrationScene& scene, std::uint64_t rays) {
+        const std::string name =
+            fmt::format("{} {} cases, {}, {} rays", scene.options.cases, nameOf(scene.options.cost),
+                        nameOf(scene.options.coherence), rays);
+        console_.progress(fmt::format("{:.0f} s: {}", secondsSinceStart(), name));
         PointOptions options{rays, report_.rounds, report_.seed};
         if (!arguments_.calibrate.pictures.empty() && rays == rays_.front()) {
             const std::string file =
@@ -155,7 +199,7 @@ private:
                     "this is a defect of Glint or of the driver"));
             }
         }
-        console_.progress(fmt::format("{}: fastest {}", name, fmt::join(entry->fastest, ", ")));
+        console_.detail(fmt::format("fastest: {}", fmt::join(entry->fastest, ", ")));
         report_.entries.push_back(std::move(*entry));
         return okStatus();
     }

@@ -3,16 +3,12 @@
 #include "cli/camera.h"
 #include "cli/render_input.h"
 #include "cli/scene_view.h"
-#include "emit/compile.h"
 
-#include <chrono>
 #include <utility>
 
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 package::Effect effectOf(synthetic::Coherence coherence) {
     return coherence == synthetic::Coherence::Coherent ? package::kEffectReflection
@@ -61,31 +57,35 @@ std::vector<std::string> strategiesFor(std::uint32_t tracers) {
     return names;
 }
 
-Result<CalibrationGroup> makeCalibrationGroup(Context& context, const BenchArguments& arguments,
-                                              std::span<const synthetic::CasesOptions> all,
-                                              ModuleCache* cache) {
-    std::vector<Scene> scenes;
-    for (const synthetic::CasesOptions& options : all) {
-        scenes.push_back(synthetic::makeCasesScene(options));
+Result<CompiledGroup> compileGroup(const BenchArguments& arguments, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache) {
+    CompiledGroup group;
+    for (const synthetic::CasesOptions& one : options) {
+        group.scenes.push_back(synthetic::makeCasesScene(one));
     }
-    CalibrationGroup group;
-    const Clock::time_point start = Clock::now();
-    const Result<CompiledPackage> compiled =
-        compilePackage(scenes, settingsOf(arguments, context.handles().tracers), cache);
+    group.options = std::move(options);
+    Result<CompiledPackage> compiled = compilePackage(group.scenes, settingsOf(arguments, tracers), cache);
     if (!compiled) {
         return compiled.error();
     }
-    group.compileMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    group.work = workOf(*compiled);
-    Result<Package> package = loadTemporary(*compiled);
+    group.package = std::move(*compiled);
+    return group;
+}
+
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled) {
+    CalibrationGroup group;
+    group.work = workOf(compiled.package);
+    Result<Package> package = loadTemporary(compiled.package);
     if (!package) {
         return package.error();
     }
     group.package = std::make_unique<Package>(std::move(*package));
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        SceneViewData data = makeSceneView(scenes[i]);
+    for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
+        const Scene& scene = compiled.scenes[i];
+        const synthetic::CasesOptions& options = compiled.options[i];
+        SceneViewData data = makeSceneView(scene);
         data.packageScene = static_cast<std::uint32_t>(i);
-        Result<CameraView> camera = sceneCamera(scenes[i], 0, all[i].aspect);
+        const Result<CameraView> camera = sceneCamera(scene, 0, options.aspect);
         if (!camera) {
             return camera.error();
         }
@@ -93,7 +93,7 @@ Result<CalibrationGroup> makeCalibrationGroup(Context& context, const BenchArgum
         if (!uploaded) {
             return uploaded.error();
         }
-        group.scenes.push_back({all[i], std::move(*uploaded), *camera, effectOf(all[i].coherence)});
+        group.scenes.push_back({options, std::move(*uploaded), *camera, effectOf(options.coherence)});
     }
     return group;
 }

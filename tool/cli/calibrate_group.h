@@ -3,6 +3,7 @@
 
 #include "bench/calibration_point.h"
 #include "cli/bench_arguments.h"
+#include "emit/compile.h"
 #include "synthetic/cases_scene.h"
 
 #include <glint/context.h>
@@ -27,20 +28,28 @@ struct CalibrationScene {
     package::Effect effect{};
 };
 
+// The same on the host alone.
+struct CompiledGroup {
+    std::vector<synthetic::CasesOptions> options;  // of each scene
+    std::vector<Scene> scenes;
+    CompiledPackage package;  // of every strategy, with a case a key
+};
+
 struct CalibrationGroup {
-    std::unique_ptr<Package> package;  // of every strategy, with a case a key
+    std::unique_ptr<Package> package;
     std::vector<CalibrationScene> scenes;
     std::vector<bench::CaseWork> work;  // by shader ID; no shares
-    double compileMs = 0.0;
 };
 
 // The strategies that a device with these Tracer bits can run, uber first.
 std::vector<std::string> strategiesFor(std::uint32_t tracers);
 
-// Compiles, with the strategies of strategiesFor(), and uploads. A scene for each of `all`, which differ in
-// coherence alone. Errors of each step.
-Result<CalibrationGroup> makeCalibrationGroup(Context& context, const BenchArguments& arguments,
-                                              std::span<const synthetic::CasesOptions> all,
-                                              ModuleCache* cache);
+// A scene for each of `options`, which differ in coherence alone, and their package with the strategies of
+// strategiesFor(). Errors of compilePackage().
+Result<CompiledGroup> compileGroup(const BenchArguments& arguments, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache);
+
+// Errors of each step.
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled);
 
 }  // namespace glint

@@ -104,7 +104,6 @@ private:
         entry_.shares = synthetic::nameOf(scene_.options.shares);
         entry_.lights = static_cast<std::uint32_t>(scene_.options.lights);
         entry_.shadows = arguments_.calibrate.shadows;
-        entry_.compileMs = group_.compileMs;
     }
 
     static std::uint32_t samplesFor(double milliseconds) {

@@ -84,7 +84,6 @@ Json entryToJson(const CalibrationEntry& entry) {
             {"fetches", meanOf(point.work, &bench::CaseWork::fetches)},
             {"work", std::move(work)},
             {"samples", entry.samples},
-            {"compileMs", entry.compileMs},
             {"strategies", std::move(strategies)},
             {"fastest", entry.fastest}};
 }
@@ -190,6 +189,7 @@ Json toJson(const CalibrationReport& report) {
               {"seed", report.seed},
               {"confidence", bench::kConfidence},
               {"quick", report.quick},
+              {"compileSeconds", report.compileSeconds},
               {"seconds", report.seconds}}},
             {"complete", report.complete},
             {"points", std::move(points)}};

@@ -45,7 +45,6 @@ struct CalibrationEntry {
     std::uint32_t samples = 0;  // that each time is the mean of
     std::uint64_t hits = 0;     // a sample
     std::uint32_t filledCases = 0;
-    double compileMs = 0.0;  // of the package, which points of these cases and costs share
     std::vector<StrategyMeasure> strategies;
     // Those whose intervals of the ratio overlap with that of the least; empty where nothing ran.
     std::vector<std::string> fastest;
@@ -58,8 +57,9 @@ struct CalibrationReport {
     std::uint32_t rounds = 0;
     std::uint32_t seed = 0;
     bool quick = false;
-    double seconds = 0.0;
-    bool complete = false;  // else more points were to come
+    double compileSeconds = 0.0;  // wall clock, before anything is measured
+    double seconds = 0.0;         // likewise, of everything
+    bool complete = false;        // else more points were to come
     std::vector<CalibrationEntry> entries;
 };
 
