@@ -70,6 +70,14 @@ std::string nameOfPass(const std::string& name) {
 
 }  // namespace
 
+bench::HitTimes hitTimesOf(std::span<const PassTiming> passes) {
+    std::vector<bench::PassTime> times;
+    for (const PassTiming& pass : passes) {
+        times.push_back({pass.name, pass.milliseconds});
+    }
+    return bench::hitTimesOf(times);
+}
+
 Result<Exposure> Mount::expose(std::uint32_t seed) const {
     FrameOptions frame = frame_;
     frame.seed = seed;
@@ -79,6 +87,7 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
         if (!passes) {
             return passes.error();
         }
+        exposure.hits += hitTimesOf(*passes);
         for (const PassTiming& pass : *passes) {
             exposure.passes[nameOfPass(pass.name)] += pass.milliseconds;
             exposure.milliseconds += pass.milliseconds;

@@ -1,6 +1,7 @@
 // What a bench renders on: one device and scene, and a renderer for each configuration that is mounted.
 #pragma once
 
+#include "bench/hit_times.h"
 #include "bench/settings.h"
 #include "cli/bench_settings.h"
 #include "cli/compile_cache.h"
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,8 +28,13 @@ struct Exposure {
     LinearImage image;
     double milliseconds = 0.0;             // device time of all passes
     std::map<std::string, double> passes;  // likewise, by name; those of cases together, as "shade cases"
+    bench::HitTimes hits;                  // of all samples: the passes that strategies differ in
     FrameCounters counters;                // of the last sample
 };
+
+// Of the passes of one sample those that strategies differ in: the one place that knows how a renderer times
+// them.
+bench::HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // A package with the scene on the device as it wants it.
 struct MountedPackage {

@@ -164,6 +164,8 @@ Json strategiesToJson(const BenchReport& report) {
                         {"point", row.point},
                         {"time", toJson(timeOf(report, row.point))},
                         {"ratio", toJson(row.ratio)},
+                        {"hits", toJson(row.hits)},
+                        {"hitRatio", toJson(row.hitRatio)},
                         {"traceMs", row.traceMs},
                         {"orderMs", row.orderMs},
                         {"shadeMs", row.shadeMs},

@@ -1,5 +1,6 @@
 #include "cli/calibrate_measure.h"
 
+#include "cli/bench_bed.h"
 #include "cli/render_setup.h"
 #include "image/image_file.h"
 #include "image/tone.h"
@@ -117,11 +118,7 @@ private:
         if (!timings) {
             return timings.error();
         }
-        std::vector<bench::PassTime> passes;
-        for (const PassTiming& timing : *timings) {
-            passes.push_back({timing.name, timing.milliseconds});
-        }
-        return bench::hitTimesOf(passes);
+        return hitTimesOf(*timings);
     }
 
     Status makeRunners() {
