@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace glint {
 
@@ -153,21 +154,19 @@ bool PictureDifference::isWrong() const {
 void settleEntry(CalibrationEntry& entry) {
     entry.point.times.clear();
     entry.fastest.clear();
-    const StrategyMeasure* least = nullptr;
-    const auto ratioOf = [](const StrategyMeasure& measure) { return bench::intervalOf(measure.ratios); };
+    std::vector<std::pair<std::string, Interval>> ratios;
     for (const StrategyMeasure& measure : entry.strategies) {
-        if (!counts(measure)) {
-            continue;
-        }
-        const Interval time = bench::intervalOf(measure.times);
-        entry.point.times.push_back({measure.strategy, time.median, time.q1, time.q3});
-        if (least == nullptr || ratioOf(measure).median < ratioOf(*least).median) {
-            least = &measure;
+        if (counts(measure)) {
+            const Interval time = bench::intervalOf(measure.times);
+            entry.point.times.push_back({measure.strategy, time.median, time.q1, time.q3});
+            ratios.emplace_back(measure.strategy, bench::intervalOf(measure.ratios));
         }
     }
-    for (const StrategyMeasure& measure : entry.strategies) {
-        if (counts(measure) && bench::overlap(ratioOf(measure), ratioOf(*least))) {
-            entry.fastest.push_back(measure.strategy);
+    const auto least =
+        std::ranges::min_element(ratios, {}, [](const auto& ratio) { return ratio.second.median; });
+    for (const auto& [strategy, ratio] : ratios) {
+        if (bench::overlap(ratio, least->second)) {
+            entry.fastest.push_back(strategy);
         }
     }
 }

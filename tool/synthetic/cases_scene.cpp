@@ -79,7 +79,7 @@ Mesh makeTiles(const Ceiling& ceiling, const std::vector<CaseMaterial>& cases) {
     const auto edge = [&](double extent, int i) { return extent * (2.0 * i / ceiling.tiles - 1.0); };
     for (int row = 0; row < ceiling.tiles; ++row) {
         for (int column = 0; column < ceiling.tiles; ++column) {
-            const auto place = static_cast<std::size_t>(row * ceiling.tiles + column);
+            const auto place = ceiling.place(row, column);
             const auto index = static_cast<std::size_t>(ceiling.cases[place]);
             addSquare(
                 mesh.primitives[index], cases[index],

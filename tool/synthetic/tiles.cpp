@@ -50,6 +50,7 @@ void shuffle(std::vector<std::size_t>& places) {
 std::vector<std::size_t> tilesOfCases(const std::vector<double>& shares, std::size_t tiles) {
     const auto all = static_cast<double>(tiles);
     std::vector<std::size_t> counts;
+    counts.reserve(shares.size());
     for (const double share : shares) {
         counts.push_back(std::max<std::size_t>(1, static_cast<std::size_t>(share * all)));
     }
@@ -81,8 +82,7 @@ int Ceiling::caseAt(double x, double z) const {
     if (!(column >= 0.0 && column < tiles && row >= 0.0 && row < tiles)) {
         return -1;
     }
-    return cases[static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles) +
-                 static_cast<std::size_t>(column)];
+    return cases[place(static_cast<int>(row), static_cast<int>(column))];
 }
 
 std::vector<double> sharesOf(const CasesOptions& options) {

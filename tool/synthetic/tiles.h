@@ -3,6 +3,7 @@
 
 #include "synthetic/cases_scene.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace glint::synthetic {
@@ -26,6 +27,10 @@ struct Ceiling {
     int tiles = 0;             // a side
     std::vector<int> cases{};  // row by row, from -z and there from -x
 
+    std::size_t place(int row, int column) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles) +
+               static_cast<std::size_t>(column);
+    }
     // The case above a point; -1: none.
     int caseAt(double x, double z) const;
 };
