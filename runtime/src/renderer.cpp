@@ -221,36 +221,54 @@ VkImageView Renderer::outputView() const {
     return state_->frame.images[gpu::kBindingAccumulated].view.get();
 }
 
-Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount,
-                                     const std::function<Status()>& afterSample) {
+namespace {
+
+// Samples [0, sampleCount) of the frame, one after the other.
+Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample, std::uint32_t sampleCount,
+                  const std::function<Status()>& afterSample) {
     if (sampleCount == 0) {
         return makeError("frame-options", "", "0 samples make no image", "render at least one sample");
     }
+    for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
+        Result<VkCommandBuffer> commands = runner.begin();
+        if (!commands) {
+            return commands.error();
+        }
+        if (Status status = renderer.record(*commands, sample); !status) {
+            return status;
+        }
+        if (Status status = runner.submitAndWait(); !status) {
+            return status;
+        }
+        if (Status status = afterSample ? afterSample() : okStatus(); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount,
+                                     const std::function<Status()>& afterSample) {
     Result<CommandRunner> runner = CommandRunner::create(state_->context);
     if (!runner) {
         return runner.error();
     }
-    FrameOptions sample = frame;
-    for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
-        Result<VkCommandBuffer> commands = runner->begin();
-        if (!commands) {
-            return commands.error();
-        }
-        if (Status status = record(*commands, sample); !status) {
-            return status.error();
-        }
-        if (Status status = runner->submitAndWait(); !status) {
-            return status.error();
-        }
-        if (Status status = afterSample ? afterSample() : okStatus(); !status) {
-            return status.error();
-        }
+    if (Status status = runSamples(*this, *runner, frame, sampleCount, afterSample); !status) {
+        return status.error();
     }
     auto pixels = readFrameImage(*state_, *runner, gpu::kBindingAccumulated);
     if (!pixels) {
         return pixels.error();
     }
     return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
+}
+
+Status Renderer::renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,
+                               const std::function<Status()>& afterSample) {
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    return runner ? runSamples(*this, *runner, frame, sampleCount, afterSample) : Status(runner.error());
 }
 
 Result<std::vector<PassTiming>> Renderer::timings() {

@@ -61,6 +61,11 @@ TEST_F(Bench, WritesWhatItMeasured) {
     EXPECT_LT(point(report, "spp 8")->at("error").at("trimmed").at("median"),
               point(report, "spp 1")->at("error").at("trimmed").at("median"));
     EXPECT_EQ(report.at("strategies").at("rows").size(), 4U);
+    for (const Json& row : report.at("strategies").at("rows")) {
+        EXPECT_GT(row.at("hits").at("low"), 0.0) << row;
+        // What all are compared with is like itself.
+        EXPECT_TRUE(row.at("point") != 0 || row.at("hitRatio").at("high") == 1.0) << row;
+    }
 
     // The front is in order, and nothing that was measured beats it by more than a tie.
     double error = 1e300;

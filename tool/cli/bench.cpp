@@ -7,6 +7,7 @@
 #include "cli/bench_output.h"
 #include "cli/bench_reference.h"
 #include "cli/bench_report.h"
+#include "cli/calibrate.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile_cache.h"
@@ -15,12 +16,10 @@
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -30,10 +29,6 @@ namespace glint {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string utcNow() {
-    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
 
 BenchPoint makePoint(PointKind kind, bench::Configuration configuration) {
     BenchPoint point;
@@ -241,12 +236,7 @@ void describeScene(const RenderArguments& arguments, BenchBed& bed, BenchReport&
     scene.camera = bed.cameraName();
     scene.environment = arguments.environment.file;
     parseSize(arguments.size, scene.width, scene.height);
-    BenchMachine& machine = report.machine;
-    machine = hostMachine();
-    machine.device = bed.context().deviceName();
-    machine.driver = bed.context().driverName();
-    machine.deviceType = bed.onCpu() ? "cpu" : "gpu";
-    machine.tracers = tracerNames(bed.context().handles().tracers);
+    report.machine = machineOf(bed.context());
 }
 
 Status bench(const Console& console, const BenchArguments& arguments, const Scene& scene,
@@ -336,7 +326,9 @@ void addBench(CLI::App& app, Action& chosen) {
     addBenchOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {
         settleBench(command, *arguments);
-        chosen = [arguments](const Console& console) { return run(console, *arguments); };
+        chosen = [arguments](const Console& console) {
+            return arguments->calibrate.enabled ? calibrate(console, *arguments) : run(console, *arguments);
+        };
     });
 }
 

@@ -58,9 +58,13 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.size = "480x270";
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder for index.html, bench.json, settings.json and\nimages/")
+            "folder for index.html, bench.json, settings.json and\nimages/; with --calibrate for "
+            "calibration.json")
         .required();
     addSceneOptions(command, arguments.render);
+    // checkCalibrateOptions() asks for it where there is no --calibrate.
+    command.get_option("SCENE")->required(false)->description(
+        "the scene, .gltf or .glb; none with --calibrate");
     const std::string sweep = "Sweep";
     addFlag(
         command, "--quick", arguments.quick,
@@ -78,7 +82,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
         ->group(sweep);
     addInteger(command, "--rounds", arguments.rounds, 0, 1000,
                fmt::format("pictures of each configuration, each with other random\nnumbers; 0: {}, with "
-                           "--quick {}",
+                           "--quick or --calibrate {}",
                            kRounds, kQuickRounds))
         .group(sweep);
     addInteger(command, "--batch", arguments.batch, 1, 64,
@@ -110,10 +114,12 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
             "write the fastest settings with at most this error, in\nthe metric (0 to 1e9)")
         .group(advice);
+    addCalibrateOptions(command, arguments.calibrate);
     addCacheOptions(command, arguments.cache);
 }
 
 void settleBench(const CLI::App& command, BenchArguments& arguments) {
+    checkCalibrateOptions(command, arguments.calibrate);
     checkSceneOptions(command, arguments.render);
     settleProfile(arguments.render.plan);
     for (const char* const name : {"--budget-ms", "--max-error"}) {
@@ -126,7 +132,7 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
         arguments.candidates.push_back(parseCandidate(text));
     }
     if (arguments.rounds == 0) {
-        arguments.rounds = arguments.quick ? kQuickRounds : kRounds;
+        arguments.rounds = arguments.quick || arguments.calibrate.enabled ? kQuickRounds : kRounds;
     }
     if (arguments.referenceError == 0.0) {
         arguments.referenceError = arguments.quick ? kQuickReferenceError : kReferenceError;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/cache_options.h"
+#include "cli/calibrate_arguments.h"
 #include "cli/render_arguments.h"
 
 #include <cstdint>
@@ -33,6 +34,7 @@ struct BenchArguments {
     double budgetMs = 0.0;  // 0: none
     double maxError = 0.0;  // likewise
     CacheArguments cache;
+    CalibrateArguments calibrate;
 
     std::string command;                 // to repeat it
     std::vector<std::string> viewWords;  // those that are no settings

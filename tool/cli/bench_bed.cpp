@@ -1,5 +1,6 @@
 #include "cli/bench_bed.h"
 
+#include "cli/bench_machine.h"
 #include "cli/bench_point.h"
 #include "cli/camera.h"
 #include "cli/environment.h"
@@ -69,19 +70,33 @@ std::string nameOfPass(const std::string& name) {
 
 }  // namespace
 
+double stretchMs(std::span<const PassTiming> stretches, std::string_view name) {
+    double sum = 0.0;
+    for (const PassTiming& stretch : stretches) {
+        sum += stretch.name == name ? stretch.milliseconds : 0.0;
+    }
+    return sum;
+}
+
+bench::HitTimes hitTimesOf(std::span<const PassTiming> passes) {
+    std::vector<bench::PassTime> times;
+    for (const PassTiming& pass : passes) {
+        times.push_back({pass.name, pass.milliseconds});
+    }
+    return bench::hitTimesOf(times);
+}
+
 Result<Exposure> Mount::expose(std::uint32_t seed) const {
     FrameOptions frame = frame_;
     frame.seed = seed;
     Exposure exposure;
     const auto add = [&]() -> Status {
-        const Result<std::vector<PassTiming>> passes = renderer_->timings();
-        if (!passes) {
-            return passes.error();
+        const Result<std::vector<PassTiming>> stretches = renderer_->timings();
+        if (!stretches) {
+            return stretches.error();
         }
-        for (const PassTiming& pass : *passes) {
-            exposure.passes[nameOfPass(pass.name)] += pass.milliseconds;
-            exposure.milliseconds += pass.milliseconds;
-        }
+        exposure.milliseconds += stretchMs(*stretches, "frame");
+        exposure.hitMs += stretchMs(*stretches, "hits");
         return okStatus();
     };
     Result<LinearImage> image = renderer_->render(frame, samples_, add);
@@ -94,7 +109,29 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
     }
     exposure.image = std::move(*image);
     exposure.counters = std::move(*counters);
+    if (Status split = addSplit(frame, exposure); !split) {
+        return split.error();
+    }
     return exposure;
+}
+
+// Pass by pass, of a sample more, as many times as there are: what measures that keeps passes from
+// overlapping.
+Status Mount::addSplit(FrameOptions frame, Exposure& exposure) const {
+    frame.timing = Timing::Passes;
+    if (Status rendered = renderer_->renderSamples(frame, 1); !rendered) {
+        return rendered;
+    }
+    const Result<std::vector<PassTiming>> passes = renderer_->timings();
+    if (!passes) {
+        return passes.error();
+    }
+    exposure.hits = hitTimesOf(*passes);
+    exposure.hits /= 1.0 / samples_;
+    for (const PassTiming& pass : *passes) {
+        exposure.passes[nameOfPass(pass.name)] += pass.milliseconds * samples_;
+    }
+    return okStatus();
 }
 
 Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t samples) const {
@@ -124,7 +161,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
         return context.error();
     }
     bed->context_ = std::move(*context);
-    bed->onCpu_ = bed->context_->deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    bed->onCpu_ = isOnCpu(*bed->context_);
     if (!base.environment.file.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =

@@ -1,6 +1,7 @@
 // What a bench renders on: one device and scene, and a renderer for each configuration that is mounted.
 #pragma once
 
+#include "bench/hit_times.h"
 #include "bench/settings.h"
 #include "cli/bench_settings.h"
 #include "cli/compile_cache.h"
@@ -16,7 +17,9 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -24,10 +27,19 @@ namespace glint {
 // One picture: all samples of a frame.
 struct Exposure {
     LinearImage image;
-    double milliseconds = 0.0;             // device time of all passes
-    std::map<std::string, double> passes;  // likewise, by name; those of cases together, as "shade cases"
+    double milliseconds = 0.0;  // device time of all samples
+    double hitMs = 0.0;  // of that, what strategies differ in: from the list of rays to their shaded hits
+    // Pass by pass, of one sample that was measured so, times their number: passes that overlap otherwise do
+    // not here, and the sum is more.
+    std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
+    bench::HitTimes hits;                  // of those, what strategies differ in
     FrameCounters counters;                // of the last sample
 };
+
+// Of the stretches of one sample (Timing::Frame) those of a name.
+double stretchMs(std::span<const PassTiming> stretches, std::string_view name);
+// Of the passes of one sample (Timing::Passes) those that strategies differ in.
+bench::HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // A package with the scene on the device as it wants it.
 struct MountedPackage {
@@ -55,6 +67,8 @@ public:
 
 private:
     friend class BenchBed;
+    Status addSplit(FrameOptions frame, Exposure& exposure) const;
+
     std::shared_ptr<MountedPackage> package_;
     std::shared_ptr<Renderer> renderer_;
     FrameOptions frame_;

@@ -174,6 +174,7 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
     }
     const std::vector<ImageErrors> errors = errorsOf(images, truth_);
     const double baseMs = entries[0]->exposure.milliseconds;
+    const double baseHitMs = entries[0]->exposure.hitMs;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         BenchPoint& point = *entries[i]->point;
         const Exposure& exposure = entries[i]->exposure;
@@ -182,6 +183,9 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
         for (const auto& [name, milliseconds] : exposure.passes) {
             point.passes[name].push_back(milliseconds);
         }
+        point.hits.push_back(exposure.hits);
+        point.hitMs.push_back(exposure.hitMs);
+        point.hitRatios.push_back(ratio(exposure.hitMs, baseHitMs));
         if (i == 0 && baseIsKnown_) {
             continue;  // the same seeds give the same pictures
         }

@@ -109,13 +109,13 @@ void removeOthers(const fs::path& folder, const std::vector<PageImage>& pictures
 
 }  // namespace
 
-Status checkBenchFolder(const fs::path& folder) {
+Status checkBenchFolder(const fs::path& folder, const char* mark) {
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (fs::exists(status) && !fs::is_directory(status)) {
         return makeError("bench-folder", folder.string(), "is a file, not a folder", "give another -o");
     }
-    if (fs::exists(status) && !fs::is_empty(folder, error) && !fs::exists(folder / kReportFile, error)) {
+    if (fs::exists(status) && !fs::is_empty(folder, error) && !fs::exists(folder / mark, error)) {
         return makeError("bench-folder", folder.string(), "holds something else than a bench",
                          "give an empty folder, one that is not there yet, or that of an earlier bench");
     }

@@ -1,6 +1,7 @@
 // A configuration of a bench and what was measured of it.
 #pragma once
 
+#include "bench/hit_times.h"
 #include "bench/settings.h"
 #include "bench/statistics.h"
 #include "image/error.h"
@@ -36,6 +37,9 @@ struct BenchPoint {
     std::vector<double> times;           // of a picture
     std::vector<double> ratios;          // to the default in the same round
     std::map<std::string, std::vector<double>> passes;
+    std::vector<double> hitMs;          // what strategies differ in
+    std::vector<bench::HitTimes> hits;  // its passes
+    std::vector<double> hitRatios;      // of hitMs to that of the default in the same round
     std::vector<ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
     bool sameImage = true;            // as the default's, bit by bit, in every round

@@ -8,11 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <string_view>
-#include <sys/utsname.h>
-#include <thread>
 
 namespace glint {
 
@@ -25,19 +21,7 @@ Interval times(const Interval& interval, double factor) {
             interval.q3 * factor};
 }
 
-Json numberOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json toJson(const Interval& interval) {
-    return {{"median", numberOrNull(interval.median)},
-            {"low", numberOrNull(interval.low)},
-            {"high", numberOrNull(interval.high)},
-            {"q1", numberOrNull(interval.q1)},
-            {"q3", numberOrNull(interval.q3)}};
-}
-
-Json toJson(const bench::Configuration& configuration) {
+Json settingsToJson(const bench::Configuration& configuration) {
     Json object = Json::object();
     for (const std::string& name : bench::settingNames()) {
         const auto value = configuration.find(name);
@@ -89,7 +73,7 @@ Json pointToJson(const BenchReport& report, std::size_t index) {
     return {{"id", index},
             {"name", point.name},
             {"kind", nameOf(point.kind)},
-            {"settings", toJson(point.configuration)},
+            {"settings", settingsToJson(point.configuration)},
             {"package", textOrNull(point.package)},
             {"command", renderCommand(report, point)},
             {"time", std::move(time)},
@@ -138,7 +122,7 @@ Json referenceToJson(const BenchReport& report) {
               {"rmse", reference.noise.rmse}}},
             {"cached", reference.cached},
             {"seconds", reference.seconds},
-            {"settings", toJson(reference.configuration)},
+            {"settings", settingsToJson(reference.configuration)},
             {"exposure", reference.exposure}};
 }
 
@@ -150,7 +134,7 @@ Json decidedAt(const BenchReport& report, const BenchPoint& point, bench::Stage 
             values[name] = bench::valueOf(name, point.configuration, report.base);
         }
     }
-    return toJson(values);
+    return settingsToJson(values);
 }
 
 Json adviceToJson(const BenchReport& report) {
@@ -180,6 +164,8 @@ Json strategiesToJson(const BenchReport& report) {
                         {"point", row.point},
                         {"time", toJson(timeOf(report, row.point))},
                         {"ratio", toJson(row.ratio)},
+                        {"hits", toJson(row.hits)},
+                        {"hitRatio", toJson(row.hitRatio)},
                         {"traceMs", row.traceMs},
                         {"orderMs", row.orderMs},
                         {"shadeMs", row.shadeMs},
@@ -195,36 +181,7 @@ Json strategiesToJson(const BenchReport& report) {
             {"why", strategies.why}};
 }
 
-Json machineToJson(const BenchMachine& machine) {
-    return {{"device", machine.device},   {"driver", machine.driver}, {"deviceType", machine.deviceType},
-            {"tracers", machine.tracers}, {"cpu", machine.processor}, {"cores", machine.cores},
-            {"os", machine.system}};
-}
-
-// What stands behind "model name" in Linux's list of processors; empty where there is none.
-std::string processorName() {
-    std::ifstream list("/proc/cpuinfo");
-    for (std::string line; std::getline(list, line);) {
-        const std::size_t colon = line.find(": ");
-        if (line.starts_with("model name") && colon != std::string::npos) {
-            return line.substr(colon + 2);
-        }
-    }
-    return {};
-}
-
 }  // namespace
-
-BenchMachine hostMachine() {
-    BenchMachine machine;
-    machine.processor = processorName();
-    machine.cores = std::thread::hardware_concurrency();
-    utsname system{};
-    if (uname(&system) == 0) {
-        machine.system = fmt::format("{} {}", system.sysname, system.machine);
-    }
-    return machine;
-}
 
 Interval timeOf(const BenchReport& report, std::size_t point) {
     const double base = bench::intervalOf(report.points.front().times).median;
@@ -298,7 +255,7 @@ Json toJson(const BenchReport& report) {
               {"width", scene.width},
               {"height", scene.height},
               {"environment", textOrNull(scene.environment)}}},
-            {"machine", machineToJson(report.machine)},
+            {"machine", toJson(report.machine)},
             {"method",
              {{"rounds", report.rounds},
               {"seed", report.seed},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/settings.h"
+#include "cli/bench_machine.h"
 #include "cli/bench_point.h"
 #include "cli/bench_reference.h"
 #include "cli/bench_strategies.h"
@@ -25,18 +26,6 @@ struct BenchScene {
     std::uint32_t height = 0;
     std::string environment;  // empty: none
 };
-
-struct BenchMachine {
-    std::string device;
-    std::string driver;
-    std::string deviceType;
-    std::vector<std::string> tracers;
-    std::string processor;
-    unsigned cores = 0;
-    std::string system;
-};
-// Of the host: processor, cores, system.
-BenchMachine hostMachine();
 
 struct BenchAdvice {
     std::optional<double> budgetMs;

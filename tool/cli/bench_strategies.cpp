@@ -5,32 +5,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <numeric>
 
 namespace glint {
 
 namespace {
 
-double medianOf(const BenchPoint& point, std::string_view pass) {
-    const auto found = point.passes.find(std::string(pass));
-    return found == point.passes.end() ? 0.0 : bench::intervalOf(found->second).median;
-}
-
-double sumOf(const BenchPoint& point, std::initializer_list<std::string_view> passes) {
-    return std::accumulate(passes.begin(), passes.end(), 0.0,
-                           [&](double sum, std::string_view pass) { return sum + medianOf(point, pass); });
+template <typename Value>
+bench::Interval overRounds(const BenchPoint& point, const Value& value) {
+    std::vector<double> values;
+    for (const bench::HitTimes& hits : point.hits) {
+        values.push_back(value(hits));
+    }
+    return bench::intervalOf(values);
 }
 
 StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string& strategy) {
+    using Hits = bench::HitTimes;
     StrategyRow row;
     row.strategy = strategy;
     row.point = index;
     row.ratio = timeRatio(point);
-    row.traceMs = medianOf(point, "trace");
-    row.orderMs = sumOf(point, {"count", "offset", "copy"});
-    row.shadeMs = sumOf(point, {"shade miss", kShadeCases, "uber", "sorted uber", "hit shaders",
-                                "shadow dispatch", "shadow"});
+    row.hits = bench::intervalOf(point.hitMs);
+    row.hitRatio = bench::intervalOf(point.hitRatios);
+    row.traceMs = overRounds(point, [](const Hits& hits) { return hits.trace; }).median;
+    row.orderMs = overRounds(point, [](const Hits& hits) { return hits.order; }).median;
+    row.shadeMs = overRounds(point, [](const Hits& hits) { return hits.shade + hits.shadow; }).median;
     double all = 0.0;
     for (const auto& [name, times] : point.passes) {
         all += bench::intervalOf(times).median;

@@ -14,10 +14,13 @@ namespace glint {
 // Milliseconds of a picture, medians.
 struct StrategyRow {
     std::string strategy;
-    std::size_t point = 0;   // index
-    bench::Interval ratio;   // of time, to the default
-    double traceMs = 0.0;    // of hits that are traced by a pass of their own
-    double orderMs = 0.0;    // count, offset, copy
+    std::size_t point = 0;  // index
+    bench::Interval ratio;  // of time, to the default
+    // Of the passes that strategies differ in, from the list of rays to their shaded hits.
+    bench::Interval hits;
+    bench::Interval hitRatio;  // of those, to the default's in the same round
+    double traceMs = 0.0;      // of hits that are traced by a pass of their own
+    double orderMs = 0.0;
     double shadeMs = 0.0;    // of hits; for uber and hit-shaders with their tracing
     double commonMs = 0.0;   // what every strategy does alike
     std::uint32_t rays = 0;  // of the last sample

@@ -108,6 +108,21 @@ std::string adviceText(const BenchReport& report) {
     return text;
 }
 
+// Of the passes that strategies differ in; nothing where no ray was sent.
+std::string strategiesTable(const StrategyReport& report) {
+    Rows rows{{"strategy", "ms of hits", "ratio", "trace", "order", "shade"}};
+    for (const StrategyRow& row : report.rows) {
+        rows.push_back(
+            {row.strategy,
+             fmt::format("{:.3g} ({:.3g} to {:.3g})", row.hits.median, row.hits.low, row.hits.high),
+             fmt::format("{:.2f} ({:.2f} to {:.2f})", row.hitRatio.median, row.hitRatio.low,
+                         row.hitRatio.high),
+             fmt::format("{:.3g}", row.traceMs), fmt::format("{:.3g}", row.orderMs),
+             fmt::format("{:.3g}", row.shadeMs)});
+    }
+    return formatTable(rows);
+}
+
 }  // namespace
 
 std::string toText(const BenchReport& report) {
@@ -134,7 +149,8 @@ std::string toText(const BenchReport& report) {
     }
     text += "\nPareto front, from the fastest\n" + frontTable(report);
     if (!report.strategies.why.empty()) {
-        text += "\nStrategies\n";
+        text += "\nStrategies: from the list of rays to their shaded hits\n" +
+                strategiesTable(report.strategies) + "\n";
         for (const std::string& sentence : report.strategies.why) {
             text += sentence + "\n";
         }

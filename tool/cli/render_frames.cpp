@@ -80,6 +80,7 @@ public:
 
     Result<LinearImage> render(FrameReport& frame) {
         FrameOptions options = frameOptions(setup_.arguments, camera_, setup_.environment);
+        options.timing = Timing::Passes;
         // Costs time, which would count for the passes' own: only where the counts are asked for.
         options.countsLight = !setup_.arguments.stats.empty();
         options.seed = report_.seed;

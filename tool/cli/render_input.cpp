@@ -116,12 +116,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
     return okStatus();
 }
 
-Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, ModuleCache* cache) {
-    settings.emitHeader = false;
-    const Result<CompiledPackage> compiled = compilePackage(scene, settings, cache);
-    if (!compiled) {
-        return compiled.error();
-    }
+Result<Package> loadTemporary(const CompiledPackage& compiled) {
     // From here on an interruption waits until the folder is gone again: milliseconds.
     const HeldSignals held;
     const Result<TemporaryFolder> folder = TemporaryFolder::create();
@@ -129,10 +124,16 @@ Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, M
         return folder.error();
     }
     const std::filesystem::path path = folder->path() / "package";
-    if (Status written = writePackage(*compiled, path); !written) {
+    if (Status written = writePackage(compiled, path); !written) {
         return written.error();
     }
     return Package::load(path);
+}
+
+Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, ModuleCache* cache) {
+    settings.emitHeader = false;
+    const Result<CompiledPackage> compiled = compilePackage(scene, settings, cache);
+    return compiled ? loadTemporary(*compiled) : compiled.error();
 }
 
 }  // namespace glint

@@ -30,8 +30,11 @@ struct PackageDemand {
 Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
                     const Scene& scene);
 
-// Compiles `scene` into a temporary folder, which is gone on return; leaves out what the runtime does not
-// read. Modules that `cache` has are not compiled; null: there is none.
+// By way of a temporary folder, which is gone on return.
+Result<Package> loadTemporary(const CompiledPackage& compiled);
+
+// Compiles `scene` likewise; leaves out what the runtime does not read. Modules that `cache` has are not
+// compiled; null: there is none.
 Result<Package> compileTemporary(const Scene& scene, CompileSettings settings, ModuleCache* cache = nullptr);
 
 }  // namespace glint

@@ -256,6 +256,10 @@ public:
     Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1,
                                const std::function<Status()>& afterSample = {});
 
+    // The same without reading the picture back: to measure time.
+    Status renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,
+                         const std::function<Status()>& afterSample = {});
+
     // Of the last recording that has completed on the device; the caller has waited for it. As its
     // FrameOptions::timing says.
     Result<std::vector<PassTiming>> timings();

@@ -1,0 +1,123 @@
+// Generated scenes: as many keys as asked for, whatever else is asked.
+#include "synthetic/cases_scene.h"
+
+#include "gltf/import.h"
+#include "plan/plan.h"
+#include "synthetic/tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace glint::synthetic {
+namespace {
+
+Plan planOf(const Scene& scene) {
+    PlanOptions options;
+    options.merge = MergePolicy::None;
+    return makePlan(scene.materials, planningInputs(scene), options);
+}
+
+TEST(CasesScene, HasAsManyKeysAsCases) {
+    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
+        for (const Coherence coherence : {Coherence::Coherent, Coherence::Incoherent}) {
+            for (const int cases : {1, 2, 3, 4, 16, 64, 255, 256}) {
+                const Scene scene = makeCasesScene({cases, cost, coherence});
+                const Plan plan = planOf(scene);
+                EXPECT_EQ(plan.keys.size(), static_cast<std::size_t>(cases)) << nameOf(cost);
+                EXPECT_EQ(plan.cases.size(), static_cast<std::size_t>(cases)) << nameOf(cost);
+                EXPECT_TRUE(plan.dropped.empty())
+                    << cases << " " << plan.dropped[0].feature << ": " << plan.dropped[0].reason;
+            }
+        }
+    }
+}
+
+// What is asked for must decide, not what happens to follow: the scenes of one cost share their cases.
+TEST(CasesScene, HasTheSameKeysHoweverRaysGo) {
+    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
+        const Plan mirror = planOf(makeCasesScene({16, cost, Coherence::Coherent}));
+        const Plan rough = planOf(makeCasesScene({16, cost, Coherence::Incoherent}));
+        ASSERT_EQ(mirror.keys.size(), rough.keys.size());
+        for (std::size_t i = 0; i < mirror.keys.size(); ++i) {
+            EXPECT_EQ(mirror.keys[i].mask, rough.keys[i].mask);
+        }
+    }
+}
+
+// Features that keys have on average: work must not grow with the number of cases.
+TEST(CasesScene, KeepsItsWork) {
+    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
+        std::map<int, double> features;
+        for (const int cases : {4, 16, 64, 256}) {
+            for (const Key& key : planOf(makeCasesScene({cases, cost})).keys) {
+                // Texture coordinates are in a key for any texture, which is none of the switches.
+                features[cases] += std::popcount(key.mask & ~bit(Feature::TexCoord0)) / double(cases);
+            }
+        }
+        EXPECT_NEAR(features[4], features[256], 1e-9) << nameOf(cost);
+        EXPECT_NEAR(features[16], features[256], 1e-9) << nameOf(cost);
+        EXPECT_NEAR(features[64], features[256], 1e-9) << nameOf(cost);
+    }
+}
+
+TEST(CasesScene, GivesEveryCaseATile) {
+    for (const Coherence coherence : {Coherence::Coherent, Coherence::Incoherent}) {
+        for (const Shares shares : {Shares::Uniform, Shares::Zipf}) {
+            for (const int cases : {1, 3, 64, 256}) {
+                const CasesOptions options{cases, Cost::Cheap, coherence, shares};
+                const Ceiling ceiling = makeCeiling(options);
+                std::map<int, std::size_t> tiles;
+                for (const int index : ceiling.cases) {
+                    ++tiles[index];
+                }
+                ASSERT_EQ(tiles.size(), static_cast<std::size_t>(cases));
+                EXPECT_EQ(ceiling.cases.size(), static_cast<std::size_t>(ceiling.tiles * ceiling.tiles));
+                const double all = static_cast<double>(ceiling.cases.size());
+                // The first case has least of the rounding and of what those below one tile took.
+                EXPECT_NEAR(static_cast<double>(tiles[0]) / all, sharesOf(options)[0], 0.06);
+                EXPECT_TRUE(std::ranges::is_sorted(
+                                tiles, [](const auto& a, const auto& b) { return a.second > b.second; }) ||
+                            shares == Shares::Uniform);
+                const Scene scene = makeCasesScene(options);
+                std::size_t triangles = 0;
+                for (const Primitive& primitive : scene.meshes[1].primitives) {
+                    triangles += primitive.indices.size() / 3;
+                }
+                EXPECT_EQ(triangles, 2 * ceiling.cases.size());
+            }
+        }
+    }
+}
+
+// Fronts towards the rays: hits of back faces are culled.
+TEST(CasesScene, FacesItsRays) {
+    const Scene scene = makeCasesScene({4, Cost::Expensive, Coherence::Incoherent});
+    for (std::size_t mesh = 0; mesh < 2; ++mesh) {
+        for (const Primitive& primitive : scene.meshes[mesh].primitives) {
+            for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+                const Float3& a = primitive.positions[primitive.indices[i]];
+                const Float3& b = primitive.positions[primitive.indices[i + 1]];
+                const Float3& c = primitive.positions[primitive.indices[i + 2]];
+                // The height of the cross product of two edges.
+                const float up = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);
+                ASSERT_GT(mesh == 0 ? up : -up, 0.0F);
+                ASSERT_EQ(primitive.normals[primitive.indices[i]][1], mesh == 0 ? 1.0F : -1.0F);
+            }
+        }
+    }
+}
+
+TEST(CasesScene, IsLitByTheSkyAloneUnlessAskedElse) {
+    EXPECT_TRUE(makeCasesScene({}).lights.empty());
+    CasesOptions options;
+    options.lights = 3;
+    EXPECT_EQ(makeCasesScene(options).lights.size(), 3U);
+}
+
+}  // namespace
+}  // namespace glint::synthetic

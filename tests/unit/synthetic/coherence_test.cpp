@@ -1,0 +1,35 @@
+// The measure of coherence at its ends, and in the order that it is for.
+#include "synthetic/coherence.h"
+
+#include <gtest/gtest.h>
+
+namespace glint::synthetic {
+namespace {
+
+double shareOf(int cases, Coherence coherence, std::uint32_t width = 512, Shares shares = Shares::Uniform) {
+    return coherentShareOf({cases, Cost::Cheap, coherence, shares}, width, width / 2);
+}
+
+TEST(CoherentShare, IsOneWhereThereIsOneCase) {
+    EXPECT_EQ(shareOf(1, Coherence::Coherent), 1.0);
+    EXPECT_EQ(shareOf(1, Coherence::Incoherent), 1.0);
+}
+
+TEST(CoherentShare, IsNoneWhereChanceDecides) {
+    for (const int cases : {2, 4, 64, 256}) {
+        EXPECT_NEAR(shareOf(cases, Coherence::Incoherent), 0.0, 0.02) << cases;
+        EXPECT_NEAR(shareOf(cases, Coherence::Incoherent, 512, Shares::Zipf), 0.0, 0.02) << cases;
+    }
+}
+
+TEST(CoherentShare, GrowsWithThePicture) {
+    // Blocks of 8 x 4 pixels in a grid of 2 x 2 cases: those across its lines are as good as none.
+    EXPECT_GT(shareOf(4, Coherence::Coherent, 1024), 0.95);
+    EXPECT_GT(shareOf(256, Coherence::Coherent, 4096), 0.9);
+    EXPECT_LT(shareOf(256, Coherence::Coherent, 64), shareOf(256, Coherence::Coherent, 512));
+    // A case is 16 x 8 blocks of a picture of 128 x 64 blocks, its edges on theirs.
+    EXPECT_EQ(shareOf(64, Coherence::Coherent, 1024), 1.0);
+}
+
+}  // namespace
+}  // namespace glint::synthetic

@@ -1,0 +1,55 @@
+// The scenes of one number of cases and one cost on the device, and the package that they share.
+#pragma once
+
+#include "bench/calibration_point.h"
+#include "cli/bench_arguments.h"
+#include "emit/compile.h"
+#include "synthetic/cases_scene.h"
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+class ModuleCache;
+
+// A scene whose rays are of one effect.
+struct CalibrationScene {
+    synthetic::CasesOptions options;
+    std::unique_ptr<GpuScene> scene;
+    CameraView camera;
+    package::Effect effect{};
+};
+
+// The same on the host alone.
+struct CompiledGroup {
+    std::vector<synthetic::CasesOptions> options;  // of each scene
+    std::vector<Scene> scenes;
+    CompiledPackage package;  // of every strategy, with a case a key
+};
+
+struct CalibrationGroup {
+    std::unique_ptr<Package> package;
+    std::vector<CalibrationScene> scenes;
+    std::vector<bench::CaseWork> work;  // by shader ID; no shares
+};
+
+// The strategies that a device with these Tracer bits can run, uber first.
+std::vector<std::string> strategiesFor(std::uint32_t tracers);
+
+// A scene for each of `options`, which differ in coherence alone, and their package with the strategies of
+// strategiesFor(). Errors of compilePackage().
+Result<CompiledGroup> compileGroup(const BenchArguments& arguments, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache);
+
+// Errors of each step.
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled);
+
+}  // namespace glint

@@ -1,0 +1,172 @@
+#include "synthetic/case_materials.h"
+
+#include "synthetic/textures.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <numeric>
+#include <span>
+#include <string>
+
+namespace glint::synthetic {
+
+namespace {
+
+void readTexture(Material& material, TextureSlot slot, CaseTexture texture) {
+    material.texture(slot).texture = texture;
+}
+
+using Switch = void (*)(CaseMaterial& made);
+
+constexpr Switch kCheap[] = {
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::BaseColor, kColors); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::MetallicRoughness, kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Normal, kBumps); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Occlusion, kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Emissive, kColors); },
+    [](CaseMaterial& made) {
+        made.material.hasEmissiveStrength = true;
+        made.material.emissiveStrength = 2.0F;
+    },
+    [](CaseMaterial& made) { made.colors = true; },
+    [](CaseMaterial& made) { made.normals = true; },
+};
+
+constexpr Switch kExpensive[] = {
+    [](CaseMaterial& made) {
+        made.material.sheen = {true, {0.2F, 0.2F, 0.3F}, 0.5F};
+    },
+    [](CaseMaterial& made) {
+        made.material.transmission = {true, 0.3F};
+    },
+    [](CaseMaterial& made) {
+        made.material.diffuseTransmission = {true, 0.3F, {0.9F, 0.8F, 0.7F}};
+    },
+    [](CaseMaterial& made) {
+        made.material.ior = {true, 1.8F};
+    },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Normal, kBumps); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::ClearcoatRoughness, kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::SpecularColor, kColors); },
+    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::IridescenceThickness, kFactors); },
+};
+static_assert(std::size(kCheap) == 8 && std::size(kExpensive) == 8);
+static_assert(kMaxCases == 256);
+
+// All sets of eight switches in the order of makeCaseMaterials().
+std::vector<std::uint32_t> makeSets() {
+    constexpr std::uint32_t kAll = kMaxCases - 1;
+    // An odd factor permutes the numbers below 256: neighbours in the list are then unlike.
+    constexpr std::uint32_t kSpread = 167;
+    std::vector<std::uint32_t> firsts;  // of each pair, that which has the last switch
+    for (std::uint32_t i = 0; i < kMaxCases; ++i) {
+        const std::uint32_t set = i * kSpread & kAll;
+        if ((set & 1U) != 0) {
+            firsts.push_back(set);
+        }
+    }
+    std::ranges::stable_sort(firsts, {}, [](std::uint32_t set) { return std::abs(std::popcount(set) - 4); });
+    std::vector<std::uint32_t> sets;
+    for (const std::uint32_t set : firsts) {
+        sets.push_back(set);
+        sets.push_back(~set & kAll);
+    }
+    return sets;
+}
+
+// A colour of its own, by the golden angle: so that a picture shows which case is where.
+std::array<float, 4> colorOf(int index) {
+    constexpr double kGoldenTurn = 0.6180339887498949;
+    std::array<float, 4> color{0.0F, 0.0F, 0.0F, 1.0F};
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double turn = index * kGoldenTurn + static_cast<double>(channel) / 3.0;
+        color[channel] = static_cast<float>(0.45 + 0.4 * std::cos(2.0 * 3.14159265358979 * turn));
+    }
+    return color;
+}
+
+CaseMaterial makePlain(int index) {
+    CaseMaterial made;
+    Material& material = made.material;
+    material.name = "case " + std::to_string(index);
+    material.baseColorFactor = colorOf(index);
+    material.metallicFactor = 0.3F;
+    material.roughnessFactor = 0.5F;
+    return made;
+}
+
+// What every expensive case has.
+void addLobes(CaseMaterial& made) {
+    Material& material = made.material;
+    made.normals = true;
+    made.tangents = true;
+    readTexture(material, TextureSlot::BaseColor, kColors);
+    readTexture(material, TextureSlot::MetallicRoughness, kFactors);
+    material.specular = {true, 0.8F, {0.9F, 1.0F, 0.8F}};
+    material.clearcoat = {true, 0.6F, 0.2F, 1.0F};
+    material.anisotropy = {true, 0.6F, 0.5F};
+    material.iridescence = {true, 0.7F, 1.4F, 200.0F, 500.0F};
+}
+
+}  // namespace
+
+std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count) {
+    const std::span<const Switch> switches = cost == Cost::Cheap ? kCheap : kExpensive;
+    const std::vector<std::uint32_t> sets = makeSets();
+    std::vector<CaseMaterial> materials;
+    for (int i = 0; i < count; ++i) {
+        CaseMaterial made = makePlain(i);
+        if (cost == Cost::Expensive) {
+            addLobes(made);
+        } else {
+            // Without it EmissiveStrength and the texture would change nothing.
+            made.material.emissiveFactor = {0.05F, 0.05F, 0.05F};
+        }
+        for (std::size_t bit = 0; bit < switches.size(); ++bit) {
+            if ((sets[static_cast<std::size_t>(i)] >> bit & 1U) != 0) {
+                switches[bit](made);
+            }
+        }
+        materials.push_back(std::move(made));
+    }
+    return materials;
+}
+
+CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
+    constexpr float kFaint = 1e-4F;
+    CaseMaterial made = like;
+    Material& material = made.material;
+    material.name = "floor";
+    material.baseColorFactor = {0.9F, 0.9F, 0.9F, 1.0F};
+    const bool mirror = coherence == Coherence::Coherent;
+    // Not wholly a metal, which has no dielectric lobes, nor wholly rough, which has no direction.
+    material.metallicFactor = mirror ? 1.0F - kFaint : 0.0F;
+    material.roughnessFactor = mirror ? 0.0F : 1.0F - kFaint;
+    const auto fade = [](bool given, auto& value) { value = given ? kFaint : value; };
+    fade(material.clearcoat.given, material.clearcoat.factor);
+    fade(material.anisotropy.given, material.anisotropy.strength);
+    fade(material.iridescence.given, material.iridescence.factor);
+    fade(material.transmission.given, material.transmission.factor);
+    fade(material.diffuseTransmission.given, material.diffuseTransmission.factor);
+    if (material.sheen.given) {
+        material.sheen.colorFactor.fill(kFaint);
+    }
+    if (material.emissiveFactor[0] > 0.0F) {
+        material.emissiveFactor.fill(kFaint);
+    }
+    // 8 bits have no middle: it would lean by a quarter of a degree.
+    material.normalScale = kFaint;
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+        TextureInfo& info = material.textures[slot];
+        if (info.texture >= 0) {
+            info.texture = slot == static_cast<std::size_t>(TextureSlot::Normal) ? kFlat : kWhite;
+        }
+    }
+    return made;
+}
+
+}  // namespace glint::synthetic
