@@ -75,6 +75,12 @@ void queryLimits(Context::State& state) {
     limits.deviceType = properties.properties.deviceType;
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
+    limits.cacheOwner = {properties.properties.vendorID,
+                         properties.properties.deviceID,
+                         vulkan12.driverID,
+                         properties.properties.driverVersion,
+                         {}};
+    std::ranges::copy(properties.properties.pipelineCacheUUID, limits.cacheOwner.cacheUuid.begin());
     state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
     constexpr VkFormatFeatureFlags kTexture = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
                                               VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |

@@ -183,8 +183,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return status.error();
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
-    Result<Pipelines> pipelines =
-        createPipelines(contextState, package, *choice, state->scene.shaderIds, layouts);
+    Result<Pipelines> pipelines = createPipelines(
+        contextState, package, *choice, {options.pipelineThreads, 0}, state->scene.shaderIds, layouts);
     if (!pipelines) {
         return pipelines.error();
     }
@@ -294,8 +294,18 @@ Renderer::Footprint Renderer::footprint() const {
     return footprint;
 }
 
-double Renderer::pipelineCreationMs() const {
-    return state_->pipelines.creationMs;
+Renderer::PipelineMaking Renderer::pipelineMaking() const {
+    PipelineMaking making{state_->pipelines.threads, state_->pipelines.creationMs, 0};
+    for (const MadePipeline& pipeline : state_->pipelines.owned) {
+        const VkPipelineCreationFeedbackFlags flags = pipeline.feedback.flags;
+        if ((flags & VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT) == 0) {
+            making.cacheHits.reset();
+            break;
+        }
+        constexpr auto kHit = VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT;
+        *making.cacheHits += (flags & kHit) != 0 ? 1 : 0;
+    }
+    return making;
 }
 
 Renderer::State& Renderer::state() {

@@ -60,6 +60,8 @@
     X(DestroyPipelineLayout)                    \
     X(CreatePipelineCache)                      \
     X(DestroyPipelineCache)                     \
+    X(GetPipelineCacheData)                     \
+    X(MergePipelineCaches)                      \
     X(CreateComputePipelines)                   \
     X(CreateGraphicsPipelines)                  \
     X(DestroyPipeline)                          \

@@ -3,6 +3,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/coverage.h"
+#include "cli/pipeline_cache.h"
 #include "cli/plan_choice.h"
 #include "cli/render_arguments.h"
 #include "cli/render_frames.h"
@@ -159,10 +160,13 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     }
     report.camera = camera->name;
     // Before the compilation, which takes longer than finding out that there is no device.
+    const Clock::time_point begin = Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments);
     if (!context) {
         return context.error();
     }
+    PipelineCacheFile pipelineCache(console, **context, pipelineCacheFolder(arguments.pipelines, {}));
+    report.start.deviceMs = millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
     const Result<std::unique_ptr<Environment>> environment =
@@ -198,6 +202,11 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     };
     if (Status rendered = renderFrames(**context, *package, setup, scene, data, accept, report); !rendered) {
         return rendered;
+    }
+    pipelineCache.save();
+    if (!pipelineCache.path().empty()) {
+        report.pipelineCache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
+                                pipelineCache.savedBytes()};
     }
     if (console.refused()) {
         return okStatus();

@@ -53,6 +53,7 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
             "checks the order\nof hits")
         .group("Device");
+    addPipelineOptions(command, arguments.pipelines);
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {

@@ -31,6 +31,24 @@ struct FrameReport {
     double deviceMs = 0.0;  // the passes of the last sample
 };
 
+struct PipelineCacheReport {
+    std::string file;
+    std::uint64_t loadedBytes = 0;  // 0: there was nothing of use
+    std::uint64_t savedBytes = 0;
+};
+
+// From nothing to a picture, wall clock.
+struct StartReport {
+    double deviceMs = 0.0;       // instance, device, the pipeline cache from its file
+    double uploadMs = 0.0;       // the scene, with its acceleration structures
+    double rendererMs = 0.0;     // buffers, images and pipelines
+    double firstSampleMs = 0.0;  // recorded, submitted and complete
+
+    double totalMs() const {
+        return deviceMs + uploadMs + rendererMs + firstSampleMs;
+    }
+};
+
 struct RenderReport {
     std::string scene;
     std::string image;
@@ -53,7 +71,9 @@ struct RenderReport {
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
     bool countsLight = false;  // rays of shadow and ambient-occlusion are counted
-    double pipelineCreationMs = 0.0;
+    Renderer::PipelineMaking pipelines;
+    std::optional<PipelineCacheReport> pipelineCache;  // absent: none is kept
+    StartReport start;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample, of the last frame
     FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,17 @@ public:
     VkPhysicalDeviceType deviceType() const;
     // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
     std::vector<std::string> validationMessages() const;
+
+    // What the driver knows of the pipelines that were made so far, for addPipelineCache() in another run on
+    // the same device and driver, which make them faster for it. Error "vulkan-call".
+    Result<std::vector<std::uint8_t>> pipelineCacheData() const;
+    // Adds what an earlier run got; no Renderer or GpuScene may be in the making. `data` is not trusted:
+    // error "pipeline-cache" where it is damaged or of another device or driver. With an error nothing has
+    // changed.
+    Status addPipelineCache(std::span<const std::uint8_t> data);
+    // Of the device and driver, with hexadecimal digits and hyphens: for the name of a file that keeps the
+    // data.
+    std::string pipelineCacheName() const;
 
     struct State;  // for the runtime's own sources
     State& state();

@@ -104,6 +104,8 @@ struct RendererOptions {
     // Rays of all effects join one list, and their hits are ordered and shaded together: fewer, larger
     // dispatches, and more memory.
     bool batchEffects = false;
+    // Threads that make pipelines, the caller's included; 0: as many as the machine runs at once.
+    std::uint32_t pipelineThreads = 0;
 };
 
 // The ordering that a renderer uses where none is asked for.
@@ -263,7 +265,15 @@ public:
     };
     Footprint footprint() const;
 
-    double pipelineCreationMs() const;
+    // How the pipelines were made.
+    struct PipelineMaking {
+        std::uint32_t threads = 0;
+        double milliseconds = 0.0;  // wall clock, with their tables
+        // Of the pipelines, how many the driver found in the cache of the Context; absent where it does not
+        // say.
+        std::optional<std::uint32_t> cacheHits;
+    };
+    PipelineMaking pipelineMaking() const;
 
     struct State;  // for the runtime's own sources and their tests
     State& state();
