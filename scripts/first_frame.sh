@@ -60,9 +60,9 @@ render() {
         { cat "$work/errors.txt" "$file" >&2; exit 1; }
 }
 
-# The value of a member that the report has once.
+# The value of a member that the report has once: a text, or else.
 member() {
-    sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" "$2" | head -n 1
+    sed -n -e "s/^ *\"$1\": \"\(.*\)\",\{0,1\}\$/\1/p" -e "s/^ *\"$1\": \([^\"]*[^\",]\),\{0,1\}\$/\1/p" "$2" | head -n 1
 }
 
 for strategy in "${strategies[@]}"; do

@@ -157,6 +157,12 @@ Status finishContext(Context::State& state) {
             return status;
         }
     }
+    if (state.handles.pipelineStatistics) {
+        if (Status status = loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk);
+            !status) {
+            return status;
+        }
+    }
     queryLimits(state);
     if (Status status = checkQueueFamily(state); !status) {
         return status;
@@ -211,6 +217,13 @@ Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
         return makeError("device-features", "",
                          "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
                          "create the device with some of deviceTracers()");
+    }
+    constexpr const char* kStatistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    if (complete.pipelineStatistics && !hasExtension(report, kStatistics)) {
+        return makeError(
+            "device-features", "",
+            std::string("DeviceHandles::pipelineStatistics is set, and the device lacks ") + kStatistics,
+            "leave it false");
     }
     if (Status status = finishContext(*state); !status) {
         return status.error();

@@ -240,7 +240,10 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     plan.rayPasses = planRayPasses(package, choice, shaderIds);
     planRayJobs(context, layout, plan);
     pipelines.threads = pipelineThreads(making.threads, plan.jobs.size());
-    Result<std::vector<MadePipeline>> made = makePipelines(plan.jobs, making.flags, pipelines.threads);
+    pipelines.captureStatistics = making.captureStatistics;
+    const VkPipelineCreateFlags flags =
+        making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
+    Result<std::vector<MadePipeline>> made = makePipelines(plan.jobs, flags, pipelines.threads);
     if (!made) {
         return made.error();
     }

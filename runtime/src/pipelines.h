@@ -24,8 +24,8 @@ struct PipelineChoice {
 
 // How they are made.
 struct PipelineMaking {
-    std::uint32_t threads = 0;        // 0: as many as the machine runs at once
-    VkPipelineCreateFlags flags = 0;  // of each
+    std::uint32_t threads = 0;       // 0: as many as the machine runs at once
+    bool captureStatistics = false;  // requires DeviceHandles::pipelineStatistics
 };
 
 // A pass: a compute pipeline, or a ray tracing pipeline with its shader binding table.
@@ -50,6 +50,7 @@ struct Pipelines {
     std::vector<PassPipeline> cases;       // by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
     std::uint32_t threads = 0;  // that made them
+    bool captureStatistics = false;
     double creationMs = 0.0;
 };
 

@@ -165,6 +165,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (!choice) {
         return choice.error();
     }
+    if (options.pipelineStatistics && !contextState.handles.pipelineStatistics) {
+        return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
+                         "create it with DeviceRequirements for them, where it has them");
+    }
     const FrameSize size = frameSize(package, *choice, options);
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
@@ -183,8 +187,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return status.error();
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
-    Result<Pipelines> pipelines = createPipelines(
-        contextState, package, *choice, {options.pipelineThreads, 0}, state->scene.shaderIds, layouts);
+    Result<Pipelines> pipelines =
+        createPipelines(contextState, package, *choice, {options.pipelineThreads, options.pipelineStatistics},
+                        state->scene.shaderIds, layouts);
     if (!pipelines) {
         return pipelines.error();
     }
@@ -275,37 +280,6 @@ package::Tracer Renderer::tracer() const {
 
 package::Ordering Renderer::ordering() const {
     return state_->choice.ordering;
-}
-
-Renderer::Footprint Renderer::footprint() const {
-    Footprint footprint;
-    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
-    const FrameResources& frame = state_->frame;
-    for (const DeviceImage& image : frame.images) {
-        footprint.images += image.handle.get() != VK_NULL_HANDLE ? 1 : 0;
-        footprint.bytes += image.bytes;
-    }
-    footprint.images += 1;
-    footprint.bytes += frame.depth.bytes;
-    for (const Buffer* const buffer : frame.buffers()) {
-        footprint.buffers += buffer->bytes > 0 ? 1 : 0;
-        footprint.bytes += buffer->bytes;
-    }
-    return footprint;
-}
-
-Renderer::PipelineMaking Renderer::pipelineMaking() const {
-    PipelineMaking making{state_->pipelines.threads, state_->pipelines.creationMs, 0};
-    for (const MadePipeline& pipeline : state_->pipelines.owned) {
-        const VkPipelineCreationFeedbackFlags flags = pipeline.feedback.flags;
-        if ((flags & VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT) == 0) {
-            making.cacheHits.reset();
-            break;
-        }
-        constexpr auto kHit = VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT;
-        *making.cacheHits += (flags & kHit) != 0 ? 1 : 0;
-    }
-    return making;
 }
 
 Renderer::State& Renderer::state() {

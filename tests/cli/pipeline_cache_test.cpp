@@ -121,5 +121,18 @@ TEST_F(RenderCommand, ThreadsOfPipelinesAndTheStartAreReported) {
     EXPECT_LE(three.json().at("pipelineCreationMs").get<double>(), start.at("rendererMs").get<double>());
 }
 
+// A driver that tells of its pipelines gives a list; another a note.
+TEST_F(RenderCommand, PipelineStatisticsAreListedOrANoteSaysWhyNot) {
+    const Outcome outcome = render("a.png", {"--json", "--pipeline-statistics"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const nlohmann::json report = outcome.json();
+    const nlohmann::json& list = report.at("pipelineStatistics");
+    const bool isNoted = has(report.at("diagnostics").dump(), "pipeline-statistics");
+    EXPECT_EQ(list.is_null(), isNoted);
+    if (!list.is_null()) {
+        EXPECT_EQ(list.size(), report.at("footprint").at("pipelines").get<std::size_t>());
+    }
+}
+
 }  // namespace
 }  // namespace glint::testing

@@ -73,6 +73,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     options.deviceName = arguments.device;
     options.positionFetch = arguments.tracing.positionFetch;
     options.shaderFloat16 = arguments.accuracy.halves();
+    options.pipelineStatistics = arguments.pipelineStatistics;
     // Of the package in a folder, if there is one. What is wrong with it is told when it is used.
     if (!arguments.package.empty()) {
         if (const Result<Package> package = Package::load(arguments.package)) {
@@ -184,8 +185,14 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const FrameSetup setup{arguments, rendererOptions(arguments), environment->get(), *movement, camera->view,
-                           aspect};
+    RendererOptions options = rendererOptions(arguments);
+    options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
+    if (arguments.pipelineStatistics && !options.pipelineStatistics) {
+        console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
+                                  "has no VK_KHR_pipeline_executable_properties: there are no statistics",
+                                  "leave out --pipeline-statistics, or use another device"});
+    }
+    const FrameSetup setup{arguments, options, environment->get(), *movement, camera->view, aspect};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = checkValidation(console, **context); !valid) {
@@ -205,8 +212,8 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     }
     pipelineCache.save();
     if (!pipelineCache.path().empty()) {
-        report.pipelineCache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
-                                pipelineCache.savedBytes()};
+        report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
+                                  pipelineCache.savedBytes()};
     }
     if (console.refused()) {
         return okStatus();

@@ -58,6 +58,9 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
+            "say what the driver tells of each pipeline: registers,\nspills, instructions, whatever it has")
+        .group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
                    "write how each pixel of the last sample came to its\n"
                    "reflection; orange: found in screen space; blue: by a\n"

@@ -41,6 +41,7 @@ struct RenderArguments {
     std::string sun = "auto";
     bool validate = false;
     std::string stats;
+    bool pipelineStatistics = false;
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;

@@ -58,8 +58,19 @@ public:
         if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
             report_.ordering = std::string(package::nameOf(renderer_->ordering()));
         }
-        report_.pipelines = renderer_->pipelineMaking();
+        report_.pipelines.making = renderer_->pipelineMaking();
         report_.footprint = renderer_->footprint();
+        report_.pipelines.count = report_.footprint.pipelines;
+        if (setup_.renderer.pipelineStatistics) {
+            Result<std::vector<PipelineStatistics>> statistics = renderer_->pipelineStatistics();
+            if (!statistics) {
+                return statistics.error();
+            }
+            report_.pipelines.statistics = std::move(*statistics);
+        }
+        report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
+                          gpuScene_->allocatedBytes()};
+        report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = !setup_.arguments.stats.empty();
         return okStatus();
     }

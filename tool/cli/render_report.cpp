@@ -86,44 +86,6 @@ std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
 
-Json toJson(const std::optional<PipelineCacheReport>& cache, const Renderer::PipelineMaking& pipelines) {
-    if (!cache) {
-        return nullptr;
-    }
-    return {{"file", cache->file},
-            {"loadedBytes", cache->loadedBytes},
-            {"savedBytes", cache->savedBytes},
-            {"hits", orNull(pipelines.cacheHits)}};
-}
-
-Json toJson(const StartReport& start) {
-    return {{"deviceMs", start.deviceMs},
-            {"uploadMs", start.uploadMs},
-            {"rendererMs", start.rendererMs},
-            {"firstSampleMs", start.firstSampleMs},
-            {"totalMs", start.totalMs()}};
-}
-
-std::string pipelineText(const RenderReport& report) {
-    const Renderer::PipelineMaking& pipelines = report.pipelines;
-    std::string text = fmt::format("{} in {} by {} thread{}", report.footprint.pipelines,
-                                   milliseconds(pipelines.milliseconds), pipelines.threads,
-                                   pipelines.threads == 1 ? "" : "s");
-    if (report.pipelineCache) {
-        text += fmt::format("; cache of {}", formatBytes(report.pipelineCache->loadedBytes));
-        if (pipelines.cacheHits) {
-            text += fmt::format(", {} found in it", *pipelines.cacheHits);
-        }
-    }
-    return text;
-}
-
-std::string startText(const StartReport& start) {
-    return fmt::format("after {}: device {:.3f}, scene {:.3f}, renderer {:.3f}, sample {:.3f}",
-                       milliseconds(start.totalMs()), start.deviceMs, start.uploadMs, start.rendererMs,
-                       start.firstSampleMs);
-}
-
 // The gates of an effect, with what each kept.
 struct Gate {
     const char* name;
@@ -234,9 +196,10 @@ Json toJson(const RenderReport& report) {
               {"narrowedTextures", scene.narrowedTextures},
               {"blasBuildMs", scene.blasBuildMs},
               {"tlasBuildMs", scene.tlasBuildMs}}},
-            {"pipelineCreationMs", report.pipelines.milliseconds},
-            {"pipelineThreads", report.pipelines.threads},
-            {"pipelineCache", toJson(report.pipelineCache, report.pipelines)},
+            {"pipelineCreationMs", report.pipelines.making.milliseconds},
+            {"pipelineThreads", report.pipelines.making.threads},
+            {"pipelineCache", cacheToJson(report.pipelines)},
+            {"pipelineStatistics", statisticsToJson(report.pipelines)},
             {"start", toJson(report.start)},
             {"renderMs", report.renderMs},
             {"frames", toJson(report.frames)},
@@ -253,7 +216,8 @@ Json toJson(const RenderReport& report) {
              {{"pipelines", report.footprint.pipelines},
               {"images", report.footprint.images},
               {"buffers", report.footprint.buffers},
-              {"bytes", report.footprint.bytes}}}};
+              {"bytes", report.footprint.bytes}}},
+            {"memory", toJson(report.memory)}};
 }
 
 std::string toText(const RenderReport& report) {
@@ -278,8 +242,8 @@ std::string toText(const RenderReport& report) {
     if (report.compileMs) {
         rows.push_back({"compile", milliseconds(*report.compileMs)});
     }
-    rows.push_back({"pipelines", pipelineText(report)});
-    rows.push_back({"first sample", startText(report.start)});
+    rows.push_back({"pipelines", toText(report.pipelines)});
+    rows.push_back({"first sample", toText(report.start)});
     rows.push_back({"render", milliseconds(report.renderMs)});
     for (const EffectCounters& effect : counters.effects) {
         if (!report.countsLight && package::effectInfo(effect.effect).kind != package::EffectKind::Rays) {
@@ -306,7 +270,16 @@ std::string toText(const RenderReport& report) {
         passes.push_back({pass.name, fmt::format("{:.3f}", pass.milliseconds)});
     }
     const std::string frames = report.frames.empty() ? "" : tableOf(report.frames) + "\n";
-    return formatFields(rows) + "\n" + frames + formatTable(passes);
+    std::string text = formatFields(rows) + "\n" + frames + formatTable(passes);
+    if (report.hasDetails) {
+        text += '\n';
+        text += toText(report.memory);
+    }
+    if (report.pipelines.statistics) {
+        text += '\n';
+        text += tableOf(*report.pipelines.statistics);
+    }
+    return text;
 }
 
 }  // namespace glint

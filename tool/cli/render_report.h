@@ -1,6 +1,8 @@
 // What glint render says of a picture: the JSON of --stats and --json, and the table.
 #pragma once
 
+#include "cli/memory_table.h"
+#include "cli/pipeline_report.h"
 #include "cli/report.h"
 
 #include <glint/environment.h>
@@ -31,24 +33,6 @@ struct FrameReport {
     double deviceMs = 0.0;  // the passes of the last sample
 };
 
-struct PipelineCacheReport {
-    std::string file;
-    std::uint64_t loadedBytes = 0;  // 0: there was nothing of use
-    std::uint64_t savedBytes = 0;
-};
-
-// From nothing to a picture, wall clock.
-struct StartReport {
-    double deviceMs = 0.0;       // instance, device, the pipeline cache from its file
-    double uploadMs = 0.0;       // the scene, with its acceleration structures
-    double rendererMs = 0.0;     // buffers, images and pipelines
-    double firstSampleMs = 0.0;  // recorded, submitted and complete
-
-    double totalMs() const {
-        return deviceMs + uploadMs + rendererMs + firstSampleMs;
-    }
-};
-
 struct RenderReport {
     std::string scene;
     std::string image;
@@ -71,8 +55,9 @@ struct RenderReport {
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
     bool countsLight = false;  // rays of shadow and ambient-occlusion are counted
-    Renderer::PipelineMaking pipelines;
-    std::optional<PipelineCacheReport> pipelineCache;  // absent: none is kept
+    MemoryReport memory;
+    bool hasDetails = false;  // the text has all memory, too
+    PipelineReport pipelines;
     StartReport start;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample, of the last frame
