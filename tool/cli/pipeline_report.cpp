@@ -154,7 +154,7 @@ std::string tableOf(std::span<const PipelineStatistics> pipelines) {
                 const PipelineColumn column = columnOf(statistic.name);
                 if (column != PipelineColumn::None) {
                     std::string& cell = row[kFirstColumn + static_cast<std::size_t>(column)];
-                    cell = cell == "-" ? textOf(statistic) : cell + " + " + textOf(statistic);
+                    cell = cell == "-" ? textOf(statistic) : fmt::format("{} + {}", cell, textOf(statistic));
                 }
             }
             row[0] = pipeline.name;
