@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/setup.sh [--check] [--browser] [--lint] [--sanitize]
+usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
@@ -12,6 +12,7 @@ On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from back
   --check     install nothing; print what is missing and exit 1 if anything is
   --browser   also Chromium and its driver, in which scripts/test.sh looks at the page of glint bench
   --lint      also what scripts/lint.sh needs
+  --portable  also what scripts/portable.sh needs, which is for Debian 12
   --sanitize  also what scripts/sanitize.sh and scripts/fuzz.sh need
 TEXT
 }
@@ -60,6 +61,10 @@ kLintNeeds=(
     "command clang-tidy|clang-tidy"
     "command shellcheck|shellcheck"
 )
+kPortableNeeds=(
+    "command dpkg-source|dpkg-dev"
+    "command debootstrap|debootstrap"
+)
 # The first Mesa whose software driver has ray queries is of this series.
 kOldestMesa=24
 kBackportsFile=/etc/apt/sources.list.d/glint-backports.sources
@@ -72,6 +77,9 @@ fail() {
     printf 'setup: error: %s\n' "$*" >&2
     exit 1
 }
+
+# shellcheck source=scripts/apt_mirror.sh
+source "$(dirname "${BASH_SOURCE[0]}")/apt_mirror.sh"
 
 # --- What is there ---------------------------------------------------------------------------------
 
@@ -167,48 +175,21 @@ choose_package() {
     fail "no package for this system among: $* ($hint)"
 }
 
-# Prints the Signed-By field of an apt source, as lines of a deb822 stanza; nothing where it has none.
-# ENTRY is what apt calls it: FILE:STANZA for .sources, FILE:LINE for .list.
-signed_by() {
-    local file=${1%:*} place=${1##*:}
-    if [[ $file == *.sources ]]; then
-        # An embedded key continues on indented lines.
-        awk -v stanza="$place" '
-            /^[[:space:]]*$/ { if (inside) { inside = 0 } field = 0; next }
-            /^#/ { next }
-            !inside { inside = 1; count++ }
-            /^[^[:space:]]/ { field = tolower($0) ~ /^signed-by:/ }
-            count == stanza && field { print }
-        ' "$file"
-    else
-        sed -n "${place}s/.*[[ ]signed-by=\([^] ]*\).*/Signed-By: \1/p" "$file"
-    fi
-}
-
 # Adds backports to the sources, from the mirror and under the key that this machine uses for Debian itself.
 configure_backports() {
-    local targets release component origin uri entry
-    # shellcheck disable=SC2016 # apt expands these, not the shell
-    targets=$(apt-get indextargets --format '$(RELEASE)|$(COMPONENT)|$(ORIGIN)|$(REPO_URI)|$(SOURCESENTRY)' \
-        'Created-By: Packages')
-    if [[ $'\n'$targets == *$'\n'"bookworm-backports|main|"* ]]; then
+    local stanza
+    if [[ $'\n'$(apt_indices) == *$'\n'"bookworm-backports|main|"* ]]; then
         say "bookworm-backports is configured already"
         return
     fi
-    while IFS='|' read -r release component origin uri entry; do
-        if [[ $release == bookworm && $component == main && $origin == Debian ]]; then
-            say "adding bookworm-backports in $kBackportsFile"
-            {
-                printf 'Types: deb\nURIs: %s\nSuites: bookworm-backports\nComponents: main\n' "$uri"
-                signed_by "$entry"
-            } | as_root tee "$kBackportsFile" >/dev/null
-            as_root chmod 644 "$kBackportsFile"
-            apt_get update -q
-            return
-        fi
-    done <<<"$targets"
-    fail "found no source of Debian's main component to take the mirror of backports from;" \
-        "configure bookworm-backports by hand and run this again"
+    if ! stanza=$(debian_stanza deb bookworm-backports); then
+        fail "found no source of Debian's main component to take the mirror of backports from;" \
+            "configure bookworm-backports by hand and run this again"
+    fi
+    say "adding bookworm-backports in $kBackportsFile"
+    printf '%s\n' "$stanza" | as_root tee "$kBackportsFile" >/dev/null
+    as_root chmod 644 "$kBackportsFile"
+    apt_get update -q
 }
 
 install_mesa_from_backports() {
@@ -242,6 +223,7 @@ for argument in "$@"; do
         --check) check_only=true ;;
         --browser) browser=true ;;
         --lint) needs+=("${kLintNeeds[@]}") ;;
+        --portable) needs+=("${kPortableNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
         -h | --help)
             usage

@@ -75,6 +75,12 @@ void queryLimits(Context::State& state) {
     limits.deviceType = properties.properties.deviceType;
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
+    limits.cacheOwner = {properties.properties.vendorID,
+                         properties.properties.deviceID,
+                         vulkan12.driverID,
+                         properties.properties.driverVersion,
+                         {}};
+    std::ranges::copy(properties.properties.pipelineCacheUUID, limits.cacheOwner.cacheUuid.begin());
     state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
     constexpr VkFormatFeatureFlags kTexture = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
                                               VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
@@ -151,6 +157,12 @@ Status finishContext(Context::State& state) {
             return status;
         }
     }
+    if (state.handles.pipelineStatistics) {
+        if (Status status = loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk);
+            !status) {
+            return status;
+        }
+    }
     queryLimits(state);
     if (Status status = checkQueueFamily(state); !status) {
         return status;
@@ -205,6 +217,13 @@ Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
         return makeError("device-features", "",
                          "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
                          "create the device with some of deviceTracers()");
+    }
+    constexpr const char* kStatistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    if (complete.pipelineStatistics && !hasExtension(report, kStatistics)) {
+        return makeError(
+            "device-features", "",
+            std::string("DeviceHandles::pipelineStatistics is set, and the device lacks ") + kStatistics,
+            "leave it false");
     }
     if (Status status = finishContext(*state); !status) {
         return status.error();

@@ -1,6 +1,7 @@
 // What the runtime's own sources see of a Context.
 #pragma once
 
+#include "pipeline_cache.h"
 #include "vulkan_table.h"
 
 #include <glint/context.h>
@@ -41,6 +42,7 @@ struct DeviceLimits {
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::string deviceName;
     std::string driverName;
+    PipelineCacheOwner cacheOwner;
 };
 
 struct Context::State {
@@ -59,7 +61,7 @@ struct Context::State {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     ValidationLog log;
     DeviceLimits limits;
-    // In memory only; shared by the renderers of this context.
+    // Shared by the renderers of this context.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };
 

@@ -1,6 +1,7 @@
 #include "deformer.h"
 
 #include "interop/deform.h"
+#include "memory_report.h"
 #include "shader_modules.h"
 #include "vulkan_error.h"
 
@@ -302,6 +303,15 @@ void Deformer::recordDeform(VkCommandBuffer commands, const std::vector<bool>& m
         const std::uint32_t across = std::min(groups, gpu::kMaxDeformGroupsX);
         vk.CmdDispatch(commands, across, (groups + across - 1) / across, 1);
     }
+}
+
+void Deformer::addMemory(std::vector<MemoryItem>& items) const {
+    for (const auto& [primitive, source] : sources_) {
+        addTo(items, "targets and influences", source.buffer);
+    }
+    addTo(items, "pose", pose_);
+    addTo(items, "deform records", records_);
+    addTo(items, "poses on their way", staging_);
 }
 
 }  // namespace glint

@@ -47,6 +47,12 @@ public:
     // Records the pass, for the instances that `moved` marks; the pose must be visible to compute shaders.
     void recordDeform(VkCommandBuffer commands, const std::vector<bool>& moved) const;
 
+    // Its own: the target's are not among them.
+    void addMemory(std::vector<MemoryItem>& items) const;
+    VkDeviceSize allocatedBytes() const {
+        return pool_.bytes();
+    }
+
 private:
     explicit Deformer(Context::State& context) : context_(&context), pool_(context) {}
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 namespace glint {
 
@@ -46,10 +47,25 @@ struct FrameResources {
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
 
-    std::array<const Buffer*, 17> buffers() const {
-        return {&constants,     &samples,     &radiance,       &rays,           &hits,         &orderedHits,
-                &visitedHits,   &shadows,     &bucketKeys,     &shadowDispatch, &bucketCounts, &bucketBegins,
-                &bucketCursors, &rayDispatch, &bucketDispatch, &counters,       &readback};
+    // All of them, with names for reports.
+    std::array<std::pair<const char*, const Buffer*>, 17> buffers() const {
+        return {{{"constants", &constants},
+                 {"samples", &samples},
+                 {"radiance of effects", &radiance},
+                 {"rays", &rays},
+                 {"hits", &hits},
+                 {"ordered hits", &orderedHits},
+                 {"visited hits", &visitedHits},
+                 {"shadow rays", &shadows},
+                 {"shadow dispatch", &shadowDispatch},
+                 {"bucket keys", &bucketKeys},
+                 {"bucket counts", &bucketCounts},
+                 {"bucket begins", &bucketBegins},
+                 {"bucket cursors", &bucketCursors},
+                 {"ray dispatch", &rayDispatch},
+                 {"bucket dispatch", &bucketDispatch},
+                 {"counters", &counters},
+                 {"read-back", &readback}}};
     }
 };
 

@@ -219,7 +219,7 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 
 Status createDevice(Context::State& state) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
-                                    state.handles.shaderFloat16);
+                                    state.handles.shaderFloat16, state.handles.pipelineStatistics);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -277,6 +277,15 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         return device.error();
     }
     state->handles.physicalDevice = *device;
+    if (options.pipelineStatistics) {
+        DeviceReport report;
+        if (Status status = queryDevice(state->instance, *device, report); !status) {
+            return status.error();
+        }
+        // Where it is supported, so is its feature (Vulkan 1.3 specification, "Feature Requirements").
+        state->handles.pipelineStatistics =
+            hasExtension(report, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    }
     if (Status status = createDevice(*state); !status) {
         return status.error();
     }

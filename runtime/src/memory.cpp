@@ -125,4 +125,12 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     return allocation;
 }
 
+VkDeviceSize MemoryPool::bytes() const {
+    VkDeviceSize sum = 0;
+    for (const Block& block : blocks_) {
+        sum += block.bytes;
+    }
+    return sum;
+}
+
 }  // namespace glint

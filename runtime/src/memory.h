@@ -3,6 +3,8 @@
 
 #include "device_handle.h"
 
+#include <glint/memory_report.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -13,12 +15,6 @@ struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0;
     std::uint8_t* mapped = nullptr;
-};
-
-enum class MemoryUse {
-    Device,    // read and written by the device
-    Upload,    // written by the host, coherent
-    Readback,  // read by the host, coherent, cached where there is such memory
 };
 
 enum class Tiling { Linear, Optimal };  // of the resource: buffers are linear
@@ -35,6 +31,9 @@ public:
 
     // Errors: "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call".
     Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
+
+    // Of the allocations, whether handed out or not.
+    VkDeviceSize bytes() const;
 
 private:
     struct Block {

@@ -7,6 +7,8 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -34,7 +36,8 @@ Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayo
 }
 
 // Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
-Result<VkPipeline> createGBuffer(Context::State& context, const Package& package, Pipelines& pipelines) {
+Result<UniquePipeline> createGBuffer(Context::State& context, const Package& package, VkPipelineLayout layout,
+                                     PipelineCreation& creation) {
     Result<UniqueShaderModule> vertex =
         createShaderModule(context, package.spirv({ModuleRole::GBufferVertex}));
     if (!vertex) {
@@ -85,9 +88,13 @@ Result<VkPipeline> createGBuffer(Context::State& context, const Package& package
     rendering.pColorAttachmentFormats = &kSurfaceFormat;
     rendering.depthAttachmentFormat = kDepthFormat;
 
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    rendering.pNext = &feedback;
+
     VkGraphicsPipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
     info.pNext = &rendering;
+    info.flags = creation.flags;
     info.stageCount = stages.size();
     info.pStages = stages.data();
     info.pVertexInputState = &vertexInput;
@@ -98,15 +105,14 @@ Result<VkPipeline> createGBuffer(Context::State& context, const Package& package
     info.pDepthStencilState = &depth;
     info.pColorBlendState = &blend;
     info.pDynamicState = &dynamic;
-    info.layout = pipelines.layout.get();
+    info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateGraphicsPipelines(context.handles.device, context.pipelineCache,
                                                                1, &info, nullptr, &pipeline);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateGraphicsPipelines", result);
     }
-    pipelines.owned.emplace_back(context, pipeline);
-    return pipeline;
+    return UniquePipeline(context, pipeline);
 }
 
 bool isGraphics(const package::RoleInfo& info) {
@@ -121,28 +127,56 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 
+// Pipelines to make, and what they are for.
+struct PipelinePlan {
+    std::vector<PipelineJob> jobs;
+    std::vector<std::pair<package::ModuleKey, std::size_t>> computePasses;  // each with its job
+    std::vector<RayPass> rayPasses;                                         // the last jobs, in this order
+};
+
+PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipelineLayout layout) {
+    const std::size_t words = package.spirv({ModuleRole::GBufferVertex}).size() +
+                              package.spirv({ModuleRole::GBufferFragment}).size();
+    return {"GBuffer", words, [&context, &package, layout](PipelineCreation& creation) {
+                return createGBuffer(context, package, layout, creation);
+            }};
+}
+
 // Every compute pass and case of the choice.
-Status createComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
-                           Pipelines& pipelines) {
+void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
+                       VkPipelineLayout layout, PipelinePlan& plan) {
     // The loader gives entries that name one file the same words.
-    std::map<const std::uint32_t*, VkPipeline> byWords;
+    std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         if (isGraphics(info) || key.tracer == package::kTracerRayPipeline || !runs(choice, info, key)) {
             continue;
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
-        auto known = byWords.find(words.data());
-        if (known == byWords.end()) {
-            Result<UniquePipeline> pipeline = createComputePipeline(context, words, pipelines.layout.get());
-            if (!pipeline) {
-                return pipeline.error();
-            }
-            known = byWords.emplace(words.data(), pipeline->get()).first;
-            pipelines.owned.push_back(std::move(*pipeline));
+        const auto [known, fresh] = byWords.emplace(words.data(), plan.jobs.size());
+        if (fresh) {
+            plan.jobs.push_back({pipelineName(package, key), words.size(),
+                                 [&context, words, layout](PipelineCreation& creation) {
+                                     return createComputePipeline(context, words, layout, creation);
+                                 }});
         }
+        plan.computePasses.emplace_back(key, known->second);
+    }
+}
+
+void planRayJobs(Context::State& context, VkPipelineLayout layout, PipelinePlan& plan) {
+    for (const RayPass& pass : plan.rayPasses) {
+        plan.jobs.push_back(
+            {pass.name, wordCount(pass.source), [&context, &pass, layout](PipelineCreation& creation) {
+                 return createRayPipeline(context, layout, pass.source, creation);
+             }});
+    }
+}
+
+void addComputePasses(const Package& package, const PipelinePlan& plan, Pipelines& pipelines) {
+    for (const auto& [key, job] : plan.computePasses) {
         PassPipeline pass;
-        pass.pipeline = known->second;
+        pass.pipeline = pipelines.owned[job].handle.get();
         if (key.role == ModuleRole::ShadeCase) {
             pipelines.cases.resize(package.caseCount());
             pipelines.cases[key.index] = pass;
@@ -153,7 +187,6 @@ Status createComputePasses(Context::State& context, const Package& package, cons
             pipelines.passes[key.role] = pass;
         }
     }
-    return okStatus();
 }
 
 }  // namespace
@@ -170,24 +203,59 @@ VkShaderStageFlags pushStages(const Context::State& context) {
     return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
 }
 
+std::string pipelineName(const Package& package, const package::ModuleKey& key) {
+    const package::RoleInfo& info = *package::findRole(key.role);
+    std::string name(info.name);
+    switch (info.repeated) {
+        case package::Repeated::Once:
+            return name;
+        case package::Repeated::ByCase:
+            return name + " " + std::string(package.string(package.cases()[key.index].name));
+        case package::Repeated::ByOrdering:
+            return name + " " + std::string(nameOf(static_cast<package::Ordering>(key.index)));
+        case package::Repeated::ByEffect:
+            for (const package::EffectInfo& effect : package::kEffects) {
+                if (package::effectNumber(effect.effect) == key.index) {
+                    return name + " " + std::string(effect.name);
+                }
+            }
+            break;
+    }
+    return name;
+}
+
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
-                                  const PipelineChoice& choice, std::span<const std::uint32_t> shaderIds,
+                                  const PipelineChoice& choice, const PipelineMaking& making,
+                                  std::span<const std::uint32_t> shaderIds,
                                   std::span<const VkDescriptorSetLayout> setLayouts) {
     const auto start = std::chrono::steady_clock::now();
     Pipelines pipelines(context);
     if (Status status = createLayout(context, setLayouts, pipelines); !status) {
         return status.error();
     }
-    Result<VkPipeline> gbuffer = createGBuffer(context, package, pipelines);
-    if (!gbuffer) {
-        return gbuffer.error();
+    const VkPipelineLayout layout = pipelines.layout.get();
+    PipelinePlan plan;
+    plan.jobs.push_back(gbufferJob(context, package, layout));
+    planComputePasses(context, package, choice, layout, plan);
+    plan.rayPasses = planRayPasses(package, choice, shaderIds);
+    planRayJobs(context, layout, plan);
+    pipelines.threads = pipelineThreads(making.threads, plan.jobs.size());
+    pipelines.captureStatistics = making.captureStatistics;
+    const VkPipelineCreateFlags flags =
+        making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
+    Result<std::vector<MadePipeline>> made = makePipelines(plan.jobs, flags, pipelines.threads);
+    if (!made) {
+        return made.error();
     }
-    pipelines.gbuffer = *gbuffer;
-    if (Status status = createComputePasses(context, package, choice, pipelines); !status) {
-        return status.error();
-    }
-    if (Status status = createRayPasses(context, package, choice, shaderIds, pipelines); !status) {
-        return status.error();
+    pipelines.owned = std::move(*made);
+    pipelines.gbuffer = pipelines.owned.front().handle.get();
+    addComputePasses(package, plan, pipelines);
+    const std::size_t firstRayJob = plan.jobs.size() - plan.rayPasses.size();
+    for (std::size_t i = 0; i < plan.rayPasses.size(); ++i) {
+        const VkPipeline pipeline = pipelines.owned[firstRayJob + i].handle.get();
+        if (Status status = addRayPass(context, package, plan.rayPasses[i], pipeline, pipelines); !status) {
+            return status.error();
+        }
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();

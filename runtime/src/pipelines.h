@@ -1,6 +1,7 @@
 // Pipelines of a strategy.
 #pragma once
 
+#include "pipeline_jobs.h"
 #include "resources.h"
 
 #include <glint/package.h>
@@ -19,6 +20,12 @@ struct PipelineChoice {
     package::Ordering ordering = package::Ordering::GlobalAtomics;
     bool checksOrder = false;
     bool batchEffects = false;
+};
+
+// How they are made.
+struct PipelineMaking {
+    std::uint32_t threads = 0;       // 0: as many as the machine runs at once
+    bool captureStatistics = false;  // requires DeviceHandles::pipelineStatistics
 };
 
 // A pass: a compute pipeline, or a ray tracing pipeline with its shader binding table.
@@ -41,7 +48,9 @@ struct Pipelines {
     std::map<package::ModuleRole, PassPipeline> passes;
     std::vector<PassPipeline> effectRays;  // by package::effectNumber()
     std::vector<PassPipeline> cases;       // by shader ID; cases that share a module share a pipeline
-    std::vector<UniquePipeline> owned;
+    std::vector<MadePipeline> owned;
+    std::uint32_t threads = 0;  // that made them
+    bool captureStatistics = false;
     double creationMs = 0.0;
 };
 
@@ -51,10 +60,14 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
 // Stages that push constants are for.
 VkShaderStageFlags pushStages(const Context::State& context);
 
+// Of a pipeline, for reports: the role of its module, and its case, effect or ordering.
+std::string pipelineName(const Package& package, const package::ModuleKey& key);
+
 // All pipelines of the choice. `shaderIds`: of the scene's geometry records, in their order. Errors: those of
 // buffers and submissions, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
-                                  const PipelineChoice& choice, std::span<const std::uint32_t> shaderIds,
+                                  const PipelineChoice& choice, const PipelineMaking& making,
+                                  std::span<const std::uint32_t> shaderIds,
                                   std::span<const VkDescriptorSetLayout> setLayouts);
 
 }  // namespace glint

@@ -1,29 +1,11 @@
 #include "ray_passes.h"
 
-#include "ray_pipelines.h"
-
 #include <utility>
 
 namespace glint {
 namespace {
 
 using package::ModuleRole;
-
-// Keeps the pipeline; its passes, one a ray generation shader of the source.
-Result<std::vector<PassPipeline>> addRayPipeline(Context::State& context, const RayPipelineSource& source,
-                                                 Pipelines& pipelines) {
-    Result<RayPipeline> made = createRayPipeline(context, pipelines.pool, pipelines.layout.get(), source);
-    if (!made) {
-        return made.error();
-    }
-    std::vector<PassPipeline> passes;
-    for (const VkStridedDeviceAddressRegionKHR& rayGeneration : made->table.rayGeneration) {
-        passes.push_back({made->pipeline.get(), true, rayGeneration, made->table.miss, made->table.hit});
-    }
-    pipelines.owned.push_back(std::move(made->pipeline));
-    pipelines.tables.push_back(std::move(made->table.buffer));
-    return passes;
-}
 
 SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index = 0) {
     return package.spirv({role, index, package::kTracerRayPipeline});
@@ -70,9 +52,11 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
 }
 
 // Cases that trace their shadow rays: one pipeline, a ray generation shader for each distinct module.
-Status createRayCases(Context::State& context, const Package& package, Pipelines& pipelines) {
+RayPass planCases(const Package& package) {
+    RayPass pass;
+    pass.name = std::string(package::roleName(ModuleRole::ShadeCase));
+    pass.role = ModuleRole::ShadeCase;
     std::vector<SpirvWords> shaders;
-    std::map<std::uint32_t, std::size_t> shaderOfCase;  // by shader ID; retired ones have none
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
         const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
@@ -83,27 +67,17 @@ Status createRayCases(Context::State& context, const Package& package, Pipelines
         if (fresh) {
             shaders.push_back(words);
         }
-        shaderOfCase[shaderId] = known->second;
+        pass.shaderOfCase[shaderId] = known->second;
     }
-    if (shaders.empty()) {
-        return okStatus();
-    }
-    Result<std::vector<PassPipeline>> passes =
-        addRayPipeline(context, tracingSource(package, std::move(shaders)), pipelines);
-    if (!passes) {
-        return passes.error();
-    }
-    pipelines.cases.resize(package.caseCount());
-    for (const auto& [shaderId, shader] : shaderOfCase) {
-        pipelines.cases[shaderId] = (*passes)[shader];
-    }
-    return okStatus();
+    pass.source = tracingSource(package, std::move(shaders));
+    return pass;
 }
 
 }  // namespace
 
-Status createRayPasses(Context::State& context, const Package& package, const PipelineChoice& choice,
-                       std::span<const std::uint32_t> shaderIds, Pipelines& pipelines) {
+std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
+                                   std::span<const std::uint32_t> shaderIds) {
+    std::vector<RayPass> passes;
     bool tracesInCases = false;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::ShaderKind kind = package::findRole(key.role)->kind;
@@ -116,17 +90,51 @@ Status createRayPasses(Context::State& context, const Package& package, const Pi
             tracesInCases = true;
             continue;
         }
-        Result<std::vector<PassPipeline>> passes =
-            addRayPipeline(context,
-                           key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
-                                                            : tracingSource(package, {package.spirv(key)}),
-                           pipelines);
-        if (!passes) {
-            return passes.error();
-        }
-        pipelines.passes[key.role] = passes->front();
+        RayPass pass;
+        pass.name = pipelineName(package, key);
+        pass.role = key.role;
+        pass.source = key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
+                                                       : tracingSource(package, {package.spirv(key)});
+        passes.push_back(std::move(pass));
     }
-    return tracesInCases ? createRayCases(context, package, pipelines) : okStatus();
+    if (tracesInCases) {
+        RayPass cases = planCases(package);
+        if (!cases.source.rayGeneration.empty()) {
+            passes.push_back(std::move(cases));
+        }
+    }
+    return passes;
+}
+
+std::size_t wordCount(const RayPipelineSource& source) {
+    std::size_t count = source.anyHit.size();
+    for (const auto* const stages : {&source.rayGeneration, &source.miss, &source.closestHit}) {
+        for (const SpirvWords words : *stages) {
+            count += words.size();
+        }
+    }
+    return count;
+}
+
+Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
+                  Pipelines& pipelines) {
+    Result<ShaderBindingTable> table = createTable(context, pipelines.pool, pipeline, pass.source);
+    if (!table) {
+        return table.error();
+    }
+    const auto passOf = [&](std::size_t shader) {
+        return PassPipeline{pipeline, true, table->rayGeneration[shader], table->miss, table->hit};
+    };
+    if (pass.role == ModuleRole::ShadeCase) {
+        pipelines.cases.resize(package.caseCount());
+        for (const auto& [shaderId, shader] : pass.shaderOfCase) {
+            pipelines.cases[shaderId] = passOf(shader);
+        }
+    } else {
+        pipelines.passes[pass.role] = passOf(0);
+    }
+    pipelines.tables.push_back(std::move(table->buffer));
+    return okStatus();
 }
 
 }  // namespace glint

@@ -1,6 +1,5 @@
 #include "ray_pipelines.h"
 
-#include "shader_modules.h"
 #include "upload.h"
 #include "vulkan_error.h"
 
@@ -95,24 +94,6 @@ Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source
     return parts;
 }
 
-Result<UniquePipeline> createPipeline(Context::State& context, VkPipelineLayout layout, const Parts& parts) {
-    VkRayTracingPipelineCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
-    info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
-    info.pStages = parts.stages.data();
-    info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
-    info.pGroups = parts.groups.data();
-    info.maxPipelineRayRecursionDepth = 1;
-    info.layout = layout;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateRayTracingPipelinesKHR(
-        context.handles.device, VK_NULL_HANDLE, context.pipelineCache, 1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateRayTracingPipelinesKHR", result);
-    }
-    return UniquePipeline(context, pipeline);
-}
-
 VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
@@ -176,6 +157,34 @@ Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeli
     return handles;
 }
 
+}  // namespace
+
+Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
+                                         const RayPipelineSource& source, PipelineCreation& creation) {
+    Result<Parts> parts = makeParts(context, source);
+    if (!parts) {
+        return parts.error();
+    }
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    VkRayTracingPipelineCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
+    info.pNext = &feedback;
+    info.flags = creation.flags;
+    info.stageCount = static_cast<std::uint32_t>(parts->stages.size());
+    info.pStages = parts->stages.data();
+    info.groupCount = static_cast<std::uint32_t>(parts->groups.size());
+    info.pGroups = parts->groups.data();
+    info.maxPipelineRayRecursionDepth = 1;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateRayTracingPipelinesKHR(
+        context.handles.device, VK_NULL_HANDLE, context.pipelineCache, 1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateRayTracingPipelinesKHR", result);
+    }
+    return UniquePipeline(context, pipeline);
+}
+
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source) {
     const std::size_t groupCount =
@@ -219,25 +228,6 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
         table.hit.stride = 0;
     }
     return table;
-}
-
-}  // namespace
-
-Result<RayPipeline> createRayPipeline(Context::State& context, MemoryPool& pool, VkPipelineLayout layout,
-                                      const RayPipelineSource& source) {
-    Result<Parts> parts = makeParts(context, source);
-    if (!parts) {
-        return parts.error();
-    }
-    Result<UniquePipeline> pipeline = createPipeline(context, layout, *parts);
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    Result<ShaderBindingTable> table = createTable(context, pool, pipeline->get(), source);
-    if (!table) {
-        return table.error();
-    }
-    return RayPipeline{std::move(*pipeline), std::move(*table)};
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "resources.h"
+#include "shader_modules.h"
 
 #include <cstdint>
 #include <span>
@@ -28,14 +29,13 @@ struct ShaderBindingTable {
     VkStridedDeviceAddressRegionKHR hit{};
 };
 
-struct RayPipeline {
-    UniquePipeline pipeline;
-    ShaderBindingTable table;
-};
+// Error "vulkan-call".
+Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
+                                         const RayPipelineSource& source, PipelineCreation& creation);
 
-// Waits until the table is on the device. `pool` must outlive the result. Errors: those of buffers and
-// submissions, "vulkan-call".
-Result<RayPipeline> createRayPipeline(Context::State& context, MemoryPool& pool, VkPipelineLayout layout,
-                                      const RayPipelineSource& source);
+// The table of a pipeline that was made of the same source. Waits until it is on the device. `pool` must
+// outlive the result. Errors: those of buffers and submissions, "vulkan-call".
+Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
+                                       const RayPipelineSource& source);
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 #include "refit.h"
 
 #include "commands.h"
+#include "memory_report.h"
 
 #include <algorithm>
 
@@ -96,6 +97,13 @@ VkDeviceSize RefittedBlases::bytes() const {
         bytes += build.structureBytes;
     }
     return bytes;
+}
+
+void RefittedBlases::addMemory(std::vector<MemoryItem>& items) const {
+    for (const AccelerationStructure& structure : structures_) {
+        addTo(items, "refitted bottom levels", structure.buffer);
+    }
+    addTo(items, "scratch of structures", scratch_.buffer);
 }
 
 }  // namespace glint

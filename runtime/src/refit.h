@@ -28,6 +28,7 @@ public:
         return structures_[index].address;
     }
     VkDeviceSize bytes() const;
+    void addMemory(std::vector<MemoryItem>& items) const;
 
 private:
     explicit RefittedBlases(Context::State& context) : context_(&context) {}

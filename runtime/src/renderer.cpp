@@ -167,6 +167,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (!choice) {
         return choice.error();
     }
+    if (options.pipelineStatistics && !contextState.handles.pipelineStatistics) {
+        return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
+                         "create it with DeviceRequirements for them, where it has them");
+    }
     const FrameSize size = frameSize(package, *choice, options);
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
@@ -186,7 +190,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
     Result<Pipelines> pipelines =
-        createPipelines(contextState, package, *choice, state->scene.shaderIds, layouts);
+        createPipelines(contextState, package, *choice, {options.pipelineThreads, options.pipelineStatistics},
+                        state->scene.shaderIds, layouts);
     if (!pipelines) {
         return pipelines.error();
     }
@@ -293,27 +298,6 @@ package::Tracer Renderer::tracer() const {
 
 package::Ordering Renderer::ordering() const {
     return state_->choice.ordering;
-}
-
-Renderer::Footprint Renderer::footprint() const {
-    Footprint footprint;
-    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
-    const FrameResources& frame = state_->frame;
-    for (const DeviceImage& image : frame.images) {
-        footprint.images += image.handle.get() != VK_NULL_HANDLE ? 1 : 0;
-        footprint.bytes += image.bytes;
-    }
-    footprint.images += 1;
-    footprint.bytes += frame.depth.bytes;
-    for (const Buffer* const buffer : frame.buffers()) {
-        footprint.buffers += buffer->bytes > 0 ? 1 : 0;
-        footprint.bytes += buffer->bytes;
-    }
-    return footprint;
-}
-
-double Renderer::pipelineCreationMs() const {
-    return state_->pipelines.creationMs;
 }
 
 Renderer::State& Renderer::state() {

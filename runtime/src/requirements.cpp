@@ -91,7 +91,8 @@ constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000)
 
 }  // namespace
 
-DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf)
+DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf,
+                                       bool tellsOfPipelines)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
@@ -100,7 +101,8 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
       accelerationStructure{},
       rayQuery{},
       rayPipeline{},
-      positionFetch{} {
+      positionFetch{},
+      pipelineExecutables{} {
     vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     vulkan11.pNext = &vulkan12;
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -121,6 +123,12 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         positionFetch.pNext = std::exchange(accelerationStructure.pNext, &positionFetch);
         positionFetch.rayTracingPositionFetch = VK_TRUE;
         extensions.push_back(kPositionFetchExtension);
+    }
+    pipelineExecutables.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
+    if (tellsOfPipelines) {
+        pipelineExecutables.pNext = std::exchange(accelerationStructure.pNext, &pipelineExecutables);
+        pipelineExecutables.pipelineExecutableInfo = VK_TRUE;
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
     // An umbrella bit: the specification asks for it where its parts are used with SPIR-V 1.5 modules.

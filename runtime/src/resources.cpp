@@ -40,6 +40,7 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
         return vulkanError("vkBindBufferMemory", result);
     }
     buffer.mapped = memory->mapped;
+    buffer.use = use;
     VkBufferDeviceAddressInfo address{};
     address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
     address.buffer = handle;

@@ -12,6 +12,7 @@ struct Buffer {
     VkDeviceSize bytes = 0;
     VkDeviceAddress address = 0;
     std::uint8_t* mapped = nullptr;  // null for MemoryUse::Device
+    MemoryUse use = MemoryUse::Device;
 };
 
 // A buffer of at least one byte, with a device address. `pool` must outlive it.

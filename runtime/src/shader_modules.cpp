@@ -27,13 +27,16 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
 }
 
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
-                                             VkPipelineLayout layout) {
+                                             VkPipelineLayout layout, PipelineCreation& creation) {
     Result<UniqueShaderModule> module = createShaderModule(context, words);
     if (!module) {
         return module.error();
     }
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.pNext = &feedback;
+    info.flags = creation.flags;
     info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
@@ -43,6 +46,19 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
         return vulkanError("vkCreateComputePipelines", result);
     }
     return UniquePipeline(context, pipeline);
+}
+
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout) {
+    PipelineCreation creation;
+    return createComputePipeline(context, words, layout, creation);
+}
+
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation) {
+    VkPipelineCreationFeedbackCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO;
+    info.pPipelineCreationFeedback = &creation.feedback;
+    return info;
 }
 
 }  // namespace glint

@@ -14,8 +14,19 @@ Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span
 // The entry point is "main".
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
 
+// How a pipeline is to be made, and what the driver says of how it was.
+struct PipelineCreation {
+    VkPipelineCreateFlags flags = 0;
+    VkPipelineCreationFeedback feedback{};  // without the flag VALID: nothing
+};
+
 // Error "vulkan-call".
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout, PipelineCreation& creation);
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout);
+
+// For the chain of a pipeline's creation; fills `creation`, which must outlive it.
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation);
 
 }  // namespace glint

@@ -60,6 +60,8 @@
     X(DestroyPipelineLayout)                    \
     X(CreatePipelineCache)                      \
     X(DestroyPipelineCache)                     \
+    X(GetPipelineCacheData)                     \
+    X(MergePipelineCaches)                      \
     X(CreateComputePipelines)                   \
     X(CreateGraphicsPipelines)                  \
     X(DestroyPipeline)                          \
@@ -114,6 +116,11 @@
     X(CmdTraceRaysKHR)                    \
     X(CmdTraceRaysIndirectKHR)
 
+// Of VK_KHR_pipeline_executable_properties.
+#define GLINT_PIPELINE_STATISTICS_FUNCTIONS(X) \
+    X(GetPipelineExecutablePropertiesKHR)      \
+    X(GetPipelineExecutableStatisticsKHR)
+
 namespace glint {
 
 #define GLINT_DECLARE_FUNCTION(name) PFN_vk##name name = nullptr;
@@ -134,6 +141,8 @@ struct DeviceTable {
     GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null until loadRayPipelineFunctions().
     GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+    // Null until loadPipelineStatisticsFunctions().
+    GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null unless VK_EXT_debug_utils is enabled.
     PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT CmdEndDebugUtilsLabelEXT = nullptr;
@@ -169,5 +178,7 @@ Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstancePro
 Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils);
 // For a device that has VK_KHR_ray_tracing_pipeline enabled.
 Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
+// For a device that has VK_KHR_pipeline_executable_properties enabled.
+Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 
 }  // namespace glint

@@ -71,6 +71,13 @@ TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     EXPECT_EQ(stats.at("merge"), "family");
     EXPECT_EQ(stats.at("sceneStatistics").at("triangles"), 4);
     EXPECT_FALSE(stats.at("device").get<std::string>().empty());
+    std::uint64_t bytes = 0;
+    for (const nlohmann::json& item : stats.at("memory").at("frame")) {
+        bytes += item.at("bytes").get<std::uint64_t>();
+    }
+    EXPECT_EQ(bytes, stats.at("footprint").at("bytes"));
+    EXPECT_EQ(bytes, stats.at("memory").at("frameBytes"));
+    EXPECT_TRUE(stats.at("pipelineStatistics").is_null());
     ASSERT_FALSE(stats.at("passes").empty());
     for (const nlohmann::json& pass : stats.at("passes")) {
         EXPECT_GE(pass.at("milliseconds").get<double>(), 0.0) << pass;

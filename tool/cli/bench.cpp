@@ -11,6 +11,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile_cache.h"
+#include "cli/pipeline_cache.h"
 #include "cli/plan_choice.h"
 #include "cli/validation_messages.h"
 #include "gltf/import.h"
@@ -248,8 +249,11 @@ Status bench(const Console& console, const BenchArguments& arguments, const Scen
     if (!bed) {
         return bed.error();
     }
+    PipelineCacheFile pipelineCache(console, (*bed)->context(),
+                                    pipelineCacheFolder(arguments.render.pipelines, arguments.cache));
     describeScene(arguments.render, **bed, report);
     Status done = Bench(console, arguments, **bed, cache.store(), report).run(plan);
+    pipelineCache.save();
     cache.close(console);
     report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return done;

@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // Whatever the values of these, a command writes the same; and diagnostics are judged when they are reported.
-constexpr std::array<std::string_view, 11> kWithoutEffect = {
-    "--cache", "--cache-size", "--color",  "--depfile", "--depfile-target", "--jobs", "--json",
-    "--quiet", "--verbose",    "--werror", "-W"};
+constexpr std::array<std::string_view, 13> kWithoutEffect = {
+    "--cache",          "--cache-size",       "--color", "--depfile", "--depfile-target", "--jobs", "--json",
+    "--pipeline-cache", "--pipeline-threads", "--quiet", "--verbose", "--werror",         "-W"};
 
 // Empty where it is not set.
 std::string variable(const char* name) {

@@ -167,6 +167,10 @@ constexpr DiagnosticInfo kTable[] = {
     {"package-truncated", kError, "The tables of a package are cut short."},
     {"package-version", kError, "A package is of another version."},
     {"payload-bytes", kNote | kWarning, "`glint lint`: a ray payload is large."},
+    {"pipeline-cache", kNote | kError,
+     "A pipeline cache is damaged, too large, or of another device or driver: pipelines are made without "
+     "it."},
+    {"pipeline-statistics", kNote | kError, "The device does not tell what its driver made of pipelines."},
     {"png-encode", kError, "An image can't be written as PNG."},
     {"pose-degenerate", kWarning, "The scale of a node leaves its camera or light without a direction."},
     {"position-fetch", kError,

@@ -3,6 +3,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/coverage.h"
+#include "cli/pipeline_cache.h"
 #include "cli/plan_choice.h"
 #include "cli/render_arguments.h"
 #include "cli/render_frames.h"
@@ -72,6 +73,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     options.deviceName = arguments.device;
     options.positionFetch = arguments.tracing.positionFetch;
     options.shaderFloat16 = arguments.accuracy.halves();
+    options.pipelineStatistics = arguments.pipelineStatistics;
     // Of the package in a folder, if there is one. What is wrong with it is told when it is used.
     if (!arguments.package.empty()) {
         if (const Result<Package> package = Package::load(arguments.package)) {
@@ -159,10 +161,13 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     }
     report.camera = camera->name;
     // Before the compilation, which takes longer than finding out that there is no device.
+    const Clock::time_point begin = Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments);
     if (!context) {
         return context.error();
     }
+    PipelineCacheFile pipelineCache(console, **context, pipelineCacheFolder(arguments.pipelines, {}));
+    report.start.deviceMs = millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
     const Result<std::unique_ptr<Environment>> environment =
@@ -180,8 +185,14 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     console.progress("rendering " + arguments.scene);
-    const FrameSetup setup{arguments, rendererOptions(arguments), environment->get(), *movement, camera->view,
-                           aspect};
+    RendererOptions options = rendererOptions(arguments);
+    options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
+    if (arguments.pipelineStatistics && !options.pipelineStatistics) {
+        console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
+                                  "has no VK_KHR_pipeline_executable_properties: there are no statistics",
+                                  "leave out --pipeline-statistics, or use another device"});
+    }
+    const FrameSetup setup{arguments, options, environment->get(), *movement, camera->view, aspect};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = checkValidation(console, **context); !valid) {
@@ -198,6 +209,11 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     };
     if (Status rendered = renderFrames(**context, *package, setup, scene, data, accept, report); !rendered) {
         return rendered;
+    }
+    pipelineCache.save();
+    if (!pipelineCache.path().empty()) {
+        report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
+                                  pipelineCache.savedBytes()};
     }
     if (console.refused()) {
         return okStatus();

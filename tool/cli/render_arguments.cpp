@@ -53,10 +53,14 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
             "checks the order\nof hits")
         .group("Device");
+    addPipelineOptions(command, arguments.pipelines);
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
+            "say what the driver tells of each pipeline: registers,\nspills, instructions, whatever it has")
+        .group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
                    "write how each pixel of the last sample came to its\n"
                    "reflection; orange: found in screen space; blue: by a\n"

@@ -5,6 +5,7 @@
 #include "cli/environment.h"
 #include "cli/motion_options.h"
 #include "cli/options.h"
+#include "cli/pipeline_cache.h"
 #include "cli/tracing_options.h"
 
 #include <cstdint>
@@ -40,9 +41,11 @@ struct RenderArguments {
     std::string sun = "auto";
     bool validate = false;
     std::string stats;
+    bool pipelineStatistics = false;
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
+    PipelineArguments pipelines;
 
     // Whether the picture has a light that the scene lacks.
     bool addsSun(const Scene& given) const {

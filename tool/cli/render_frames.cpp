@@ -16,8 +16,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double millisecondsBetween(Clock::time_point start, Clock::time_point end) {
+    return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
 double millisecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return millisecondsBetween(start, Clock::now());
 }
 
 // Renders picture after picture with one scene on the device and one renderer.
@@ -34,10 +38,13 @@ public:
             }
             data_.moves = setup_.movement->moments.size() > 1;
         }
+        const Clock::time_point begin = Clock::now();
         Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
         if (!uploaded) {
             return uploaded.error();
         }
+        const Clock::time_point onDevice = Clock::now();
+        report_.start.uploadMs = millisecondsBetween(begin, onDevice);
         gpuScene_ = std::move(*uploaded);
         report_.sceneStatistics = gpuScene_->statistics();
         Result<std::unique_ptr<Renderer>> renderer =
@@ -45,13 +52,25 @@ public:
         if (!renderer) {
             return renderer.error();
         }
+        report_.start.rendererMs = millisecondsSince(onDevice);
         renderer_ = std::move(*renderer);
         report_.tracer = std::string(package::nameOf(renderer_->tracer()));
         if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
             report_.ordering = std::string(package::nameOf(renderer_->ordering()));
         }
-        report_.pipelineCreationMs = renderer_->pipelineCreationMs();
+        report_.pipelines.making = renderer_->pipelineMaking();
         report_.footprint = renderer_->footprint();
+        report_.pipelines.count = report_.footprint.pipelines;
+        if (setup_.renderer.pipelineStatistics) {
+            Result<std::vector<PipelineStatistics>> statistics = renderer_->pipelineStatistics();
+            if (!statistics) {
+                return statistics.error();
+            }
+            report_.pipelines.statistics = std::move(*statistics);
+        }
+        report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
+                          gpuScene_->allocatedBytes()};
+        report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = !setup_.arguments.stats.empty();
         return okStatus();
     }
@@ -86,8 +105,13 @@ public:
         options.seed = report_.seed;
         const Clock::time_point begin = Clock::now();
         const bool countsHits = !setup_.arguments.profileOutput.empty();
-        Result<LinearImage> image = renderer_->render(
-            options, report_.samples, countsHits ? [this] { return addHits(); } : std::function<Status()>());
+        const auto afterSample = [&] {
+            if (!std::exchange(begun_, true)) {
+                report_.start.firstSampleMs = millisecondsSince(begin);
+            }
+            return countsHits ? addHits() : okStatus();
+        };
+        Result<LinearImage> image = renderer_->render(options, report_.samples, afterSample);
         frame.renderMs = millisecondsSince(begin);
         report_.renderMs += frame.renderMs;
         if (!image) {
@@ -157,6 +181,7 @@ private:
     CameraView camera_;
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
+    bool begun_ = false;  // a sample is complete
 };
 
 }  // namespace

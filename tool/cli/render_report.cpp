@@ -196,7 +196,11 @@ Json toJson(const RenderReport& report) {
               {"narrowedTextures", scene.narrowedTextures},
               {"blasBuildMs", scene.blasBuildMs},
               {"tlasBuildMs", scene.tlasBuildMs}}},
-            {"pipelineCreationMs", report.pipelineCreationMs},
+            {"pipelineCreationMs", report.pipelines.making.milliseconds},
+            {"pipelineThreads", report.pipelines.making.threads},
+            {"pipelineCache", cacheToJson(report.pipelines)},
+            {"pipelineStatistics", statisticsToJson(report.pipelines)},
+            {"start", toJson(report.start)},
             {"renderMs", report.renderMs},
             {"frames", toJson(report.frames)},
             {"passes", passes},
@@ -212,7 +216,8 @@ Json toJson(const RenderReport& report) {
              {{"pipelines", report.footprint.pipelines},
               {"images", report.footprint.images},
               {"buffers", report.footprint.buffers},
-              {"bytes", report.footprint.bytes}}}};
+              {"bytes", report.footprint.bytes}}},
+            {"memory", toJson(report.memory)}};
 }
 
 std::string toText(const RenderReport& report) {
@@ -237,7 +242,8 @@ std::string toText(const RenderReport& report) {
     if (report.compileMs) {
         rows.push_back({"compile", milliseconds(*report.compileMs)});
     }
-    rows.push_back({"pipelines", milliseconds(report.pipelineCreationMs)});
+    rows.push_back({"pipelines", toText(report.pipelines)});
+    rows.push_back({"first sample", toText(report.start)});
     rows.push_back({"render", milliseconds(report.renderMs)});
     for (const EffectCounters& effect : counters.effects) {
         if (!report.countsLight && package::effectInfo(effect.effect).kind != package::EffectKind::Rays) {
@@ -264,7 +270,16 @@ std::string toText(const RenderReport& report) {
         passes.push_back({pass.name, fmt::format("{:.3f}", pass.milliseconds)});
     }
     const std::string frames = report.frames.empty() ? "" : tableOf(report.frames) + "\n";
-    return formatFields(rows) + "\n" + frames + formatTable(passes);
+    std::string text = formatFields(rows) + "\n" + frames + formatTable(passes);
+    if (report.hasDetails) {
+        text += '\n';
+        text += toText(report.memory);
+    }
+    if (report.pipelines.statistics) {
+        text += '\n';
+        text += tableOf(*report.pipelines.statistics);
+    }
+    return text;
 }
 
 }  // namespace glint

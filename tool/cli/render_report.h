@@ -1,6 +1,8 @@
 // What glint render says of a picture: the JSON of --stats and --json, and the table.
 #pragma once
 
+#include "cli/memory_table.h"
+#include "cli/pipeline_report.h"
 #include "cli/report.h"
 
 #include <glint/environment.h>
@@ -53,7 +55,10 @@ struct RenderReport {
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
     bool countsLight = false;  // rays of shadow and ambient-occlusion are counted
-    double pipelineCreationMs = 0.0;
+    MemoryReport memory;
+    bool hasDetails = false;  // the text has all memory, too
+    PipelineReport pipelines;
+    StartReport start;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample, of the last frame
     FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all

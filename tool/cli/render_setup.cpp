@@ -29,6 +29,7 @@ RendererOptions rendererOptions(const RenderArguments& arguments) {
     parseSize(arguments.size, options.width, options.height);
     options.tracer = tracerOf(arguments);
     options.checkOrder = arguments.validate;
+    options.pipelineThreads = static_cast<std::uint32_t>(arguments.pipelines.threads);
     arguments.frame.apply(options);
     arguments.effectFrame.apply(options);
     return options;

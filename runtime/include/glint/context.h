@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct DeviceHandles {
     bool positionFetch = false;
     // VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device: packages run that need it.
     bool shaderFloat16 = false;
+    // VK_KHR_pipeline_executable_properties with its feature is enabled on the device: Renderers can tell
+    // what the driver says of their pipelines.
+    bool pipelineStatistics = false;
     // package::Tracer bits whose extensions and features are enabled on the device: those that its
     // DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -47,6 +51,8 @@ struct HeadlessOptions {
     bool positionFetch = false;
     // 16-bit float arithmetic, for packages that need it. Error "device-features" where it is missing.
     bool shaderFloat16 = false;
+    // VK_KHR_pipeline_executable_properties, where the device has it: DeviceHandles::pipelineStatistics.
+    bool pipelineStatistics = false;
 };
 
 // package::Tracer bits that a device can be created with; 0: Glint does not run on it.
@@ -63,9 +69,10 @@ struct PositionFetchFeatures {
 // Points into static memory or itself; neither copy nor move.
 struct DeviceRequirements {
     // `tracers`: which to enable, some of deviceTracers(). Packages run whose tracer is among them.
-    // positionFetch, shaderFloat16: for packages that need them.
+    // positionFetch, shaderFloat16: for packages that need them. pipelineStatistics: for
+    // Renderer::pipelineStatistics().
     explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false,
-                                bool shaderFloat16 = false);
+                                bool shaderFloat16 = false, bool pipelineStatistics = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
@@ -79,6 +86,7 @@ struct DeviceRequirements {
     VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;               // in the chain if among the tracers
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // likewise
     PositionFetchFeatures positionFetch;                        // in the chain if asked for
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR pipelineExecutables;  // likewise
 };
 
 // Every extension and feature that `device` lacks, by name; empty if Glint runs on it. Of the tracers it
@@ -102,6 +110,17 @@ public:
     VkPhysicalDeviceType deviceType() const;
     // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
     std::vector<std::string> validationMessages() const;
+
+    // What the driver knows of the pipelines that were made so far, for addPipelineCache() in another run on
+    // the same device and driver, which make them faster for it. Error "vulkan-call".
+    Result<std::vector<std::uint8_t>> pipelineCacheData() const;
+    // Adds what an earlier run got; no Renderer or GpuScene may be in the making. `data` is not trusted:
+    // error "pipeline-cache" where it is damaged or of another device or driver. With an error nothing has
+    // changed.
+    Status addPipelineCache(std::span<const std::uint8_t> data);
+    // Of the device and driver, with hexadecimal digits and hyphens: for the name of a file that keeps the
+    // data.
+    std::string pipelineCacheName() const;
 
     struct State;  // for the runtime's own sources
     State& state();

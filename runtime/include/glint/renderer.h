@@ -3,7 +3,9 @@
 
 #include <glint/context.h>
 #include <glint/effects.h>
+#include <glint/memory_report.h>
 #include <glint/package.h>
+#include <glint/pipeline_statistics.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
@@ -58,6 +60,9 @@ public:
         double tlasBuildMs = 0.0;
     };
     const Statistics& statistics() const;
+    // Buffers and images by what they hold, and the memory that they were allocated with.
+    std::vector<MemoryItem> memory() const;
+    std::uint64_t allocatedBytes() const;
 
     // Records into a command buffer of the caller's, in the recording state, outside a render pass, what
     // brings a scene with SceneView::moves to another pose: vertices that follow joints and morph weights are
@@ -104,6 +109,11 @@ struct RendererOptions {
     // Rays of all effects join one list, and their hits are ordered and shaded together: fewer, larger
     // dispatches, and more memory.
     bool batchEffects = false;
+    // Threads that make pipelines, the caller's included; 0: as many as the machine runs at once.
+    std::uint32_t pipelineThreads = 0;
+    // Has the driver keep what pipelineStatistics() tells. Error "pipeline-statistics" without
+    // DeviceHandles::pipelineStatistics.
+    bool pipelineStatistics = false;
 };
 
 // The ordering that a renderer uses where none is asked for.
@@ -276,11 +286,25 @@ public:
         std::uint32_t pipelines = 0;
         std::uint32_t images = 0;
         std::uint32_t buffers = 0;
-        std::uint64_t bytes = 0;  // of images and buffers
+        std::uint64_t bytes = 0;           // of images and buffers
+        std::uint64_t allocatedBytes = 0;  // of the memory that holds them
     };
     Footprint footprint() const;
+    // Each image and buffer of the footprint.
+    std::vector<MemoryItem> memory() const;
 
-    double pipelineCreationMs() const;
+    // How the pipelines were made.
+    struct PipelineMaking {
+        std::uint32_t threads = 0;
+        double milliseconds = 0.0;  // wall clock, with their tables
+        // Of the pipelines, how many the driver found in the cache of the Context; absent where it does not
+        // say.
+        std::optional<std::uint32_t> cacheHits;
+    };
+    PipelineMaking pipelineMaking() const;
+    // Of each pipeline, what the driver says of it. Errors: "pipeline-statistics" without
+    // RendererOptions::pipelineStatistics, "vulkan-call".
+    Result<std::vector<PipelineStatistics>> pipelineStatistics() const;
 
     struct State;  // for the runtime's own sources and their tests
     State& state();

@@ -169,7 +169,7 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
     EXPECT_FALSE(renderer_->timings());
     EXPECT_FALSE(renderer_->counters());
-    EXPECT_GT(renderer_->pipelineCreationMs(), 0.0);
+    EXPECT_GT(renderer_->pipelineMaking().milliseconds, 0.0);
     FrameOptions frame = makeFrame(4.0F);
     ASSERT_TRUE(renderer_->render(frame));
     const Result<std::vector<PassTiming>> stretches = renderer_->timings();

@@ -1,0 +1,229 @@
+#!/usr/bin/env bash
+# Builds a glint that runs wherever there is a C library of 2022 or later and a Vulkan driver, and packs it.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+usage() {
+    cat <<'TEXT'
+usage: scripts/portable.sh [--test ROOT]
+
+On Debian 12, builds a release glint, with gallery, glint_numerics and bench_ordering,
+into which everything is linked but the C library, and packs them as
+out/glint-VERSION-linux-ARCHITECTURE.tar.gz with the README, the licences, the example
+scene and its package for every strategy and tracer.
+
+Libraries of which Debian has no static archive are built from Debian's own source
+packages, once, in build/portable/deps. Needs what scripts/setup.sh --portable installs.
+
+  --test ROOT  also unpacks the archive in a root of Debian 12 with nothing but a
+               Vulkan loader and driver, made by debootstrap in the folder ROOT where
+               there is none, and renders there; needs root
+TEXT
+}
+
+say() {
+    printf 'portable: %s\n' "$*"
+}
+
+fail() {
+    printf 'portable: error: %s\n' "$*" >&2
+    exit 1
+}
+
+# shellcheck source=scripts/apt_mirror.sh
+source scripts/apt_mirror.sh
+
+# Newest version of the C library's symbols that may be needed: Debian 12's. Ubuntu 24.04 has 2.39.
+kNewestGlibc=2.36
+kPrograms=(glint gallery glint_numerics bench_ordering)
+build=$PWD/build/portable
+deps=$build/deps
+jobs=$(nproc)
+
+# --- Static libraries ------------------------------------------------------------------------------
+
+# Source packages that are built, in this order, each with what its CMake is told. Tests, tools and documents are left out.
+kSources=(
+    "fmtlib|-DFMT_TEST=OFF -DFMT_DOC=OFF"
+    "mimalloc|-DMI_BUILD_SHARED=OFF -DMI_BUILD_OBJECT=OFF -DMI_BUILD_TESTS=OFF -DMI_INSTALL_TOPLEVEL=ON"
+    "meshoptimizer|"
+    "imath|-DPYTHON=OFF"
+    "openexr|-DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF -DDOCS=OFF -DINSTALL_DOCS=OFF"
+    "tinygltf|-DTINYGLTF_BUILD_LOADER_EXAMPLE=OFF -Dstb_LIBRARY=$deps/lib/libstb.a"
+)
+# Debian's own static archives, which are taken where a shared library of the same name would be found first.
+kArchives=(libstb.a libwebp.a libxxhash.a libz.a)
+
+# Fetches and unpacks the source packages in the folder, with sources and lists of apt of its own: this machine's stay as
+# they are. Checked by apt, as packages are.
+fetch_sources() {
+    local folder=$1 names=()
+    mkdir -p "$folder/lists/partial" "$folder/parts"
+    debian_stanza deb-src bookworm > "$folder/parts/debian.sources" ||
+        fail "found no source of Debian 12's main component to take source packages from"
+    local apt=(-q -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$folder/parts"
+        -o "Dir::State::Lists=$folder/lists" -o "APT::Sandbox::User=root")
+    apt-get update "${apt[@]}" > "$folder/apt.log"
+    local source
+    for source in "${kSources[@]}"; do
+        names+=("${source%%|*}")
+    done
+    (cd "$folder" && apt-get source "${apt[@]}" --download-only "${names[@]}") >> "$folder/apt.log"
+    for source in "${names[@]}"; do
+        # apt has checked the files by their sums; the uploaders' own keys need not be here.
+        dpkg-source -q --no-check -x "$folder/$source"_*.dsc "$folder/$source" >> "$folder/apt.log" 2>&1
+    done
+}
+
+build_deps() {
+    if [[ -e $deps/done ]]; then
+        return
+    fi
+    say "fetching source packages"
+    rm -rf "$deps"
+    mkdir -p "$deps/lib" "$deps/source"
+    fetch_sources "$deps/source"
+    local triplet archive source name
+    triplet=$(gcc -dumpmachine)
+    for archive in "${kArchives[@]}"; do
+        cp "/usr/lib/$triplet/$archive" "$deps/lib/"
+    done
+    for source in "${kSources[@]}"; do
+        name=${source%%|*}
+        say "building $name"
+        # shellcheck disable=SC2086 # several words
+        cmake -S "$deps/source/$name" -B "$deps/source/build-$name" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+            -DCMAKE_INSTALL_PREFIX="$deps" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_PREFIX_PATH="$deps" \
+            -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
+            ${source#*|} > "$deps/source/$name.log" 2>&1 || fail "$name: see $deps/source/$name.log"
+        cmake --build "$deps/source/build-$name" --parallel "$jobs" --target install >> "$deps/source/$name.log" 2>&1 ||
+            fail "$name: see $deps/source/$name.log"
+    done
+    touch "$deps/done"
+}
+
+# --- Checks ----------------------------------------------------------------------------------------
+
+# Libraries that belong to the C library.
+is_of_libc() {
+    case $1 in
+        libc.so.6 | libm.so.6 | libdl.so.2 | libpthread.so.0 | librt.so.1 | ld-linux-*.so.*) return 0 ;;
+        *) return 1 ;;
+    esac
+}
+
+check_program() {
+    local program=$1 needed newest
+    while read -r needed; do
+        is_of_libc "$needed" || fail "$program needs $needed"
+    done < <(objdump -p "$program" | sed -n 's/^ *NEEDED *//p')
+    newest=$(objdump -T "$program" | sed -n 's/.*(\{0,1\}GLIBC_\([0-9.]*\))\{0,1\}.*/\1/p' | sort -V | tail -n 1)
+    [[ -n $newest ]] || fail "$program: found no version of the C library"
+    [[ $(printf '%s\n' "$newest" "$kNewestGlibc" | sort -V | tail -n 1) == "$kNewestGlibc" ]] ||
+        fail "$program needs version $newest of the C library; $kNewestGlibc is the newest that may be"
+    if objdump -T "$program" | grep -q 'GLIBCXX_\|CXXABI_\|GCC_'; then
+        fail "$program takes symbols of libstdc++ or libgcc from outside"
+    fi
+    say "$(basename "$program"): C library $newest, $(objdump -p "$program" | sed -n 's/^ *NEEDED *//p' | paste -sd ' ')"
+}
+
+# --- Archive ---------------------------------------------------------------------------------------
+
+# Debian's packages of what is linked, whose copyright files go along.
+kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
+    libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
+    libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
+
+pack() {
+    local version name folder program built package
+    version=$("$build/bin/glint" --version | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+    [[ -n $version ]] || fail "glint --version says no version"
+    name=glint-$version-linux-$(uname -m)
+    folder=$build/pack/$name
+    rm -rf "$build/pack"
+    mkdir -p "$folder/bin" "$folder/licences" "$folder/example" out
+    for program in "${kPrograms[@]}"; do
+        built=$build/bin/$program
+        if [[ ! -x $built ]]; then
+            built=$build/tests/$program
+        fi
+        strip -o "$folder/bin/$program" "$built"
+        check_program "$folder/bin/$program"
+    done
+    cp README.md LICENSE "$folder/"
+    for package in "${kLicensed[@]}"; do
+        [[ -r /usr/share/doc/$package/copyright ]] || fail "no licence of $package in /usr/share/doc"
+        cp -L "/usr/share/doc/$package/copyright" "$folder/licences/$package.txt"
+    done
+    "$folder/bin/gallery" "$folder/example" > /dev/null
+    "$folder/bin/glint" compile "$folder/example/gallery.gltf" -o "$folder/example/gallery.glint" --strategy all \
+        --tracer all --cache none --quiet
+    archive=out/$name.tar.gz
+    tar --create --gzip --file "$archive" --directory "$build/pack" --owner=0 --group=0 --numeric-owner --sort=name "$name"
+    say "$archive, $(du -h "$archive" | cut -f 1)"
+}
+
+# --- Test ------------------------------------------------------------------------------------------
+
+# In a root that has never seen a compiler.
+test_in() {
+    local root=$1 name
+    name=$(basename "$archive" .tar.gz)
+    if [[ ! -e $root/usr/bin/apt-get ]]; then
+        debian_stanza deb bookworm > /dev/null || fail "found no source of Debian 12's main component"
+        say "making $root"
+        debootstrap --variant=minbase bookworm "$root" "$(debian_stanza deb bookworm | sed -n 's/^URIs: //p')" > /dev/null
+        debian_stanza deb bookworm-backports > "$root/etc/apt/sources.list.d/backports.sources"
+        chroot "$root" apt-get update -q > /dev/null
+        chroot "$root" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends libvulkan1 > /dev/null
+        chroot "$root" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
+            -t bookworm-backports mesa-vulkan-drivers > /dev/null
+    fi
+    rm -rf "${root:?}/$name"
+    tar --extract --gzip --file "$archive" --directory "$root"
+    say "rendering in $root"
+    local strategy
+    for strategy in uber hit-shaders; do
+        chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp "/$name/bin/glint" render "/$name/example/gallery.gltf" \
+            --package "/$name/example/gallery.glint" --strategy "$strategy" --size 96x54 -o "/tmp/$strategy.exr" --quiet
+    done
+    chroot "$root" env -i PATH=/usr/bin:/bin "/$name/bin/glint" compare /tmp/uber.exr /tmp/hit-shaders.exr --max-error 0.01
+    chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp "/$name/bin/glint" render "/$name/example/gallery.gltf" --size 96x54 \
+        -o /tmp/compiled.exr --quiet
+    chroot "$root" sh -c "! command -v cc && ! ls /usr/lib/*/libstdc++.so" > /dev/null || fail "$root has a compiler"
+}
+
+# --- Main ------------------------------------------------------------------------------------------
+
+root=
+while [[ $# -gt 0 ]]; do
+    case $1 in
+        --test)
+            [[ $# -gt 1 ]] || fail "--test needs a folder"
+            root=$2
+            shift
+            ;;
+        -h | --help)
+            usage
+            exit 0
+            ;;
+        *)
+            usage >&2
+            exit 2
+            ;;
+    esac
+    shift
+done
+
+# shellcheck source=/dev/null
+[[ $(. /etc/os-release && printf '%s %s' "$ID" "${VERSION_ID:-}") == "debian 12" ]] ||
+    fail "this is for Debian 12, whose C library is old enough"
+scripts/setup.sh --check --portable || fail "run scripts/setup.sh --portable"
+build_deps
+say "building glint"
+cmake --preset portable > "$build/configure.log"
+cmake --build --preset portable --target "${kPrograms[@]}"
+pack
+if [[ -n $root ]]; then
+    test_in "$root"
+fi

@@ -1,0 +1,108 @@
+// Jobs on several threads: results and errors that do not depend on who was first.
+#include "pipeline_jobs.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace glint {
+namespace {
+
+// No device: the handles stay null, and jobs are told apart by what they report.
+PipelineJob job(std::uint64_t number, std::size_t wordCount, bool fails = false) {
+    return {"job " + std::to_string(number), wordCount,
+            [number, fails](PipelineCreation& creation) -> Result<UniquePipeline> {
+                creation.feedback.duration = number;
+                if (fails) {
+                    return makeError("job", "", std::to_string(number));
+                }
+                return UniquePipeline();
+            }};
+}
+
+TEST(PipelineJobs, ComeInTheirOrderWhateverTheirSizesAndThreads) {
+    std::vector<PipelineJob> jobs;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        jobs.push_back(job(i, (i * 7) % 11));
+    }
+    for (const std::uint32_t threads : {1U, 2U, 16U, 64U}) {
+        const auto made = makePipelines(jobs, 0, threads);
+        ASSERT_TRUE(made);
+        ASSERT_EQ(made->size(), jobs.size());
+        for (std::uint64_t i = 0; i < jobs.size(); ++i) {
+            EXPECT_EQ((*made)[i].name, jobs[i].name);
+            EXPECT_EQ((*made)[i].feedback.duration, i);
+        }
+    }
+}
+
+TEST(PipelineJobs, FirstErrorInOrderIsToldWhicheverCameFirst) {
+    const std::vector<PipelineJob> jobs{job(0, 1), job(1, 2, true), job(2, 9, true), job(3, 3, true)};
+    for (const std::uint32_t threads : {1U, 4U}) {
+        const auto made = makePipelines(jobs, 0, threads);
+        ASSERT_FALSE(made);
+        EXPECT_EQ(made.error().message, "1");
+    }
+}
+
+TEST(PipelineJobs, LargestBeginsFirst) {
+    std::vector<int> begun;
+    std::vector<PipelineJob> jobs;
+    for (const int words : {3, 50, 7, 50}) {
+        jobs.push_back({"", static_cast<std::size_t>(words),
+                        [&begun, number = static_cast<int>(jobs.size())](PipelineCreation&) {
+                            begun.push_back(number);
+                            return Result<UniquePipeline>(UniquePipeline());
+                        }});
+    }
+    ASSERT_TRUE(makePipelines(jobs, 0, 1));
+    EXPECT_EQ(begun, (std::vector<int>{1, 3, 2, 0}));
+}
+
+// Each of two jobs waits until the other has begun.
+TEST(PipelineJobs, RunAtTheSameTime) {
+    std::atomic<int> begun{0};
+    const PipelineJob waits{"", 1, [&begun](PipelineCreation&) -> Result<UniquePipeline> {
+                                ++begun;
+                                const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+                                while (begun < 2 && std::chrono::steady_clock::now() < end) {
+                                    std::this_thread::yield();
+                                }
+                                if (begun < 2) {
+                                    return makeError("job", "", "the other never came");
+                                }
+                                return UniquePipeline();
+                            }};
+    EXPECT_TRUE(makePipelines(std::array{waits, waits}, 0, 2));
+}
+
+TEST(PipelineJobs, FlagsReachEveryJob) {
+    const PipelineJob flagged{"", 1, [](PipelineCreation& creation) -> Result<UniquePipeline> {
+                                  creation.feedback.duration = creation.flags;
+                                  return UniquePipeline();
+                              }};
+    const auto made =
+        makePipelines(std::array{flagged, flagged}, VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR, 2);
+    ASSERT_TRUE(made);
+    for (const MadePipeline& pipeline : *made) {
+        EXPECT_EQ(pipeline.feedback.duration, VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR);
+    }
+}
+
+TEST(PipelineJobs, ThreadsAreNoMoreThanJobsNorThanAreAskedFor) {
+    EXPECT_EQ(pipelineThreads(1, 100), 1U);
+    EXPECT_EQ(pipelineThreads(8, 100), 8U);
+    EXPECT_EQ(pipelineThreads(8, 3), 3U);
+    EXPECT_EQ(pipelineThreads(0, 1), 1U);
+    EXPECT_GE(pipelineThreads(0, 100), 1U);
+    EXPECT_EQ(pipelineThreads(4, 0), 1U);
+    const auto none = makePipelines({}, 0, 1);
+    ASSERT_TRUE(none);
+    EXPECT_TRUE(none->empty());
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,64 @@
+// What drivers keep of pipelines from run to run: --pipeline-cache and --pipeline-threads.
+#pragma once
+
+#include "cli/cache_options.h"
+#include "cli/console.h"
+
+#include <glint/context.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace glint {
+
+struct PipelineArguments {
+    std::string cache;         // empty: beside the compiled shaders
+    std::int64_t threads = 0;  // 0: one a core
+};
+void addPipelineOptions(CLI::App& command, PipelineArguments& arguments);
+
+// --pipeline-cache, else the folder `pipelines` in that of the compiled shaders. Nothing where either is
+// "none".
+std::optional<std::filesystem::path> pipelineCacheFolder(const PipelineArguments& arguments,
+                                                         const CacheArguments& compiled);
+
+// A file for each device and driver. What is wrong with it is a note: pipelines are made without it.
+class PipelineCacheFile {
+public:
+    // Gives the device what is in its file. `console` and `context` must outlive it.
+    PipelineCacheFile(const Console& console, Context& context,
+                      const std::optional<std::filesystem::path>& folder);
+
+    // Writes what the device knows by now, with what other processes wrote meanwhile, by a rename. A file
+    // that would be larger than kMostBytes is dropped instead, so that the next run starts anew.
+    void save();
+
+    // Empty: none is kept.
+    const std::filesystem::path& path() const {
+        return path_;
+    }
+    // Of the file when the device got it; 0: nothing was there, or nothing of use.
+    std::uint64_t loadedBytes() const {
+        return loadedBytes_;
+    }
+    // Of the file after save().
+    std::uint64_t savedBytes() const {
+        return savedBytes_;
+    }
+
+    static constexpr std::uint64_t kMostBytes = 256ULL << 20;
+
+private:
+    void add(bool reports);
+
+    const Console& console_;
+    Context& context_;
+    std::filesystem::path path_;
+    std::uint64_t loadedBytes_ = 0;
+    std::uint64_t savedBytes_ = 0;
+    std::uint64_t seenHash_ = 0;  // of the file when it was read last
+};
+
+}  // namespace glint

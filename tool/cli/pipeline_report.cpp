@@ -1,0 +1,169 @@
+#include "cli/pipeline_report.h"
+
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+std::string milliseconds(double value) {
+    return fmt::format("{:.3f} ms", value);
+}
+
+template <typename T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+Json stagesToJson(VkShaderStageFlags stages) {
+    constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
+        {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
+        {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
+        {VK_SHADER_STAGE_ANY_HIT_BIT_KHR, "any-hit"}, {VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, "closest-hit"},
+        {VK_SHADER_STAGE_MISS_BIT_KHR, "miss"}};
+    Json list = Json::array();
+    for (const auto& [bit, name] : kNames) {
+        if ((stages & bit) != 0) {
+            list.push_back(name);
+        }
+    }
+    return list;
+}
+
+// By the alternatives of PipelineStatistic::value.
+constexpr std::array kFormats{"bool", "int64", "uint64", "float64"};
+static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
+
+Json toJson(const PipelineExecutable& executable) {
+    Json statistics = Json::array();
+    for (const PipelineStatistic& statistic : executable.statistics) {
+        statistics.push_back(
+            {{"name", statistic.name},
+             {"description", statistic.description},
+             {"format", kFormats[statistic.value.index()]},
+             {"value", std::visit([](auto value) { return Json(value); }, statistic.value)}});
+    }
+    return {{"name", executable.name},
+            {"description", executable.description},
+            {"stages", stagesToJson(executable.stages)},
+            {"subgroupSize", executable.subgroupSize},
+            {"statistics", std::move(statistics)}};
+}
+
+Json toJson(const std::vector<PipelineStatistics>& pipelines) {
+    Json list = Json::array();
+    for (const PipelineStatistics& pipeline : pipelines) {
+        Json executables = Json::array();
+        for (const PipelineExecutable& executable : pipeline.executables) {
+            executables.push_back(toJson(executable));
+        }
+        list.push_back({{"name", pipeline.name},
+                        {"creationMs", orNull(pipeline.creationMs)},
+                        {"cacheHit", orNull(pipeline.cacheHit)},
+                        {"executables", std::move(executables)}});
+    }
+    return list;
+}
+
+std::string textOf(const PipelineStatistic& statistic) {
+    return std::visit([](auto value) { return fmt::format("{}", value); }, statistic.value);
+}
+
+}  // namespace
+
+Json cacheToJson(const PipelineReport& report) {
+    if (!report.cache) {
+        return nullptr;
+    }
+    return {{"file", report.cache->file},
+            {"loadedBytes", report.cache->loadedBytes},
+            {"savedBytes", report.cache->savedBytes},
+            {"hits", orNull(report.making.cacheHits)}};
+}
+
+Json statisticsToJson(const PipelineReport& report) {
+    return report.statistics ? toJson(*report.statistics) : Json(nullptr);
+}
+
+std::string toText(const PipelineReport& report) {
+    const Renderer::PipelineMaking& making = report.making;
+    std::string text = fmt::format("{} in {} by {} thread{}", report.count, milliseconds(making.milliseconds),
+                                   making.threads, making.threads == 1 ? "" : "s");
+    if (report.cache) {
+        text += fmt::format("; cache of {}", formatBytes(report.cache->loadedBytes));
+        if (making.cacheHits) {
+            text += fmt::format(", {} found in it", *making.cacheHits);
+        }
+    }
+    return text;
+}
+
+Json toJson(const StartReport& start) {
+    return {{"deviceMs", start.deviceMs},
+            {"uploadMs", start.uploadMs},
+            {"rendererMs", start.rendererMs},
+            {"firstSampleMs", start.firstSampleMs},
+            {"totalMs", start.totalMs()}};
+}
+
+std::string toText(const StartReport& start) {
+    return fmt::format("after {}: device {:.3f}, scene {:.3f}, renderer {:.3f}, sample {:.3f}",
+                       milliseconds(start.totalMs()), start.deviceMs, start.uploadMs, start.rendererMs,
+                       start.firstSampleMs);
+}
+
+// Names of NVIDIA's, Mesa's and AMD's drivers are among those that these words are from.
+PipelineColumn columnOf(const std::string& statistic) {
+    std::string name = statistic;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto hasAny = [&](std::initializer_list<std::string_view> words) {
+        return std::ranges::any_of(
+            words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
+    };
+    if (hasAny({"spill", "fill count"})) {
+        return PipelineColumn::Spills;
+    }
+    if (hasAny({"register", "gpr"})) {
+        return PipelineColumn::Registers;
+    }
+    if (hasAny({"local memory", "scratch", "stack"})) {
+        return PipelineColumn::LocalMemory;
+    }
+    if (hasAny({"binary size", "code size", "size of code"})) {
+        return PipelineColumn::CodeBytes;
+    }
+    return hasAny({"instruction"}) ? PipelineColumn::Instructions : PipelineColumn::None;
+}
+
+std::string tableOf(std::span<const PipelineStatistics> pipelines) {
+    std::vector<std::vector<std::string>> rows{{"pipeline", "executable", "subgroup", "registers", "spills",
+                                                "local memory", "instructions", "code bytes"}};
+    for (const PipelineStatistics& pipeline : pipelines) {
+        for (const PipelineExecutable& executable : pipeline.executables) {
+            constexpr std::size_t kFirstColumn = 2;  // that of PipelineColumn::None
+            std::vector<std::string> row(rows.front().size(), "-");
+            for (const PipelineStatistic& statistic : executable.statistics) {
+                const PipelineColumn column = columnOf(statistic.name);
+                if (column != PipelineColumn::None) {
+                    std::string& cell = row[kFirstColumn + static_cast<std::size_t>(column)];
+                    cell = cell == "-" ? textOf(statistic) : fmt::format("{} + {}", cell, textOf(statistic));
+                }
+            }
+            row[0] = pipeline.name;
+            row[1] = executable.name;
+            row[kFirstColumn] = executable.subgroupSize > 0 ? std::to_string(executable.subgroupSize) : "-";
+            rows.push_back(std::move(row));
+        }
+    }
+    return formatTable(rows);
+}
+
+}  // namespace glint
