@@ -259,6 +259,7 @@ Status bench(const Console& console, const BenchArguments& arguments, const Scen
         return bed.error();
     }
     describeScene(arguments.render, **bed, report);
+    report.base = configurationOf((*bed)->base());
     Status done = Bench(console, arguments, **bed, cache.store(), report).run(plan);
     cache.close(console);
     report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -300,7 +301,6 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = metricNamed(arguments.metric);
-    report.base = configurationOf(arguments.render);
     if (Status done = bench(console, arguments, *scene, plan->options, report); !done) {
         return fail(done.error());
     }

@@ -43,6 +43,7 @@ struct RenderArguments {
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
+    std::string calibration;  // a device file; empty: constants that are built in
 
     // Whether the picture has a light that the scene lacks.
     bool addsSun(const Scene& given) const {

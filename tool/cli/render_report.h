@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/report.h"
+#include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
 #include <glint/renderer.h>
@@ -37,6 +38,7 @@ struct RenderReport {
     std::string device;
     std::string driver;
     std::string strategy;
+    std::optional<StrategyAdvice> strategyChoice;  // with --strategy auto
     std::string tracer;
     std::optional<std::string> ordering;  // of hits, where the strategy orders them
     std::optional<std::string> merge;     // absent: a package was given
