@@ -37,6 +37,28 @@ DeviceCosts readMachine(JsonReader& reader, const Json& json) {
     return device;
 }
 
+// Adds the time of a strategy that was measured, and drew the picture that uber drew: of another one it would
+// say nothing.
+void readTime(JsonReader& reader, const Json& json, const std::string& place,
+              bench::CalibrationPoint& point) {
+    if (json.is_object() && json.contains("skipped")) {
+        return;
+    }
+    const std::string strategy = reader.text(json, place, "strategy");
+    const Json* const time = reader.member(json, place, "time");
+    const Json* const difference = reader.member(json, place, "difference");
+    if (time == nullptr || difference == nullptr) {
+        return;
+    }
+    const std::string there = place + "/time";
+    const double median = reader.number(*time, there, "median", 0.0, kAny);
+    const double low = reader.number(*time, there, "q1", 0.0, kAny);
+    const double high = reader.number(*time, there, "q3", 0.0, kAny);
+    if (!reader.flag(*difference, place + "/difference", "wrong")) {
+        point.times.push_back({strategy, median, low, high});
+    }
+}
+
 bench::CalibrationPoint readPoint(JsonReader& reader, const Json& json, const std::string& place) {
     bench::CalibrationPoint point;
     point.cases = static_cast<std::uint32_t>(reader.count(json, place, "cases", kMaxCases));
@@ -52,10 +74,8 @@ bench::CalibrationPoint readPoint(JsonReader& reader, const Json& json, const st
                               reader.number(work, there, "instructions", 0.0, kAny),
                               reader.number(work, there, "fetches", 0.0, kAny)});
     });
-    reader.each(json, place, "times", [&](const Json& time, const std::string& there) {
-        point.times.push_back(
-            {reader.text(time, there, "strategy"), reader.number(time, there, "ms", 0.0, kAny),
-             reader.number(time, there, "low", 0.0, kAny), reader.number(time, there, "high", 0.0, kAny)});
+    reader.each(json, place, "strategies", [&](const Json& measured, const std::string& there) {
+        readTime(reader, measured, there, point);
     });
     return point;
 }

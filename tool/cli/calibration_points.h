@@ -16,9 +16,9 @@ struct CalibrationPoints {
     std::vector<bench::CalibrationPoint> points;
 };
 
-// Reads `machine` (device, driver, deviceType, tracers, subgroupSize), `command` and `points`, whose members
-// are those of the structures; `subgroupSize` may be left out, and is 8 of a CPU then, else 32. Errors
-// "file-open", "file-read", "calibration-format".
+// Reads what docs/schemas/calibration.json describes, without strategies that were skipped or drew another
+// picture. `machine` may have a `subgroupSize`, which else is 8 of a CPU and 32 of a GPU. Errors "file-open",
+// "file-read", "calibration-format".
 Result<CalibrationPoints> readCalibrationPoints(const std::filesystem::path& path);
 
 }  // namespace glint

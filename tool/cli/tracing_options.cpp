@@ -21,7 +21,7 @@ std::vector<std::string> namesOf(const Values& values) {
 }
 
 std::vector<std::string> withAuto(std::vector<std::string> names) {
-    names.insert(names.begin(), kAutoStrategy);
+    names.emplace_back(kAutoStrategy);
     return names;
 }
 

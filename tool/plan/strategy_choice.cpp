@@ -16,7 +16,7 @@ double partOf(const StrategyEstimate& estimate, CostTerm term) {
 
 // Three digits, as no estimate has more.
 std::string milliseconds(double ms) {
-    return fmt::format("{:.3g} ms", ms);
+    return ms < 1000.0 ? fmt::format("{:.3g} ms", ms) : fmt::format("{:.0f} ms", ms);
 }
 
 std::string whole(double count) {
@@ -66,23 +66,24 @@ const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
     return best;
 }
 
-// What the hits' order costs more than it spares, or the other way round.
+// How the two differ, part by part.
 std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimate& rival) {
     const bool ordered = ordersHits(chosen.strategy);
     const StrategyEstimate& sorted = ordered ? chosen : rival;
     const StrategyEstimate& unsorted = ordered ? rival : chosen;
-    const double waits = partOf(unsorted, CostTerm::Divergence) + partOf(unsorted, CostTerm::Code);
-    const auto ordering = [](const StrategyEstimate& row) {
-        return partOf(row, CostTerm::Launches) + partOf(row, CostTerm::Cases) + partOf(row, CostTerm::Rays) +
-               partOf(row, CostTerm::Incoherence) + partOf(row, CostTerm::Buckets);
+    const auto waits = [](const StrategyEstimate& row) {
+        return partOf(row, CostTerm::Divergence) + partOf(row, CostTerm::Code);
     };
-    const double more = ordering(sorted) - ordering(unsorted);
+    const double spared = waits(unsorted) - waits(sorted);
+    const double shading = partOf(sorted, CostTerm::Instructions) - partOf(unsorted, CostTerm::Instructions);
+    const double around = sorted.ms - unsorted.ms + spared - shading;
     return fmt::format(
-        "{} is expected to take {}, {} {} ({:.2f} times): divergence and code that is passed by cost {} {}, "
-        "{} spends {} more around its shading.",
+        "{} is expected to take {}, {} {} ({:.2f} times): ordering {} {} of divergence, {} {} of launches, "
+        "records and order, and {} {} of shading.",
         chosen.strategy, milliseconds(chosen.ms), rival.strategy, milliseconds(rival.ms),
-        rival.ms / std::max(chosen.ms, 1e-12), unsorted.strategy, milliseconds(waits), sorted.strategy,
-        milliseconds(std::max(0.0, more)));
+        rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "spares",
+        milliseconds(std::abs(spared)), around < 0.0 ? "spares" : "adds", milliseconds(std::abs(around)),
+        shading < 0.0 ? "spares" : "adds", milliseconds(std::abs(shading)));
 }
 
 void explain(StrategyChoice& choice) {
