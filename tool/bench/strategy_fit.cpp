@@ -37,7 +37,8 @@ std::string whyUnusable(const CalibrationPoint& point) {
     if (!std::isfinite(point.rays) || point.rays <= 0.0) {
         return "has no rays";
     }
-    if (!isShare(point.hitShare) || !isShare(point.coherentShare)) {
+    // Draws can be less alike than random ones are on average.
+    if (!isShare(point.hitShare) || !(std::abs(point.coherentShare) <= 1.0)) {
         return "has a share that is not from 0 to 1";
     }
     if (point.work.empty()) {
@@ -221,7 +222,12 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
 }  // namespace
 
 Round roundOf(const CalibrationPoint& point) {
-    Round round{point.rays, point.hitShare, point.coherentShare, {}};
+    // Hits of one case are alike, wherever rays go.
+    Round round{point.rays,
+                point.hitShare,
+                std::max(0.0, point.coherentShare),
+                point.coherence == "coherent" ? 0.0 : 1.0,
+                {}};
     for (const CaseWork& work : point.work) {
         round.cases.push_back({work.share, work.instructions, work.fetches});
     }

@@ -44,6 +44,7 @@ void join(Round& all, const Round& round) {
     const double rays = all.rays + round.rays;
     if (rays > 0.0) {
         all.coherence = (all.rays * all.coherence + round.rays * round.coherence) / rays;
+        all.scatter = (all.rays * all.scatter + round.rays * round.scatter) / rays;
     }
     all.rays = rays;
 }
@@ -100,7 +101,7 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
         if ((shape.effects & info.effect) == 0 || info.kind != package::EffectKind::Rays) {
             continue;
         }
-        Round round{0.0, kRayHitShare, 0.0, cases};
+        Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
         double senders = 0.0;  // of the surfaces in the picture
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
@@ -113,6 +114,8 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
             continue;
         }
         round.coherence /= senders;
+        // Where rays part, what they hit is as different as the scene has it.
+        round.scatter = 1.0 - round.coherence;
         round.rays = shape.pixels * kSurfaceShare * std::min(senders, 1.0);
         if (shape.batchEffects && !rounds.empty()) {
             join(rounds.front(), round);

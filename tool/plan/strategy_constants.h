@@ -27,24 +27,24 @@ struct DeviceRow {
     std::span<const StrategyRow> strategies;
 };
 
-// llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1
-//     uber           32 points, estimates off by 38.7 % (median), 143.4 % at most
-//     sorted-uber    32 points, estimates off by 28.5 % (median), 129.0 % at most
-//     visibility     32 points, estimates off by 33.2 % (median), 120.3 % at most
-//     hit-shaders    32 points, estimates off by 35.0 % (median), 148.4 % at most
-//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 9.3 % (median),
-//     336.2 % at most; within 5 % at 34.4 % of 32 points
+// llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
+//     uber           32 points, estimates off by 57.8 % (median), 359.2 % at most
+//     sorted-uber    32 points, estimates off by 60.5 % (median), 220.1 % at most
+//     visibility     32 points, estimates off by 44.0 % (median), 155.1 % at most
+//     hit-shaders    32 points, estimates off by 45.3 % (median), 357.9 % at most
+//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
+//     154.5 % at most; within 5 % at 68.8 % of 32 points
 inline constexpr StrategyRow kCpu[] = {
-    {"uber", {0.0, 0.0, 1127.0, 758.8, 0.0, 1569.0, 0.0, 2.207}},
-    {"sorted-uber", {0.0, 0.0, 1852.0, 606.1, 326.7, 562.9, 0.0, 0.0}},
-    {"visibility", {0.0, 0.0, 1940.0, 670.4, 351.1, 428.0, 0.0, 0.0}},
-    {"hit-shaders", {0.0, 0.0, 1576.0, 985.3, 0.0, 1487.0, 21.03, 0.0}},
+    {"uber", {0.0, 0.0, 127.3, 246.1, 0.0, 22.94, 62.08, 0.0}},
+    {"sorted-uber", {0.0, 0.0, 20.84, 320.3, 18.35, 100.0, 0.0, 0.0}},
+    {"visibility", {0.0, 0.006262, 21.92, 290.8, 36.84, 105.0, 0.0, 0.0}},
+    {"hit-shaders", {0.0, 0.0, 206.3, 185.7, 0.0, 0.0, 64.81, 0.0}},
 };
 
 inline constexpr DeviceRow kDevices[] = {
-    {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1",
+    {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
      true, 8.0, "ray-query", "inline",
-     "glint render --stats of generated scenes, on a machine that did other work at the same time",
+     "glint bench --output=out/calibration --rounds=6 --calibrate --calibrate-cases=1,4,16,64 --calibrate-rays=16k,64k",
      kCpu},
 };
 

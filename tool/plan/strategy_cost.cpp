@@ -83,9 +83,8 @@ double casesRun(const Round& round, double subgroupSize) {
 
 TermValues termsOf(const Round& round, double subgroupSize) {
     const auto cases = static_cast<double>(round.cases.size());
-    const double coherence = std::clamp(round.coherence, 0.0, 1.0);
     const double together = instructionsRun(round, 1.0);
-    const double apart = instructionsRun(round, independentLanes(subgroupSize, coherence));
+    const double apart = instructionsRun(round, independentLanes(subgroupSize, round.coherence));
     const double code =
         std::accumulate(round.cases.begin(), round.cases.end(), 0.0,
                         [](double sum, const RoundCase& entry) { return sum + weightOf(entry); });
@@ -93,7 +92,7 @@ TermValues termsOf(const Round& round, double subgroupSize) {
     return {1.0,
             cases,
             round.rays,
-            round.rays * (1.0 - coherence),
+            round.rays * std::clamp(round.scatter, 0.0, 1.0),
             round.rays * std::log2(1.0 + cases),
             round.rays * together,
             round.rays * std::max(0.0, apart - together),

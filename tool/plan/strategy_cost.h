@@ -21,7 +21,7 @@
 //     launches      ms    1                         all: dispatches, barriers, what is fixed
 //     cases         ms    number of cases           ordered: a dispatch a case, a workgroup that is half full
 //     rays          ns    N                         all: tracing; ordered: records, and their order
-//     incoherence   ns    N (1 - coherence)         all: rays that part, memory that is apart
+//     incoherence   ns    N scatter                 all: rays that part, memory that is apart
 //     buckets       ns    N log2(1 + cases)         ordered: more buckets, fewer hits that are added up at
 //     once instructions  ps    N E(1)                    all: shading without divergence divergence    ps N
 //     (E(g) - E(1))           unsorted code          ps    N * sum over i of c(i)    a switch: caches that do
@@ -83,6 +83,7 @@ struct Round {
     double rays = 0.0;
     double hitShare = 1.0;   // of rays that hit something
     double coherence = 0.0;  // of neighbours' hits: 0 as drawn at random, 1 all of one case
+    double scatter = 1.0;    // of neighbours' rays: 0 as of a mirror, 1 as of a diffuse surface
     std::vector<RoundCase> cases;
 };
 

@@ -16,7 +16,7 @@ namespace glint {
 namespace {
 
 Round makeRound(std::size_t cases, double instructions, double coherence, double rays = 8e6) {
-    Round round{rays, 0.8, coherence, {}};
+    Round round{rays, 0.8, coherence, 1.0 - coherence, {}};
     for (std::size_t i = 0; i < cases; ++i) {
         round.cases.push_back({1.0 / static_cast<double>(cases), instructions, 0.0});
     }
@@ -59,7 +59,7 @@ double ms(const Round& round, std::string_view strategy) {
 }
 
 TEST(StrategyCost, RunsWhatSubgroupsOfRandomHitsRun) {
-    Round round{1.0, 0.7, 0.0, {{0.5, 100.0, 0.0}, {0.3, 400.0, 2.0}, {0.2, 1000.0, 0.0}}};
+    Round round{1.0, 0.7, 0.0, 1.0, {{0.5, 100.0, 0.0}, {0.3, 400.0, 2.0}, {0.2, 1000.0, 0.0}}};
     constexpr int kLanes = 8;
     constexpr int kGroups = 200000;
     std::mt19937 random(7);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same draws in every run
@@ -84,7 +84,7 @@ TEST(StrategyCost, RunsWhatSubgroupsOfRandomHitsRun) {
 }
 
 TEST(StrategyCost, OneLaneRunsItsOwnCaseAlone) {
-    const Round round{1.0, 0.6, 1.0, {{0.75, 200.0, 1.0}, {0.25, 1000.0, 0.0}}};
+    const Round round{1.0, 0.6, 1.0, 0.0, {{0.75, 200.0, 1.0}, {0.25, 1000.0, 0.0}}};
     EXPECT_NEAR(instructionsRun(round, 1.0), 0.6 * (0.75 * (200.0 + kFetchCost) + 0.25 * 1000.0), 1e-9);
     EXPECT_DOUBLE_EQ(independentLanes(32.0, 1.0), 1.0);
     EXPECT_DOUBLE_EQ(independentLanes(32.0, 0.0), 32.0);
