@@ -73,6 +73,7 @@ void queryLimits(Context::State& state) {
         limits.samplerAnisotropy = std::min(kMaxAnisotropy, limits.core.maxSamplerAnisotropy);
     }
     limits.deviceType = properties.properties.deviceType;
+    limits.subgroupSize = vulkan11.subgroupSize;
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
     limits.cacheOwner = {properties.properties.vendorID,
@@ -249,6 +250,10 @@ std::string Context::driverName() const {
 
 VkPhysicalDeviceType Context::deviceType() const {
     return state_->limits.deviceType;
+}
+
+std::uint32_t Context::subgroupSize() const {
+    return state_->limits.subgroupSize;
 }
 
 std::vector<std::string> Context::validationMessages() const {

@@ -39,6 +39,7 @@ struct DeviceLimits {
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
     bool filteredFloats = false;           // R32G32B32A32_SFLOAT can be filtered
     std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
+    std::uint32_t subgroupSize = 0;        // lanes
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::string deviceName;
     std::string driverName;

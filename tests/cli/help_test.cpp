@@ -28,7 +28,7 @@ struct Words {
 
 TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
     const std::vector<Words> expected{
-        {"compile", "--strategy all|LIST how hits can be shaded, separated by commas;"},
+        {"compile", "--strategy auto|all|LIST how hits can be shaded, separated by commas;"},
         {"compile",
          "--tracer all|LIST what traces rays, separated by commas; ray-pipeline: for devices without ray "
          "queries; hit-shaders always has its own"},

@@ -252,6 +252,7 @@ Status bench(const Console& console, const BenchArguments& arguments, const Scen
     PipelineCacheFile pipelineCache(console, (*bed)->context(),
                                     pipelineCacheFolder(arguments.render.pipelines, arguments.cache));
     describeScene(arguments.render, **bed, report);
+    report.base = configurationOf((*bed)->base());
     Status done = Bench(console, arguments, **bed, cache.store(), report).run(plan);
     pipelineCache.save();
     cache.close(console);
@@ -294,7 +295,6 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = metricNamed(arguments.metric);
-    report.base = configurationOf(arguments.render);
     if (Status done = bench(console, arguments, *scene, plan->options, report); !done) {
         return fail(done.error());
     }

@@ -7,6 +7,7 @@
 #include "cli/plan_choice.h"
 #include "cli/render_input.h"
 #include "cli/render_setup.h"
+#include "cli/strategy_advice.h"
 #include "gltf/scene_list.h"
 #include "spirv/compiler.h"
 
@@ -162,6 +163,9 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     }
     bed->context_ = std::move(*context);
     bed->onCpu_ = isOnCpu(*bed->context_);
+    if (Status settled = bed->settleStrategy(); !settled) {
+        return settled.error();
+    }
     if (!base.environment.file.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
@@ -173,6 +177,26 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
         bed->environment_ = std::move(*environment);
     }
     return bed;
+}
+
+// A bench compares with one strategy: with --strategy auto that which it takes for this scene.
+Status BenchBed::settleStrategy() {
+    if (base_.tracing.strategies.front() != kAutoStrategy) {
+        return okStatus();
+    }
+    const Result<PlanChoice> plan = choosePlan(base_.plan, SceneList({&scene_, 1}));
+    if (!plan) {
+        return plan.error();
+    }
+    std::vector<Diagnostic> warnings;
+    const Result<StrategyAdvice> advice = adviseRender(base_, plan->options, *context_, scene_, warnings);
+    console_.report(warnings);
+    if (!advice) {
+        return advice.error();
+    }
+    console_.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+    base_.tracing.strategies = {advice->choice.strategy};
+    return okStatus();
 }
 
 Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderArguments& arguments) {

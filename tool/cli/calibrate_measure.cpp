@@ -152,7 +152,7 @@ private:
             measure.skipped = renderer.error().message;
             return okStatus();
         }
-        measure.pipelineMs = (*renderer)->pipelineCreationMs();
+        measure.pipelineMs = (*renderer)->pipelineMaking().milliseconds;
         measure.bytes = (*renderer)->footprint().bytes;
         measure.tracer = package::nameOf((*renderer)->tracer());
         if ((rendering.strategy & package::kOrderedStrategies) != 0) {

@@ -8,6 +8,7 @@
 #include "cli/compile_cache.h"
 #include "cli/compile_outputs.h"
 #include "cli/compile_plan.h"
+#include "cli/compile_strategy.h"
 #include "cli/compile_summary.h"
 #include "cli/depfile.h"
 #include "cli/lock_option.h"
@@ -79,6 +80,10 @@ Json planToJson(const Outcome& outcome) {
                            : Json(nullptr);
 }
 
+Json choiceToJson(const std::optional<StrategyAdvice>& advice) {
+    return advice ? strategyChoiceToJson(*advice) : Json(nullptr);
+}
+
 Json toJson(const Outcome& outcome) {
     const CompiledPackage* package = outcome.package;
     const auto orNull = [&](auto value) { return package ? Json(value()) : Json(nullptr); };
@@ -95,6 +100,7 @@ Json toJson(const Outcome& outcome) {
             {"modules", nullptr},
             {"upToDate", nullptr},
             {"variant", textOrNull(outcome.scenes.variant())},
+            {"strategyChoice", choiceToJson(outcome.arguments.tracing.advice)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return textOrNull(outcome.arguments.output); })},
@@ -125,6 +131,9 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
         {"keys present", fmt::format("{}", plan.keys.size())},
         {"cases", fmt::format("{}", caseCount(plan))}};
+    if (outcome.arguments.tracing.advice) {
+        rows.push_back({"strategies", fmt::format("{} (auto)", join(outcome.arguments.tracing.strategies))});
+    }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
     }
@@ -223,8 +232,9 @@ bool addOutputs(const CompiledPackage& package, const CompileArguments& argument
     return addFiles(run.outputs, embedded);
 }
 
-int compile(const Console& console, const CompileArguments& arguments) {
+int compile(const Console& console, const CompileArguments& given) {
     const Clock::time_point start = Clock::now();
+    CompileArguments arguments = given;
     CompileCache cache(arguments.cache, arguments.options);
     const std::optional<int> done = arguments.dryRun || !arguments.planOnly.empty()
                                         ? std::nullopt
@@ -260,6 +270,12 @@ int compile(const Console& console, const CompileArguments& arguments) {
     }
     report(lock->warnings);
     report(lock->notes);
+    if (Status settled = settleStrategies(list, plan->options, arguments); !settled) {
+        return fail(console, settled.error());
+    }
+    if (const std::optional<StrategyAdvice>& advice = arguments.tracing.advice) {
+        console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+    }
     report(effectWarnings(list, settingsOf(arguments, plan->options)));
     if (console.refused()) {
         return kExitFailed;

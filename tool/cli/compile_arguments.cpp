@@ -23,6 +23,7 @@ constexpr const char* kModules = "--modules";
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addTracingLists(command, arguments.tracing);
+    addCalibration(command, arguments.calibration);
     addPlanOptions(command, arguments.plan);
     addProfileInput(command, arguments.plan);
     addLockOptions(command, arguments.lock);
@@ -156,7 +157,8 @@ CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) 
 
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
     std::vector<std::filesystem::path> files;
-    for (const std::string& file : {arguments.plan.profile, arguments.lock.file, arguments.settings}) {
+    for (const std::string& file :
+         {arguments.plan.profile, arguments.lock.file, arguments.settings, arguments.calibration}) {
         if (!file.empty()) {
             files.emplace_back(file);
         }

@@ -23,6 +23,7 @@ struct CompileArguments {
     std::string output;
     std::string embed;  // a C++ source; empty: none
     TracingArguments tracing;
+    std::string calibration;  // a device file; empty: constants that are built in
     std::string variant;
     PlanArguments plan;
     LockArguments lock;

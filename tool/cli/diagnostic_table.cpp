@@ -48,6 +48,15 @@ constexpr DiagnosticInfo kTable[] = {
      "`glint bench --calibrate`: a strategy shows another picture than `uber`; its times don't count."},
     {"calibrate-point", kWarning,
      "`glint bench --calibrate` left out a strategy at a point where it can't run, and says why."},
+    {"calibration-device", kWarning, "The device file of `--calibration` was measured on another device."},
+    {"calibration-format", kError,
+     "A file of `--calibration` is no device file, or its contents are wrong; or so are measurements that "
+     "are to be fitted."},
+    {"calibration-points", kError | kNote,
+     "Measurements of `glint bench --calibrate` can't be used, or are too few for the constants of a "
+     "strategy."},
+    {"calibration-strategies", kError,
+     "`--strategy auto` knows no constants of any strategy that can be used."},
     {"camera", kError,
      "The runtime was given a camera that is no camera: not finite, not orthogonal, or without a range."},
     {"camera-matrix", kError, "The node of a camera squashes it flat."},

@@ -5,9 +5,11 @@
 #include "cli/effect_options.h"
 #include "cli/explain_motion.h"
 #include "cli/explain_plan.h"
+#include "cli/explain_strategies.h"
 #include "cli/lock_option.h"
 #include "cli/plan_choice.h"
 #include "cli/report.h"
+#include "cli/strategy_advice.h"
 #include "cli/table.h"
 #include "emit/json.h"
 #include "gltf/import.h"
@@ -29,6 +31,7 @@ struct ExplainArguments {
     std::string scene;
     std::string material;
     std::string variant;
+    std::string calibration;
     bool wholePlan = false;
     PlanArguments plan;
     LockArguments lock;
@@ -212,6 +215,14 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
     return chosen;
 }
 
+// For a frame of the usual size, with the effects that the scene calls for.
+Result<StrategyAdvice> advise(const KnownCosts& costs, const Planned& planned, const EffectPlan& effects) {
+    FrameShape shape;
+    shape.effects = effects.effects;
+    return adviseStrategy(costs, roundsOf(planned.scenes, planned.plan, planned.options, shape),
+                          runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
+}
+
 int explain(const Console& console, const ExplainArguments& arguments) {
     ImportOptions import;
     import.variant = arguments.variant;
@@ -221,6 +232,11 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
+    const Result<KnownCosts> costs = knownCosts(arguments.calibration, false);
+    if (!costs) {
+        console.report(costs.error());
+        return kExitFailed;
+    }
     const SceneList scenes({&*scene, 1});
     const Result<std::vector<int>> materials = chooseMaterials(scenes, arguments.material);
     if (!materials) {
@@ -252,6 +268,12 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(planText(whole));
         return kExitDone;
     }
+    const EffectPlan effects = automaticEffects(scenes);
+    const Result<StrategyAdvice> advice = advise(*costs, planned, effects);
+    if (!advice) {
+        console.report(advice.error());
+        return kExitFailed;
+    }
     if (console.isJson()) {
         Json result{{"scene", arguments.scene},
                     {"merge", arguments.plan.merge},
@@ -262,7 +284,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         if (arguments.wholePlan) {
             result["plan"] = planToJson(whole);
         } else {
-            result["effects"] = effectsToJson(automaticEffects(scenes));
+            result["effects"] = effectsToJson(effects);
+            result["strategies"] = strategyChoiceToJson(*advice);
             result["motion"] = motionToJson(*scene);
             result["materials"] = Json::array();
             for (const int material : *materials) {
@@ -274,7 +297,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     }
     console.print(variantsText(*scene));
     if (arguments.material.empty()) {
-        console.print(effectsText(automaticEffects(scenes)));
+        console.print(effectsText(effects));
+        console.print(strategiesText(*advice));
         console.print(motionText(*scene));
     }
     for (const int material : *materials) {
@@ -301,6 +325,7 @@ void addExplain(CLI::App& app, Action& chosen) {
             "what shares it and why, instead of materials")
         .excludes(&material);
     addVariant(command, arguments->variant);
+    addCalibration(command, arguments->calibration);
     addPlanOptions(command, arguments->plan);
     addProfileInput(command, arguments->plan);
     addLockInput(command, arguments->lock);

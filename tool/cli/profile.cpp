@@ -1,11 +1,13 @@
 #include "cli/profile.h"
 
 #include "base/files.h"
+#include "cli/json_reader.h"
 #include "cli/report.h"
 
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 namespace glint {
 
@@ -27,81 +29,7 @@ std::vector<std::string> namesOf(FeatureMask mask) {
     return names;
 }
 
-// Reads members with their places; the first thing that is wrong stays in `error`.
-class Reader {
-public:
-    explicit Reader(const std::filesystem::path& path) : path_(path.string()) {}
-
-    bool ok() const {
-        return error_.message.empty();
-    }
-    const Diagnostic& error() const {
-        return error_;
-    }
-
-    void fail(const std::string& pointer, const std::string& message) {
-        if (ok()) {
-            error_ = makeError("profile-format", pointer.empty() ? path_ : path_ + "#" + pointer, message,
-                               "make the profile again with glint render --profile");
-        }
-    }
-
-    // Null, and an error, where `object` lacks the member.
-    const Json* member(const Json& object, const std::string& pointer, const char* name) {
-        const auto found = object.is_object() ? object.find(name) : object.end();
-        if (found == object.end()) {
-            fail(pointer, fmt::format("has no member \"{}\"", name));
-            return nullptr;
-        }
-        return &*found;
-    }
-
-    std::string text(const Json& object, const std::string& pointer, const char* name) {
-        const Json* value = member(object, pointer, name);
-        if (value != nullptr && !value->is_string()) {
-            fail(pointer + "/" + name, "is no string");
-        }
-        return ok() ? value->get<std::string>() : std::string();
-    }
-
-    std::uint64_t count(const Json& object, const std::string& pointer, const char* name) {
-        const Json* value = member(object, pointer, name);
-        if (value != nullptr && (!value->is_number_unsigned() || value->get<std::uint64_t>() > kMaxHits)) {
-            fail(pointer + "/" + name, fmt::format("is no whole number from 0 to {}", kMaxHits));
-        }
-        return ok() ? value->get<std::uint64_t>() : 0;
-    }
-
-    // Calls use(element, its pointer) until one fails.
-    template <typename Use>
-    void each(const Json& object, const std::string& pointer, const char* name, const Use& use) {
-        const Json* list = member(object, pointer, name);
-        if (list != nullptr && !list->is_array()) {
-            fail(pointer + "/" + name, "is no list");
-        }
-        for (std::size_t i = 0; ok() && i < list->size(); ++i) {
-            use((*list)[i], fmt::format("{}/{}/{}", pointer, name, i));
-        }
-    }
-
-    std::vector<std::string> texts(const Json& object, const std::string& pointer, const char* name) {
-        std::vector<std::string> list;
-        each(object, pointer, name, [&](const Json& element, const std::string& place) {
-            if (!element.is_string()) {
-                fail(place, "is no string");
-                return;
-            }
-            list.push_back(element.get<std::string>());
-        });
-        return list;
-    }
-
-private:
-    std::string path_;
-    Diagnostic error_;
-};
-
-void readFormat(Reader& reader, const Json& json) {
+void readFormat(JsonReader& reader, const Json& json) {
     if (!json.is_object()) {
         reader.fail("", "is no JSON object");
         return;
@@ -109,13 +37,13 @@ void readFormat(Reader& reader, const Json& json) {
     if (reader.text(json, "", "format") != kFormat) {
         reader.fail("/format", fmt::format("is not \"{}\"", kFormat));
     }
-    const std::uint64_t version = reader.count(json, "", "version");
+    const std::uint64_t version = reader.count(json, "", "version", kMaxHits);
     if (version != kVersion) {
         reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kVersion));
     }
 }
 
-Profile readMembers(Reader& reader, const Json& json) {
+Profile readMembers(JsonReader& reader, const Json& json) {
     Profile profile;
     reader.each(json, "", "sources", [&](const Json& source, const std::string& place) {
         profile.sources.push_back({reader.text(source, place, "file"), reader.text(source, place, "hash")});
@@ -132,7 +60,7 @@ Profile readMembers(Reader& reader, const Json& json) {
             return;
         }
         profile.keys.push_back({reader.texts(key, place, "features"), reader.texts(key, place, "materials"),
-                                reader.count(key, place, "hits")});
+                                reader.count(key, place, "hits", kMaxHits)});
     });
     return profile;
 }
@@ -180,24 +108,13 @@ std::string toText(const Profile& profile) {
 }
 
 Result<Profile> readProfile(const std::filesystem::path& path) {
-    const Result<Bytes> bytes = readFile(path, kMaxBytes);
-    if (!bytes) {
-        return bytes.error();
+    JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
+    const Result<Json> json = reader.read(kMaxBytes);
+    if (!json) {
+        return json.error();
     }
-    Reader reader(path);
-    Json json;
-    try {
-        json = Json::parse(bytes->begin(), bytes->end());
-    } catch (const Json::parse_error& error) {
-        reader.fail("", fmt::format("is no JSON: byte {} is wrong", error.byte));
-        return reader.error();
-    } catch (const Json::exception&) {
-        // Not of the syntax: a number that no double holds.
-        reader.fail("", "holds a number that is too large");
-        return reader.error();
-    }
-    readFormat(reader, json);
-    Profile profile = reader.ok() ? readMembers(reader, json) : Profile{};
+    readFormat(reader, *json);
+    Profile profile = reader.ok() ? readMembers(reader, *json) : Profile{};
     return reader.ok() ? Result<Profile>(std::move(profile)) : Result<Profile>(reader.error());
 }
 

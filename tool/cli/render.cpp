@@ -12,6 +12,7 @@
 #include "cli/render_report.h"
 #include "cli/render_setup.h"
 #include "cli/scene_view.h"
+#include "cli/strategy_advice.h"
 #include "cli/validation_messages.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
@@ -110,6 +111,26 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
         "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
 }
 
+// Replaces --strategy auto by the strategy that is expected to be fastest.
+Status settleStrategy(const Console& console, const PlanOptions& plan, const Context& context,
+                      const Scene& scene, RenderArguments& arguments, RenderReport& report) {
+    if (arguments.tracing.strategies.front() != kAutoStrategy) {
+        return okStatus();
+    }
+    std::vector<Diagnostic> warnings;
+    Result<StrategyAdvice> advice = adviseRender(arguments, plan, context, scene, warnings);
+    console.report(warnings);
+    if (!advice) {
+        return advice.error();
+    }
+    console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+    report.strategy = advice->choice.strategy;
+    report.strategyChoice = *advice;
+    arguments.tracing.strategies = {advice->choice.strategy};
+    arguments.tracing.advice = std::move(*advice);
+    return okStatus();
+}
+
 // What follows the pictures.
 Status writeResults(const RenderArguments& arguments, const RenderReport& report) {
     if (!arguments.coverage.empty()) {
@@ -147,8 +168,9 @@ Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const R
 }
 
 // Everything between the scene and the files.
-Status render(const Console& console, const RenderArguments& arguments, Scene& scene, const SceneList& scenes,
+Status render(const Console& console, const RenderArguments& given, Scene& scene, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
+    RenderArguments arguments = given;
     const Result<std::optional<Movement>> movement = chooseMovement(arguments.motion, scene);
     if (!movement) {
         return movement.error();
@@ -170,6 +192,9 @@ Status render(const Console& console, const RenderArguments& arguments, Scene& s
     report.start.deviceMs = millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
+    if (Status settled = settleStrategy(console, plan, **context, scene, arguments, report); !settled) {
+        return settled;
+    }
     const Result<std::unique_ptr<Environment>> environment =
         obtainEnvironment(console, arguments, **context, report);
     if (!environment) {

@@ -105,6 +105,7 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& ar
     addEffectFrameOptions(command, arguments.effectFrame);
     addFrameOptions(command, arguments.frame);
     const std::vector<CLI::Option*> placed = addTracingChoice(command, arguments.tracing);
+    addCalibration(command, arguments.calibration);
     std::vector<CLI::Option*> decided = addPlanOptions(command, arguments.plan);
     for (CLI::Option* option : addAccuracyOptions(command, arguments.accuracy)) {
         decided.push_back(option);

@@ -46,6 +46,7 @@ struct RenderArguments {
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
     PipelineArguments pipelines;
+    std::string calibration;  // a device file; empty: constants that are built in
 
     // Whether the picture has a light that the scene lacks.
     bool addsSun(const Scene& given) const {

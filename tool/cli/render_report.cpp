@@ -1,6 +1,7 @@
 #include "cli/render_report.h"
 
 #include "cli/table.h"
+#include "emit/json.h"
 
 #include <fmt/format.h>
 
@@ -173,6 +174,8 @@ Json toJson(const RenderReport& report) {
             {"device", report.device},
             {"driver", report.driver},
             {"strategy", report.strategy},
+            {"strategyChoice",
+             report.strategyChoice ? strategyChoiceToJson(*report.strategyChoice) : Json(nullptr)},
             {"tracer", report.tracer},
             {"ordering", orNull(report.ordering)},
             {"merge", orNull(report.merge)},
@@ -227,8 +230,9 @@ std::string toText(const RenderReport& report) {
         {"image",
          fmt::format("{}, {} x {}, {} spp", filesOf(report), report.width, report.height, report.samples)},
         {"device", fmt::format("{} ({})", report.device, report.driver)},
-        {"strategy", fmt::format("{}, {}, {} case{}", report.strategy, report.tracer, report.cases,
-                                 report.cases == 1 ? "" : "s")},
+        {"strategy",
+         fmt::format("{}{}, {}, {} case{}", report.strategy, report.strategyChoice ? " (auto)" : "",
+                     report.tracer, report.cases, report.cases == 1 ? "" : "s")},
         {"camera", report.camera},
         {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},

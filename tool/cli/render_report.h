@@ -4,6 +4,7 @@
 #include "cli/memory_table.h"
 #include "cli/pipeline_report.h"
 #include "cli/report.h"
+#include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
 #include <glint/renderer.h>
@@ -39,6 +40,7 @@ struct RenderReport {
     std::string device;
     std::string driver;
     std::string strategy;
+    std::optional<StrategyAdvice> strategyChoice;  // with --strategy auto
     std::string tracer;
     std::optional<std::string> ordering;  // of hits, where the strategy orders them
     std::optional<std::string> merge;     // absent: a package was given

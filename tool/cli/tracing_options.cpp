@@ -20,6 +20,11 @@ std::vector<std::string> namesOf(const Values& values) {
     return names;
 }
 
+std::vector<std::string> withAuto(std::vector<std::string> names) {
+    names.emplace_back(kAutoStrategy);
+    return names;
+}
+
 std::vector<std::string> withAll(std::vector<std::string> names) {
     names.emplace_back("all");
     return names;
@@ -88,6 +93,7 @@ void TracingArguments::apply(CompileSettings& settings, std::uint32_t available)
                                            : package::kTracerRayPipeline;
     }
     settings.positionFetch = positionFetch;
+    settings.strategyChoice = advice;
     settings.shadows =
         shadows == "deferred" ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
     settings.hitRecord =
@@ -97,13 +103,13 @@ void TracingArguments::apply(CompileSettings& settings, std::uint32_t available)
 void addTracingLists(CLI::App& command, TracingArguments& arguments) {
     arguments.strategies = {"uber", "visibility"};
     arguments.tracers = {"ray-query"};
-    addChoices(command, "--strategy", arguments.strategies, withAll(namesOf(package::kStrategies)),
+    addChoices(command, "--strategy", arguments.strategies, withAuto(withAll(namesOf(package::kStrategies))),
                "how hits can be shaded, separated by commas;\n"
                "uber: one shader traces and shades; visibility: hits\n"
                "are ordered by shader first, one dispatch a shader;\n"
                "sorted-uber: ordered, and one dispatch; hit-shaders: a\n"
-               "ray tracing pipeline")
-        .type_name(kAllOrList)
+               "ray tracing pipeline; auto: that which should be fastest\nat 1920x1080, by --calibration")
+        .type_name("auto|all|LIST")
         ->group("Shaders");
     addChoices(command, "--tracer", arguments.tracers, withAll(namesOf(package::kTracers)),
                "what traces rays, separated by commas; ray-pipeline: for\n"
@@ -111,6 +117,13 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments) {
         .type_name(kAllOrList)
         ->group("Shaders");
     addPlacement(command, arguments);
+}
+
+void addCalibration(CLI::App& command, std::string& file) {
+    addText(command, "--calibration", file, "FILE.json",
+            "device.json of `glint bench --calibrate`: what strategies\n"
+            "cost on a device (default: constants that are built in)")
+        .group("Shaders");
 }
 
 void checkTracingChoice(const TracingArguments& arguments) {
@@ -128,11 +141,12 @@ std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& 
     arguments.tracers = {"auto"};
     std::vector<std::string> tracers = namesOf(package::kTracers);
     tracers.insert(tracers.begin(), "auto");
-    addChoice(command, "--strategy", arguments.strategies.front(), namesOf(package::kStrategies),
+    addChoice(command, "--strategy", arguments.strategies.front(), withAuto(namesOf(package::kStrategies)),
               "how hits are shaded; uber: one shader traces and\n"
               "shades; visibility: hits are ordered by shader first,\n"
               "one dispatch a shader; sorted-uber: ordered, and one\n"
-              "dispatch; hit-shaders: a ray tracing pipeline")
+              "dispatch; hit-shaders: a ray tracing pipeline; auto: that\nwhich should be fastest, by "
+              "--calibration")
         .group("Shaders");
     addChoice(
         command, "--tracer", arguments.tracers.front(), tracers,

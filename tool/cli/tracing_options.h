@@ -6,10 +6,14 @@
 
 #include <glint/renderer.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
+
+// The value of --strategy that a cost model replaces by one of the others (cli/strategy_advice.h).
+inline constexpr const char* kAutoStrategy = "auto";
 
 // What a package can do. Strategies and tracers are lists for `compile`, and one value each for `render`.
 struct TracingArguments {
@@ -18,6 +22,7 @@ struct TracingArguments {
     std::string shadows = "inline";
     std::string hitRecord = "full";
     bool positionFetch = false;
+    std::optional<StrategyAdvice> advice{};  // where a strategy was auto, which has been resolved
     // `available`: Tracer bits among which "auto" chooses, ray queries first.
     void apply(CompileSettings& settings, std::uint32_t available = package::kTracerRayQuery) const;
 };
@@ -26,6 +31,9 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments);
 // --strategy and --tracer of one value, --shadows, --hit-record, --position-fetch. Returns what a package
 // decides: all but the first.
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
+
+// --calibration: the device file that --strategy auto chooses by; `file` is empty without.
+void addCalibration(CLI::App& command, std::string& file);
 
 // Throws a CLI::ParseError where the tracer can't run the strategy.
 void checkTracingChoice(const TracingArguments& arguments);

@@ -5,6 +5,7 @@
 #include "gltf/scene.h"
 #include "plan/effects.h"
 #include "plan/plan.h"
+#include "plan/strategy_choice.h"
 #include "spirv/statistics.h"
 
 #include <glint/package_modules.h>
@@ -12,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,6 +49,8 @@ struct CompileSettings {
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // the flattened sources, in glsl/
     bool debugInfo = false;  // keep names in the SPIR-V
+    // How `strategies` came about, for the manifest; absent: they were named.
+    std::optional<StrategyAdvice> strategyChoice{};
     // Where `glint compile-module` left the modules; empty: they are compiled.
     std::filesystem::path modules{};
 };

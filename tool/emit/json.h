@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan/effects.h"
+#include "plan/strategy_choice.h"
 
 #include <glint/package_modules.h>
 
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace glint {
@@ -23,6 +25,46 @@ inline nlohmann::ordered_json countToJson(double count) {
 // A share of hits to four decimals, which is more than is known of it.
 inline nlohmann::ordered_json shareToJson(double share) {
     return std::round(share * 1e4) / 1e4;
+}
+
+// An estimate to four digits, which is more than is known of it, and the same on every machine.
+inline nlohmann::ordered_json estimateToJson(double value) {
+    if (value == 0.0 || !std::isfinite(value)) {
+        return 0.0;
+    }
+    const double scale = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(value))));
+    return scale >= 1.0 ? std::round(value * scale) / scale : std::round(value);
+}
+
+// Which strategy was chosen, or would be, and what each was expected to take.
+inline nlohmann::ordered_json strategyChoiceToJson(const StrategyAdvice& advice) {
+    const FrameFacts& facts = advice.choice.facts;
+    nlohmann::ordered_json estimates = nlohmann::ordered_json::array();
+    for (const StrategyEstimate& estimate : advice.choice.estimates) {
+        nlohmann::ordered_json parts = nlohmann::ordered_json::object();
+        for (const CostTermInfo& info : costTerms()) {
+            if (hasTerm(estimate.strategy, info.term)) {
+                parts[std::string(info.name)] =
+                    estimateToJson(estimate.parts[static_cast<std::size_t>(info.term)]);
+            }
+        }
+        estimates.push_back({{"strategy", estimate.strategy},
+                             {"available", estimate.available},
+                             {"milliseconds", estimateToJson(estimate.ms)},
+                             {"parts", parts}});
+    }
+    return {{"strategy", advice.choice.strategy},
+            {"why", advice.choice.why},
+            {"device", advice.device},
+            {"builtIn", advice.builtIn},
+            {"pixels", advice.pixels},
+            {"rays", estimateToJson(facts.rays)},
+            {"hits", estimateToJson(facts.hits)},
+            {"cases", facts.cases},
+            {"instructions", estimateToJson(facts.instructions)},
+            {"coherence", shareToJson(facts.coherence)},
+            {"casesRun", estimateToJson(facts.casesRun)},
+            {"estimates", estimates}};
 }
 
 // Which of a case's modules this is, by what it is for.

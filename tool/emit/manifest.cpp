@@ -216,6 +216,8 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["toolVersion"] = toolVersion();
     manifest["scenes"] = sceneList(scenes);
     manifest["strategies"] = strategyNames(settings.strategies);
+    manifest["strategyChoice"] =
+        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : Json(nullptr);
     manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = toString(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);

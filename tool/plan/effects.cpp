@@ -134,6 +134,14 @@ constexpr std::uint32_t kRefinements = package::kEffectAmbientOcclusion | packag
 
 }  // namespace
 
+bool sendsRays(package::Effect effect, const Material& material, float maxReflectionRoughness) {
+    const Material* const alone[] = {&material};
+    EffectRequest request;
+    request.maxReflectionRoughness = maxReflectionRoughness;
+    return package::effectInfo(effect).kind == package::EffectKind::Rays &&
+           find(effect, alone, {}, request).usable;
+}
+
 EffectPlan decideEffects(std::span<const Material* const> materials, const SceneLights& lights,
                          const EffectRequest& request) {
     EffectPlan plan;

@@ -42,4 +42,8 @@ struct EffectPlan {
 EffectPlan decideEffects(std::span<const Material* const> materials, const SceneLights& lights,
                          const EffectRequest& request);
 
+// Whether pixels of this material send rays of an effect of the kind Rays, as far as its factors tell: a
+// texture may make some of it rougher, or black.
+bool sendsRays(package::Effect effect, const Material& material, float maxReflectionRoughness);
+
 }  // namespace glint

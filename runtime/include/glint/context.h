@@ -108,6 +108,7 @@ public:
     std::string deviceName() const;
     std::string driverName() const;
     VkPhysicalDeviceType deviceType() const;
+    std::uint32_t subgroupSize() const;  // lanes
     // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
     std::vector<std::string> validationMessages() const;
 

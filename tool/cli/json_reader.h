@@ -1,0 +1,62 @@
+// Reads JSON files that Glint itself writes, member by member, and says where one is not as it should be.
+#pragma once
+
+#include "cli/report.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// The first thing that is wrong stays: what is read after it are empty values.
+class JsonReader {
+public:
+    // `id` and `hint` of its errors.
+    JsonReader(const std::filesystem::path& path, std::string id, std::string hint)
+        : path_(path.string()), id_(std::move(id)), hint_(std::move(hint)) {}
+
+    // The whole file, of at most `mostBytes`. Errors "file-open", "file-read" and that of the reader.
+    Result<Json> read(std::uint64_t mostBytes);
+
+    bool ok() const {
+        return error_.message.empty();
+    }
+    const Diagnostic& error() const {
+        return error_;
+    }
+    // `pointer`: of the place in the file; empty: all of it.
+    void fail(const std::string& pointer, const std::string& message);
+
+    // Null, and an error, where `object` lacks the member.
+    const Json* member(const Json& object, const std::string& pointer, const char* name);
+    std::string text(const Json& object, const std::string& pointer, const char* name);
+    bool flag(const Json& object, const std::string& pointer, const char* name);
+    std::uint64_t count(const Json& object, const std::string& pointer, const char* name, std::uint64_t most);
+    double number(const Json& object, const std::string& pointer, const char* name, double least,
+                  double most);
+    std::vector<std::string> texts(const Json& object, const std::string& pointer, const char* name);
+
+    // Calls use(element, its pointer) until one fails.
+    template <typename Use>
+    void each(const Json& object, const std::string& pointer, const char* name, const Use& use) {
+        const Json* list = member(object, pointer, name);
+        if (list != nullptr && !list->is_array()) {
+            fail(pointer + "/" + name, "is no list");
+        }
+        for (std::size_t i = 0; ok() && i < list->size(); ++i) {
+            use((*list)[i], pointer + "/" + name + "/" + std::to_string(i));
+        }
+    }
+
+private:
+    std::string path_;
+    std::string id_;
+    std::string hint_;
+    Diagnostic error_;
+};
+
+}  // namespace glint

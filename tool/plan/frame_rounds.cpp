@@ -1,0 +1,129 @@
+#include "plan/frame_rounds.h"
+
+#include "plan/cost.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace glint {
+
+namespace {
+
+double coherenceOf(package::Effect effect, const Material& material) {
+    switch (effect) {
+        case package::kEffectReflection: {
+            const float roughness = material.specularGlossiness.given
+                                        ? 1.0F - material.specularGlossiness.glossinessFactor
+                                        : material.roughnessFactor;
+            const bool coated =
+                material.clearcoat.factor > 0.0F && material.clearcoat.roughnessFactor <= kMirrorRoughness;
+            return roughness <= kMirrorRoughness || coated ? kMirrorCoherence : kGlossyCoherence;
+        }
+        case package::kEffectRefraction:
+            return kRefractionCoherence;
+        default:
+            return kDiffuseCoherence;
+    }
+}
+
+// Shares of the surfaces in the picture that primitives have: equal ones where nothing is known.
+std::vector<double> surfaceShares(std::span<const PrimitiveInputs> primitives) {
+    std::vector<double> shares;
+    for (const PrimitiveInputs& inputs : primitives) {
+        shares.push_back(std::max(0.0, inputs.expectedHits));
+    }
+    const double all = std::accumulate(shares.begin(), shares.end(), 0.0);
+    for (double& share : shares) {
+        share = all > 0.0 ? share / all : 1.0 / static_cast<double>(shares.size());
+    }
+    return shares;
+}
+
+// The rays of both lists in one.
+void join(Round& all, const Round& round) {
+    const double rays = all.rays + round.rays;
+    if (rays > 0.0) {
+        all.coherence = (all.rays * all.coherence + round.rays * round.coherence) / rays;
+        all.scatter = (all.rays * all.scatter + round.rays * round.scatter) / rays;
+    }
+    all.rays = rays;
+}
+
+}  // namespace
+
+std::vector<CaseFeatures> caseFeatures(const Plan& plan) {
+    std::vector<CaseFeatures> cases;
+    for (const Case& shaderCase : plan.cases) {
+        cases.push_back({shaderCase.always, shaderCase.sometimes, shaderCase.isRetired()});
+    }
+    return cases;
+}
+
+std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
+                               std::span<const PrimitiveInputs> primitives, std::size_t first) {
+    const bool counted = countsHits(options);
+    std::vector<CaseHits> hits;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const Key& key = plan.keys[static_cast<std::size_t>(plan.keyOfPrimitive[first + i])];
+        // A count is of a key, which its primitives share.
+        const double share = key.share / static_cast<double>(key.primitives.size());
+        hits.push_back({key.shaderId, counted ? share : std::max(0.0, primitives[i].expectedHits)});
+    }
+    return hits;
+}
+
+std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits) {
+    std::vector<double> byCase(cases.size());
+    double all = 0.0;
+    for (const CaseHits& entry : hits) {
+        byCase[static_cast<std::size_t>(entry.shaderId)] += entry.hits;
+        all += entry.hits;
+    }
+    std::vector<RoundCase> result;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (!cases[i].retired) {
+            const CodeEstimate code = estimateCode(cases[i].always, cases[i].sometimes);
+            result.push_back({all > 0.0 ? byCase[i] / all : 0.0, code.instructions, code.fetches});
+        }
+    }
+    for (RoundCase& entry : result) {
+        entry.share = all > 0.0 ? entry.share : 1.0 / static_cast<double>(result.size());
+    }
+    return result;
+}
+
+std::vector<Round> frameRounds(std::span<const Material> materials,
+                               std::span<const PrimitiveInputs> primitives,
+                               const std::vector<RoundCase>& cases, const FrameShape& shape) {
+    const std::vector<double> shares = surfaceShares(primitives);
+    std::vector<Round> rounds;
+    for (const package::EffectInfo& info : package::kEffects) {
+        if ((shape.effects & info.effect) == 0 || info.kind != package::EffectKind::Rays) {
+            continue;
+        }
+        Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
+        double senders = 0.0;  // of the surfaces in the picture
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
+            if (sendsRays(info.effect, material, shape.maxReflectionRoughness)) {
+                senders += shares[i];
+                round.coherence += shares[i] * coherenceOf(info.effect, material);
+            }
+        }
+        if (senders <= 0.0) {
+            continue;
+        }
+        round.coherence /= senders;
+        // Where rays part, what they hit is as different as the scene has it.
+        round.scatter = 1.0 - round.coherence;
+        round.rays = shape.pixels * kSurfaceShare * std::min(senders, 1.0);
+        if (shape.batchEffects && !rounds.empty()) {
+            join(rounds.front(), round);
+        } else {
+            rounds.push_back(std::move(round));
+        }
+    }
+    return rounds;
+}
+
+}  // namespace glint

@@ -1,0 +1,156 @@
+#include "plan/strategy_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace glint {
+
+namespace {
+
+double partOf(const StrategyEstimate& estimate, CostTerm term) {
+    return estimate.parts[static_cast<std::size_t>(term)];
+}
+
+// Three digits, as no estimate has more.
+std::string milliseconds(double ms) {
+    return ms < 1000.0 ? fmt::format("{:.3g} ms", ms) : fmt::format("{:.0f} ms", ms);
+}
+
+std::string whole(double count) {
+    const std::string digits = fmt::format("{:.0f}", count);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        const bool opensGroup = i > 0 && (digits.size() - i) % 3 == 0;
+        text += opensGroup ? "," : "";
+        text += digits[i];
+    }
+    return text;
+}
+
+const StrategyEstimate* find(const StrategyChoice& choice, std::string_view strategy) {
+    const auto row = std::ranges::find(choice.estimates, strategy, &StrategyEstimate::strategy);
+    return row == choice.estimates.end() ? nullptr : &*row;
+}
+
+bool ordersHits(std::string_view strategy) {
+    return hasTerm(strategy, CostTerm::Buckets);
+}
+
+// What rays find, in numbers.
+std::string factsText(const FrameFacts& facts) {
+    const std::string alike = facts.coherence >= 0.75  ? "mostly alike"
+                              : facts.coherence > 0.25 ? "partly alike"
+                                                       : "unlike";
+    std::string text = fmt::format("{} rays, {} case{}, {} instructions a hit, hits of neighbouring rays {}",
+                                   whole(facts.rays), facts.cases, facts.cases == 1 ? "" : "s",
+                                   whole(facts.instructions), alike);
+    if (facts.cases > 1) {
+        text +=
+            fmt::format(": a subgroup of unsorted hits runs {:.1f} cases one after another", facts.casesRun);
+    }
+    return text + ".";
+}
+
+// The best of the other kind: what ordering would spare or has spared.
+const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
+    const StrategyEstimate* best = nullptr;
+    for (const StrategyEstimate& other : choice.estimates) {
+        const bool rivals = other.available && ordersHits(other.strategy) != ordersHits(choice.strategy);
+        if (rivals && (best == nullptr || other.ms < best->ms)) {
+            best = &other;
+        }
+    }
+    return best;
+}
+
+// How the two differ, part by part.
+std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimate& rival) {
+    const bool ordered = ordersHits(chosen.strategy);
+    const StrategyEstimate& sorted = ordered ? chosen : rival;
+    const StrategyEstimate& unsorted = ordered ? rival : chosen;
+    const auto waits = [](const StrategyEstimate& row) {
+        return partOf(row, CostTerm::Divergence) + partOf(row, CostTerm::Code);
+    };
+    const double spared = waits(unsorted) - waits(sorted);
+    const double shading = partOf(sorted, CostTerm::Instructions) - partOf(unsorted, CostTerm::Instructions);
+    const double around = sorted.ms - unsorted.ms + spared - shading;
+    return fmt::format(
+        "{} is expected to take {}, {} {} ({:.2f} times): ordering {} {} of divergence, {} {} of launches, "
+        "records and order, and {} {} of shading.",
+        chosen.strategy, milliseconds(chosen.ms), rival.strategy, milliseconds(rival.ms),
+        rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "spares",
+        milliseconds(std::abs(spared)), around < 0.0 ? "spares" : "adds", milliseconds(std::abs(around)),
+        shading < 0.0 ? "spares" : "adds", milliseconds(std::abs(shading)));
+}
+
+void explain(StrategyChoice& choice) {
+    if (choice.facts.rays <= 0.0) {
+        choice.why = "No effect sends rays whose hits are shaded: strategies do not differ.";
+        return;
+    }
+    choice.why = factsText(choice.facts);
+    const StrategyEstimate* const chosen = find(choice, choice.strategy);
+    if (const StrategyEstimate* const rival = rivalOf(choice)) {
+        choice.why += fmt::format(" {}", comparisonText(*chosen, *rival));
+    } else {
+        choice.why += fmt::format(
+            " {} is expected to take {}; nothing else can be chosen that treats hits "
+            "otherwise.",
+            choice.strategy, milliseconds(chosen->ms));
+    }
+}
+
+}  // namespace
+
+FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize) {
+    FrameFacts facts;
+    for (const Round& round : rounds) {
+        const double hits = round.rays * round.hitShare;
+        facts.rays += round.rays;
+        facts.hits += hits;
+        facts.cases = std::max(facts.cases, round.cases.size());
+        facts.coherence += round.rays * round.coherence;
+        facts.instructions += round.rays * instructionsRun(round, 1.0);
+        facts.casesRun += hits * casesRun(round, subgroupSize);
+    }
+    facts.coherence /= std::max(facts.rays, 1e-12);
+    facts.instructions /= std::max(facts.hits, 1e-12);
+    facts.casesRun /= std::max(facts.hits, 1e-12);
+    return facts;
+}
+
+std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,
+                                             std::span<const std::string> available) {
+    StrategyChoice choice;
+    choice.facts = factsOf(rounds, device.subgroupSize);
+    const StrategyEstimate* best = nullptr;
+    choice.estimates.reserve(std::size(kStrategyNames));  // `best` stays valid
+    for (const std::string_view name : kStrategyNames) {
+        const StrategyCosts* const costs = findCosts(device, name);
+        if (costs == nullptr) {
+            continue;
+        }
+        StrategyEstimate& row = choice.estimates.emplace_back();
+        row.strategy = name;
+        row.available = std::ranges::find(available, name) != available.end();
+        for (const Round& round : rounds) {
+            const TermValues parts = estimate(round, *costs, device.subgroupSize);
+            std::ranges::transform(row.parts, parts, row.parts.begin(), std::plus());
+        }
+        row.ms = std::accumulate(row.parts.begin(), row.parts.end(), 0.0);
+        if (row.available && (best == nullptr || row.ms < best->ms)) {
+            best = &row;
+        }
+    }
+    if (best == nullptr) {
+        return std::nullopt;
+    }
+    choice.strategy = best->strategy;
+    explain(choice);
+    return choice;
+}
+
+}  // namespace glint
