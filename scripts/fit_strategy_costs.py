@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 HEADER = ROOT / "tool/plan/strategy_constants.h"
 PROGRAM = ROOT / "build/release/bin/glint_fit_strategies"
 TYPES = ("gpu", "cpu")
-TERMS = ["launchesMs", "casesMs", "raysNs", "incoherenceNs", "bucketsNs", "instructionsPs", "divergencePs", "codePs"]
+TERMS = ["launchesMs", "casesMs", "raysNs", "incoherenceNs", "bucketsNs", "instructionsPs", "divergencePs", "codePs", "missesPs"]
 
 
 def device_file(kind):

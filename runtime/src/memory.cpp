@@ -9,8 +9,10 @@
 namespace glint {
 namespace {
 
-// Large enough that 4096 allocations, the least that maxMemoryAllocationCount may be, make 256 GiB.
+// Large enough that 4096 allocations, the least that maxMemoryAllocationCount may be, make 256 GiB. Blocks of
+// a type double up to it, so that what is small takes little.
 constexpr VkDeviceSize kBlockBytes = VkDeviceSize{64} << 20;
+constexpr VkDeviceSize kFirstBlockBytes = VkDeviceSize{1} << 20;
 
 VkMemoryPropertyFlags requiredFlags(MemoryUse use) {
     return use == MemoryUse::Device
@@ -108,7 +110,11 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     if (block == blocks_.end()) {
         // An eighth of the heap keeps small heaps from being taken by one block.
         const VkDeviceSize heap = memory.memoryHeaps[memory.memoryTypes[*type].heapIndex].size;
-        const VkDeviceSize usual = std::min(kBlockBytes, heap / 8);
+        VkDeviceSize taken = kFirstBlockBytes;
+        for (const Block& other : blocks_) {
+            taken += other.type == *type && other.tiling == tiling ? other.bytes : 0;
+        }
+        const VkDeviceSize usual = std::min({kBlockBytes, heap / 8, taken});
         Result<Block> made =
             makeBlock(*type, tiling, std::max(usual, requirements.size), use != MemoryUse::Device);
         if (!made) {

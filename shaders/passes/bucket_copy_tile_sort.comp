@@ -34,12 +34,12 @@ uint sortedPlace(uint place) {
 }
 
 // Takes slots of every bucket for the tile's hits.
-void takeSlots() {
+void takeSlots(CounterArray cursors) {
     for (uint bucket = gl_LocalInvocationIndex; bucket < kLocalBuckets; bucket += kThreads) {
         uint begin = tile[bucket * kStride];
         uint end = tile[(bucket + 1u) * kStride];
         if (end > begin) {
-            slotOffsets[bucket] = atomicAdd(GLINT_FRAME.bucketCursors.data[bucket], end - begin) - begin;
+            slotOffsets[bucket] = atomicAdd(cursors.data[bucket], end - begin) - begin;
         }
     }
 }
@@ -62,6 +62,9 @@ void scanCounters() {
 
 void main() {
     uint rays = GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
+    // What is written may be the constants, as far as a compiler knows: read once, an address is not read anew.
+    OrderedArray slots = GLINT_FRAME.orderedHits;
+    CounterArray cursors = GLINT_FRAME.bucketCursors;
     uint first = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kTileHits;
     if (first >= rays) {
         return;
@@ -91,7 +94,7 @@ void main() {
     barrier();
     scanCounters();
     barrier();
-    takeSlots();
+    takeSlots(cursors);
     [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
         sorted[k] += tile[(sorted[k] >> 16) * kStride + copy];
     }
@@ -102,6 +105,6 @@ void main() {
     barrier();
     for (uint place = gl_LocalInvocationIndex; place < hits; place += kThreads) {
         uint hit = tile[sortedPlace(place)];
-        GLINT_FRAME.orderedHits.data[slotOffsets[hit >> 16] + place] = first + (hit & 0xFFFFu);
+        slots.data[slotOffsets[hit >> 16] + place] = first + (hit & 0xFFFFu);
     }
 }

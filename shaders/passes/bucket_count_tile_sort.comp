@@ -38,18 +38,19 @@ void countKeys(uvec4 keys, uint count) {
 
 void countAllKeys() {
     uint rays = GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
+    KeyArray list = GLINT_FRAME.bucketKeys;
     uint vectors = (rays + kKeysOfVector - 1u) / kKeysOfVector;
     uint stride = gl_NumWorkGroups.x * kCountGroupSize;
     uint i = gl_WorkGroupID.x * kCountGroupSize + gl_LocalInvocationIndex;
     // Two vectors on their way at once.
     for (; i + stride < vectors; i += 2u * stride) {
-        uvec4 keys = GLINT_FRAME.bucketKeys.data[i];
-        uvec4 next = GLINT_FRAME.bucketKeys.data[i + stride];
+        uvec4 keys = list.data[i];
+        uvec4 next = list.data[i + stride];
         countKeys(keys, rays - i * kKeysOfVector);
         countKeys(next, rays - (i + stride) * kKeysOfVector);
     }
     if (i < vectors) {
-        countKeys(GLINT_FRAME.bucketKeys.data[i], rays - i * kKeysOfVector);
+        countKeys(list.data[i], rays - i * kKeysOfVector);
     }
 }
 

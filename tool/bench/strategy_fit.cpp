@@ -2,6 +2,7 @@
 
 #include "bench/least_squares.h"
 #include "bench/statistics.h"
+#include "plan/strategy_choice.h"
 
 #include <fmt/format.h>
 
@@ -197,7 +198,10 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
             if (estimated == own->second.end()) {
                 continue;
             }
-            if (taken.empty() || estimated->second < own->second.find(taken)->second) {
+            const auto cases =
+                static_cast<std::size_t>(sample.terms[static_cast<std::size_t>(CostTerm::Cases)]);
+            if (taken.empty() || isBetterChoice({strategy, estimated->second},
+                                                {taken, own->second.find(taken)->second}, cases)) {
                 taken = strategy;
             }
             if (fastest.empty() || sample.ms.find(strategy)->second < sample.ms.find(fastest)->second) {

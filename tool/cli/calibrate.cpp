@@ -5,8 +5,10 @@
 #include "cli/calibrate_group.h"
 #include "cli/calibrate_measure.h"
 #include "cli/calibrate_report.h"
+#include "cli/calibration_points.h"
 #include "cli/command_line.h"
 #include "cli/compile_cache.h"
+#include "cli/device_file.h"
 #include "cli/validation_messages.h"
 
 #include <fmt/format.h>
@@ -17,6 +19,8 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -28,6 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kDeviceFile = "device.json";
 
 std::vector<std::uint32_t> usualCases(bool quick) {
     return quick ? std::vector<std::uint32_t>{1, 16, 64} : std::vector<std::uint32_t>{1, 4, 16, 64, 256};
@@ -255,6 +261,29 @@ Status measureAll(const Console& console, const BenchArguments& arguments, Calib
     return done;
 }
 
+// From the measurements as the file has them: as scripts/fit_strategy_costs.py fits them, too. Too few are no
+// error: the measurements stand.
+Result<std::string> fit(const Console& console, const fs::path& folder) {
+    Result<CalibrationPoints> read = readCalibrationPoints(folder / kCalibrationFile);
+    if (!read) {
+        return read.error();
+    }
+    std::vector<Diagnostic> notes;
+    const Result<DeviceFile> fitted = fitDevice(std::move(read->device), read->points, notes);
+    console.report(notes);
+    if (!fitted) {
+        Diagnostic note = fitted.error();
+        note.severity = Severity::Note;
+        console.report(note);
+        return std::string();
+    }
+    if (Status written = writeFile(folder / kDeviceFile, toText(*fitted)); !written) {
+        return written.error();
+    }
+    return fmt::format("\n{}\n{}: give it to --calibration, and --strategy auto goes by this device.\n",
+                       describe(*fitted), (folder / kDeviceFile).string());
+}
+
 }  // namespace
 
 int calibrate(const Console& console, const BenchArguments& arguments) {
@@ -268,6 +297,11 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
         console.report(done.error());
         return kExitFailed;
     }
+    const Result<std::string> fitted = fit(console, arguments.output);
+    if (!fitted) {
+        console.report(fitted.error());
+        return kExitFailed;
+    }
     if (console.refused()) {
         return kExitFailed;
     }
@@ -277,6 +311,7 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
         console.print(toText(report));
         console.print(fmt::format("\n{} has the same numbers.\n",
                                   (fs::path(arguments.output) / kCalibrationFile).string()));
+        console.print(*fitted);
     }
     return kExitDone;
 }

@@ -72,7 +72,8 @@ std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimat
     const StrategyEstimate& sorted = ordered ? chosen : rival;
     const StrategyEstimate& unsorted = ordered ? rival : chosen;
     const auto waits = [](const StrategyEstimate& row) {
-        return partOf(row, CostTerm::Divergence) + partOf(row, CostTerm::Code);
+        return partOf(row, CostTerm::Divergence) + partOf(row, CostTerm::Code) +
+               partOf(row, CostTerm::Misses);
     };
     const double spared = waits(unsorted) - waits(sorted);
     const double shading = partOf(sorted, CostTerm::Instructions) - partOf(unsorted, CostTerm::Instructions);
@@ -104,6 +105,13 @@ void explain(StrategyChoice& choice) {
 }
 
 }  // namespace
+
+bool isBetterChoice(const ChoiceTime& a, const ChoiceTime& b, std::size_t cases) {
+    if (cases <= 1 && ordersHits(a.strategy) != ordersHits(b.strategy)) {
+        return ordersHits(b.strategy);
+    }
+    return a.ms < b.ms;
+}
 
 FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize) {
     FrameFacts facts;
@@ -141,7 +149,9 @@ std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, cons
             std::ranges::transform(row.parts, parts, row.parts.begin(), std::plus());
         }
         row.ms = std::accumulate(row.parts.begin(), row.parts.end(), 0.0);
-        if (row.available && (best == nullptr || row.ms < best->ms)) {
+        if (row.available &&
+            (best == nullptr ||
+             isBetterChoice({row.strategy, row.ms}, {best->strategy, best->ms}, choice.facts.cases))) {
             best = &row;
         }
     }

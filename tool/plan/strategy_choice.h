@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -29,6 +30,15 @@ struct FrameFacts {
 };
 FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize);
 
+// A strategy and what it is expected to take.
+struct ChoiceTime {
+    std::string_view strategy;
+    double ms = 0.0;
+};
+// Whether a is taken rather than b: the faster one, but of one case none that orders hits, as there is
+// nothing to order; that an estimate says otherwise is its error.
+bool isBetterChoice(const ChoiceTime& a, const ChoiceTime& b, std::size_t cases);
+
 struct StrategyChoice {
     std::string strategy;
     std::string why;  // sentences
@@ -37,8 +47,8 @@ struct StrategyChoice {
 };
 
 // The fastest of `available` (of kStrategyNames) for the sum of `rounds`; of equals the first in
-// kStrategyNames. Without rays that is the first one that is available. Nothing where the device has no
-// constants of any.
+// kStrategyNames; of one case none that orders hits, if there is another. Without rays that is the first one
+// that is available. Nothing where the device has no constants of any.
 std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,
                                              std::span<const std::string> available);
 

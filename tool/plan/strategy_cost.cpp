@@ -21,7 +21,8 @@ constexpr CostTermInfo kTerms[] = {
     {CostTerm::Buckets, "buckets", "ns", kNanosecond, "a ray and doubling of the buckets"},
     {CostTerm::Instructions, "instructions", "ps", kPicosecond, "an instruction of a hit"},
     {CostTerm::Divergence, "divergence", "ps", kPicosecond, "an instruction that others wait for"},
-    {CostTerm::Code, "code", "ps", kPicosecond, "a ray and instruction of all cases"},
+    {CostTerm::Code, "code", "ps", kPicosecond, "an instruction of a hit and root of the cases"},
+    {CostTerm::Misses, "misses", "ps", kPicosecond, "divergent code beyond a cache"},
 };
 static_assert(std::size(kTerms) == kCostTerms);
 
@@ -33,15 +34,15 @@ std::span<const CostTermInfo> costTerms() {
 
 bool hasTerm(std::string_view strategy, CostTerm term) {
     const bool ordered = strategy == "visibility" || strategy == "sorted-uber";
-    const bool switches = strategy == "uber" || strategy == "sorted-uber";
     switch (term) {
         case CostTerm::Cases:
         case CostTerm::Buckets:
             return ordered;
         case CostTerm::Divergence:
+        case CostTerm::Misses:
             return !ordered;
         case CostTerm::Code:
-            return switches;
+            return strategy != "visibility";
         default:
             return true;
     }
@@ -85,9 +86,7 @@ TermValues termsOf(const Round& round, double subgroupSize) {
     const auto cases = static_cast<double>(round.cases.size());
     const double together = instructionsRun(round, 1.0);
     const double apart = instructionsRun(round, independentLanes(subgroupSize, round.coherence));
-    const double code =
-        std::accumulate(round.cases.begin(), round.cases.end(), 0.0,
-                        [](double sum, const RoundCase& entry) { return sum + weightOf(entry); });
+    const double waits = std::max(0.0, apart - together);
     // In the order of CostTerm.
     return {1.0,
             cases,
@@ -95,8 +94,9 @@ TermValues termsOf(const Round& round, double subgroupSize) {
             round.rays * std::clamp(round.scatter, 0.0, 1.0),
             round.rays * std::log2(1.0 + cases),
             round.rays * together,
-            round.rays * std::max(0.0, apart - together),
-            round.rays * code};
+            round.rays * waits,
+            round.rays * together * (std::sqrt(std::max(1.0, cases)) - 1.0),
+            round.rays * waits * std::sqrt(waits / 1000.0)};
 }
 
 TermValues estimate(const Round& round, const StrategyCosts& costs, double subgroupSize) {

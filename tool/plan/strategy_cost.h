@@ -17,16 +17,22 @@
 // The time of a strategy is linear in constants of the device, none below zero, so that they can be fitted to
 // measurements (bench/strategy_fit.h) and each product can be told:
 //
-//     term          unit  times                     of
-//     launches      ms    1                         all: dispatches, barriers, what is fixed
-//     cases         ms    number of cases           ordered: a dispatch a case, a workgroup that is half full
-//     rays          ns    N                         all: tracing; ordered: records, and their order
-//     incoherence   ns    N scatter                 all: rays that part, memory that is apart
-//     buckets       ns    N log2(1 + cases)         ordered: more buckets, fewer hits that are added up at
-//     once instructions  ps    N E(1)                    all: shading without divergence divergence    ps N
-//     (E(g) - E(1))           unsorted code          ps    N * sum over i of c(i)    a switch: caches that do
-//     not hold every case, and CPU
-//                                                   drivers, which run all branches under a mask
+// clang-format off
+//     term          unit  times                         of
+//     launches      ms    1                             all: dispatches, barriers, what is fixed
+//     cases         ms    number of cases               ordered: a dispatch a case, a half full workgroup
+//     rays          ns    N                             all: tracing; ordered: records, and their order
+//     incoherence   ns    N scatter                     all: rays that part, memory that is apart
+//     buckets       ns    N log2(1 + cases)             ordered: fewer hits that are added up at once
+//     instructions  ps    N E(1)                        all: shading without divergence
+//     divergence    ps    N (E(g) - E(1))               unsorted
+//     code          ps    N E(1) (sqrt(cases) - 1)      one shader for all cases
+//     misses        ps    N D sqrt(D / 1000), D = E(g) - E(1)      unsorted
+// clang-format on
+//
+// The last two stand for caches of instructions, and are no more than what fits: on an H200 unsorted shading
+// of coherent hits grows as the root of the number of cases, and that of incoherent ones faster than the code
+// that subgroups run (docs/performance.md).
 //
 // The constants of two strategies differ for what nothing here names, such as registers: a switch has those
 // of its largest case.
@@ -50,6 +56,7 @@ enum class CostTerm : std::uint8_t {
     Instructions,
     Divergence,
     Code,
+    Misses,
     Count
 };
 inline constexpr std::size_t kCostTerms = static_cast<std::size_t>(CostTerm::Count);
