@@ -32,8 +32,8 @@ struct DeviceRow {
 //     sorted-uber    24 points, estimates off by 6.7 % (median), 17.7 % at most
 //     visibility     24 points, estimates off by 8.5 % (median), 34.2 % at most
 //     hit-shaders    24 points, estimates off by 17.4 % (median), 56.0 % at most
-//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 1.3 % (median),
-//     16.1 % at most; within 5 % at 87.5 % of 24 points
+//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.4 % (median),
+//     9.4 % at most; within 5 % at 91.7 % of 24 points
 inline constexpr StrategyRow kGpu[] = {
     {"uber", {0.05567, 0.0, 0.08413, 0.09457, 0.0, 0.07947, 0.0, 0.04324, 0.08733}},
     {"sorted-uber", {0.09264, 0.0, 0.133, 0.1136, 0.0, 0.05273, 0.0, 0.002823, 0.0}},
