@@ -68,7 +68,7 @@ def comment(device):
 
 def rows(device, name):
     lines = comment(device)
-    lines.append(f"inline constexpr StrategyRow {name}[] = {{")
+    lines.append(f"inline constexpr StrategyConstants {name}[] = {{")
     for row in device["strategies"]:
         values = ", ".join(number(row["constants"].get(term, 0.0)) for term in TERMS)
         lines.append(f"    {{{quoted(row['strategy'])}, {{{values}}}}},")
@@ -91,7 +91,7 @@ def header():
         "",
         "namespace glint::fitted {",
         "",
-        "struct StrategyRow {",
+        "struct StrategyConstants {",
         "    std::string_view strategy;",
         "    TermValues constants;  // in the units of costTerms()",
         "};",
@@ -105,7 +105,7 @@ def header():
         "    std::string_view tracer;",
         "    std::string_view shadows;",
         "    std::string_view command;",
-        "    std::span<const StrategyRow> strategies;",
+        "    std::span<const StrategyConstants> strategies;",
         "};",
         "",
     ]

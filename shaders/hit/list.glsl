@@ -5,8 +5,8 @@
 // A workgroup for every `groupSize` elements, in two dimensions where one does not hold them; and a ray generation
 // thread for each.
 DispatchArguments listDispatch(uint count, uint groupSize) {
-    uint groups = (count + groupSize - 1u) / groupSize;
-    uint rows = (groups + kMaxRayGroupsX - 1u) / kMaxRayGroupsX;
+    uint groups = (count + (groupSize - 1u)) / groupSize;
+    uint rows = (groups + (kMaxRayGroupsX - 1u)) / kMaxRayGroupsX;
     uint any = rows > 0u ? 1u : 0u;
     return DispatchArguments(min(groups, kMaxRayGroupsX), rows, any, count, count, any, any, 0u);
 }

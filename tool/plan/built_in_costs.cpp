@@ -20,7 +20,7 @@ DeviceCosts builtInCosts(bool onCpu) {
                       std::string(row->shadows),
                       std::string(row->command),
                       {}};
-    for (const fitted::StrategyRow& strategy : row->strategies) {
+    for (const fitted::StrategyConstants& strategy : row->strategies) {
         costs.strategies.push_back({std::string(strategy.strategy), strategy.constants});
     }
     return costs;

@@ -10,7 +10,7 @@
 
 namespace glint::fitted {
 
-struct StrategyRow {
+struct StrategyConstants {
     std::string_view strategy;
     TermValues constants;  // in the units of costTerms()
 };
@@ -24,7 +24,7 @@ struct DeviceRow {
     std::string_view tracer;
     std::string_view shadows;
     std::string_view command;
-    std::span<const StrategyRow> strategies;
+    std::span<const StrategyConstants> strategies;
 };
 
 // NVIDIA H200, NVIDIA 580.159.04
@@ -34,7 +34,7 @@ struct DeviceRow {
 //     hit-shaders    24 points, estimates off by 17.4 % (median), 56.0 % at most
 //     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.4 % (median),
 //     9.4 % at most; within 5 % at 91.7 % of 24 points
-inline constexpr StrategyRow kGpu[] = {
+inline constexpr StrategyConstants kGpu[] = {
     {"uber", {0.05567, 0.0, 0.08413, 0.09457, 0.0, 0.07947, 0.0, 0.04324, 0.08733}},
     {"sorted-uber", {0.09264, 0.0, 0.133, 0.1136, 0.0, 0.05273, 0.0, 0.002823, 0.0}},
     {"visibility", {0.09324, 0.0004416, 0.1365, 0.1079, 0.00238, 0.05624, 0.0, 0.0, 0.0}},
@@ -48,7 +48,7 @@ inline constexpr StrategyRow kGpu[] = {
 //     hit-shaders    32 points, estimates off by 45.3 % (median), 357.9 % at most
 //     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
 //     154.5 % at most; within 5 % at 68.8 % of 32 points
-inline constexpr StrategyRow kCpu[] = {
+inline constexpr StrategyConstants kCpu[] = {
     {"uber", {0.0, 0.0, 127.3, 246.1, 0.0, 22.94, 62.08, 0.0, 0.0}},
     {"sorted-uber", {0.0, 0.0, 20.84, 320.3, 18.35, 100.0, 0.0, 0.0, 0.0}},
     {"visibility", {0.0, 0.006262, 21.92, 290.8, 36.84, 105.0, 0.0, 0.0, 0.0}},

@@ -45,7 +45,7 @@ TEST_F(MemoryReports, HaveEveryBufferAndImageOnce) {
         EXPECT_EQ(images, footprint.images);
         EXPECT_EQ(buffers, footprint.buffers);
         ASSERT_NE(find(items, "constants"), nullptr);
-        EXPECT_EQ(find(items, "constants")->use, MemoryUse::Upload);
+        EXPECT_EQ(find(items, "constants")->use, MemoryUse::Device);
         EXPECT_EQ(find(items, "read-back")->use, MemoryUse::Readback);
         EXPECT_EQ(find(items, "rays")->use, MemoryUse::Device);
         EXPECT_EQ(find(items, "hits") != nullptr, strategy == package::kStrategyVisibility);
