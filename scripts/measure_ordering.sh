@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Measures the orderings of hits: device time of counting and copying, by number of buckets and spread of the hits. Prints
-# the table of docs/reflections.md.
+# Measures the orderings of hits: device time of all their passes, by number of hits, of buckets and spread of the hits,
+# beside a plain copy. Prints a table in Markdown; options are those of bench_ordering (--help).
 #
-#   scripts/measure_ordering.sh [ROUNDS [RAYS]]     default 31 and 57600
+#   scripts/measure_ordering.sh [OPTIONS]
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
@@ -11,4 +11,4 @@ if [[ ! -x $bench ]]; then
     echo "measure_ordering.sh: build first: cmake --preset release && cmake --build --preset release --target bench_ordering" >&2
     exit 1
 fi
-exec "$bench" "${1:-31}" "${2:-57600}"
+exec "$bench" "$@"

@@ -110,8 +110,8 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     if (rays) {
         expected.insert(
             {"ray_dispatch.comp", "trace.comp", "bucket_offset.comp", "shade_miss.comp", "order_check.comp"});
-        for (const char* const ordering :
-             {"global_atomics", "wave_loop", "wave_aggregated", "wave_ballot", "local_histogram"}) {
+        for (const char* const ordering : {"global_atomics", "wave_loop", "wave_aggregated", "wave_ballot",
+                                           "local_histogram", "tile_sort"}) {
             expected.insert({std::string("bucket_count_") + ordering + ".comp",
                              std::string("bucket_copy_") + ordering + ".comp"});
         }
@@ -155,7 +155,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     // Surface, radiance, mean, residual, depth; the march over the screen has positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
     // Constants, counters, read-back; samples, radiance, rays, hits, order, buckets and two dispatches.
-    EXPECT_EQ(footprint.buffers, 3U + (rays ? 8U : 0U));
+    EXPECT_EQ(footprint.buffers, 3U + (rays ? 11U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;
