@@ -15,7 +15,7 @@ install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/
 if(GLINT_BUILD_COMPILER)
   # What compile.h includes, and no more: the rest is the compiler's own business.
   foreach(header base/files.h emit/compile.h gltf/animation.h gltf/import.h gltf/scene.h plan/cost.h plan/effects.h plan/features.h plan/lock_ids.h
-                 plan/material.h plan/merge.h plan/plan.h spirv/statistics.h)
+                 plan/material.h plan/merge.h plan/plan.h plan/strategy_choice.h plan/strategy_cost.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()

@@ -17,8 +17,9 @@ nlohmann::json plantedDevice(const std::string& fastest) {
             constants["bucketsNs"] = 0.02 * factor;
         } else {
             constants["divergencePs"] = 0.2 * factor;
+            constants["missesPs"] = 0.0;
         }
-        if (strategy == std::string("uber") || strategy == std::string("sorted-uber")) {
+        if (strategy != std::string("visibility")) {
             constants["codePs"] = 0.001 * factor;
         }
         strategies.push_back({{"strategy", strategy}, {"constants", constants}, {"fit", nullptr}});

@@ -1,12 +1,12 @@
 // glint render --strategy auto, and the device file as the program writes and reads it.
 #include "bench/strategy_fit.h"
-
-#include <glint/package_modules.h>
 #include "cli/calibration_points.h"
 #include "cli/device_file.h"
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
+
+#include <glint/package_modules.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -36,7 +36,7 @@ std::string strategiesText(const StrategyAdvice& advice) {
                             sumOf(estimate, {CostTerm::Launches, CostTerm::Cases}),
                             sumOf(estimate, {CostTerm::Rays, CostTerm::Incoherence}),
                             sumOf(estimate, {CostTerm::Buckets}), sumOf(estimate, {CostTerm::Instructions}),
-                            sumOf(estimate, {CostTerm::Divergence, CostTerm::Code})});
+                            sumOf(estimate, {CostTerm::Divergence, CostTerm::Code, CostTerm::Misses})});
         }
         text += formatTable(rows) + "\n";
     }

@@ -203,7 +203,9 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
         .group(group);
     addChoice(
         command, "--ordering", arguments.ordering, orderingNames(),
-        "how visibility and sorted-uber sort hits by shader;\nauto: by the device and the number of shaders")
+        "how visibility and sorted-uber sort hits by shader:\nglobal-atomics, wave-loop, wave-aggregated,\n"
+        "wave-ballot, local-histogram, tile-sort; auto: by the\ndevice and the number of shaders")
+        .type_name("auto|NAME")
         .group(group);
 }
 
