@@ -206,7 +206,7 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
         "how visibility and sorted-uber sort hits by shader:\nglobal-atomics, wave-loop, wave-aggregated,\n"
         "wave-ballot, local-histogram, tile-sort; auto: by the\ndevice and the number of shaders")
         .type_name("auto|NAME")
-        .group(group);
+        ->group(group);
 }
 
 }  // namespace glint
