@@ -79,9 +79,9 @@ def header():
     devices = [json.loads(device_file(kind).read_text(encoding="utf-8")) for kind in TYPES if device_file(kind).exists()]
     names = {"cpu": "kCpu", "gpu": "kGpu"}
     lines = [
+        "// clang-format off",
         "// Made by scripts/fit_strategy_costs.py from scripts/strategy_costs_*.json; run it again rather than edit this.",
         "// Errors are of estimates by constants that were fitted to other scenes than the one that is estimated.",
-        "// clang-format off",
         "#pragma once",
         "",
         '#include "plan/strategy_cost.h"',

@@ -203,8 +203,8 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
         .group(group);
     addChoice(
         command, "--ordering", arguments.ordering, orderingNames(),
-        "how visibility and sorted-uber sort hits by shader:\nglobal-atomics, wave-loop, wave-aggregated,\n"
-        "wave-ballot, local-histogram, tile-sort; auto: by the\ndevice and the number of shaders")
+        "how visibility and sorted-uber sort hits by shader;\nauto: by the device and the number of shaders; "
+        "else\nglobal-atomics, wave-loop, wave-aggregated,\nwave-ballot, local-histogram or tile-sort")
         .type_name("auto|NAME")
         ->group(group);
 }

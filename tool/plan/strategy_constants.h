@@ -1,6 +1,6 @@
+// clang-format off
 // Made by scripts/fit_strategy_costs.py from scripts/strategy_costs_*.json; run it again rather than edit this.
 // Errors are of estimates by constants that were fitted to other scenes than the one that is estimated.
-// clang-format off
 #pragma once
 
 #include "plan/strategy_cost.h"
