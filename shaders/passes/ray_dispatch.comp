@@ -7,9 +7,10 @@ layout(local_size_x = 1) in;
 
 void main() {
     uint rays = GLINT_FRAME.counters.data[kCounterRays];
-    DispatchArguments count = listDispatch(rays, kKeysOfVector * kCountGroupSize);
+    // One workgroup at least, without rays, too: the last one says that buckets are empty.
+    DispatchArguments count = listDispatch(max(rays, 1u), kKeysOfVector * kCountGroupSize);
     count.x = min(count.x, kMaxCountGroups);
-    count.y = min(count.y, 1u);
+    count.y = 1u;
     GLINT_FRAME.rayDispatch.data[kDispatchRays] = listDispatch(rays, kRayGroupSize);
     GLINT_FRAME.rayDispatch.data[kDispatchCount] = count;
     GLINT_FRAME.rayDispatch.data[kDispatchTiles] = listDispatch(rays, kTileHits);

@@ -263,8 +263,11 @@ void OrderKernel::recordInput(VkCommandBuffer commands, const Buffers& buffers) 
     }
     vk.CmdUpdateBuffer(commands, buffers.constants.handle.get(), 0, sizeof(buffers.values), &buffers.values);
     vk.CmdFillBuffer(commands, buffers.visited.handle.get(), 0, VK_WHOLE_SIZE, 0);
-    // A slot that nobody writes is seen.
-    vk.CmdFillBuffer(commands, buffers.slots.handle.get(), 0, VK_WHOLE_SIZE, gpu::kNoHit - 1);
+    // What nobody writes is seen.
+    for (const Buffer* const buffer :
+         {&buffers.slots, &buffers.begins, &buffers.cursors, &buffers.bucketDispatch}) {
+        vk.CmdFillBuffer(commands, buffer->handle.get(), 0, VK_WHOLE_SIZE, gpu::kNoHit - 1);
+    }
     // Side by side: two fills of one word would need a barrier in between.
     static_assert(gpu::kCounterRays == 0);
     vk.CmdFillBuffer(commands, buffers.counters.handle.get(), 0, kWord, buffers.rays);
