@@ -61,12 +61,16 @@ TEST_P(OrderingImages, NeedNoRays) {
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = defaultSetup(scene, 16, 16);
     setup.frame.maxReflectionRoughness = -1.0F;
-    FrameCounters counters;
-    const LinearImage image =
-        loaded.render(RendererOptions{.strategy = GetParam(), .checkOrder = true}, setup, &counters);
-    ASSERT_FALSE(image.pixels.empty());
-    EXPECT_EQ(counters.rays, 0U);
-    EXPECT_EQ(counters.orderErrors, 0U);
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(Ordering::Count); ++i) {
+        const auto ordering = static_cast<Ordering>(i);
+        FrameCounters counters;
+        const LinearImage image =
+            loaded.render(RendererOptions{.strategy = GetParam(), .ordering = ordering, .checkOrder = true},
+                          setup, &counters);
+        ASSERT_FALSE(image.pixels.empty());
+        EXPECT_EQ(counters.rays, 0U);
+        EXPECT_EQ(counters.orderErrors, 0U) << nameOf(ordering);
+    }
     expectNoValidationMessages();
 }
 
