@@ -41,6 +41,24 @@ namespace {
 // Sharp down to a cosine of 1 / 16.
 constexpr float kMaxAnisotropy = 16.0F;
 
+// Status "vulkan-call".
+Status queryMultiprocessors(Context::State& state) {
+    DeviceReport report;
+    if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
+        return status;
+    }
+    if (hasExtension(report, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME)) {
+        VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{};
+        builtins.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV;
+        VkPhysicalDeviceProperties2 properties{};
+        properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+        properties.pNext = &builtins;
+        state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
+        state.limits.multiprocessors = builtins.shaderSMCount;
+    }
+    return okStatus();
+}
+
 void queryLimits(Context::State& state) {
     DeviceLimits& limits = state.limits;
     limits.accelerationStructure.sType =
@@ -74,6 +92,7 @@ void queryLimits(Context::State& state) {
     }
     limits.deviceType = properties.properties.deviceType;
     limits.subgroupSize = vulkan11.subgroupSize;
+    limits.subgroupOperations = vulkan11.subgroupSupportedOperations;
     limits.deviceName = properties.properties.deviceName;
     limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
     limits.cacheOwner = {properties.properties.vendorID,
@@ -165,6 +184,9 @@ Status finishContext(Context::State& state) {
         }
     }
     queryLimits(state);
+    if (Status status = queryMultiprocessors(state); !status) {
+        return status;
+    }
     if (Status status = checkQueueFamily(state); !status) {
         return status;
     }

@@ -40,6 +40,8 @@ struct DeviceLimits {
     bool filteredFloats = false;           // R32G32B32A32_SFLOAT can be filtered
     std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
     std::uint32_t subgroupSize = 0;        // lanes
+    VkSubgroupFeatureFlags subgroupOperations = 0;
+    std::uint32_t multiprocessors = 0;  // 0: the device does not say
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::string deviceName;
     std::string driverName;

@@ -9,12 +9,12 @@
 #include <vector>
 
 namespace glint {
-namespace {
 
-// Rays of the list: one a pixel and effect of a round.
 VkDeviceSize listRays(const FrameSize& size) {
     return VkDeviceSize{size.width} * size.height * size.batchCount;
 }
+
+namespace {
 
 // Elements of the longest list: hits, each bucket with all but one slot of its last group empty.
 VkDeviceSize listSlots(const FrameSize& size) {
@@ -118,9 +118,9 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     // A bit a hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
-    const VkDeviceSize tiles = (hits + gpu::kTileHits - 1) / gpu::kTileHits;
+    // Up to the end of the last tile that may be read.
+    const VkDeviceSize keys = hits > 0 ? hits + VkDeviceSize{gpu::kTileThreads} * gpu::kTileHitsOfThread : 0;
     const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
-    const VkDeviceSize countBytes = size.ordered ? bucketBytes + sizeof(std::uint32_t) : 0;
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
@@ -142,12 +142,11 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
         {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketKeys, tiles * gpu::kTileHits * size.keyBytes, kStorage, MemoryUse::Device},
-        {frame.bucketCounts, countBytes, kCleared, MemoryUse::Device},
+        {frame.bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
+        {frame.bucketCounts, bucketBytes, kCleared, MemoryUse::Device},
         {frame.bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
-        {frame.bucketCursors, bucketBytes, kStorage, MemoryUse::Device},
-        {frame.rayDispatch, lists * gpu::kDispatchCountOfRays * sizeof(gpu::DispatchArguments), kIndirect,
-         MemoryUse::Device},
+        {frame.bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
+        {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.counters, kCounterBytes, kCleared, MemoryUse::Device},
         {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,

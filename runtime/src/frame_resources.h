@@ -94,6 +94,9 @@ struct FrameSize {
 // Where a round of rays is read back; of the number of rounds, the end.
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
 
+// Rays of the list at most: one a pixel and effect of a round.
+VkDeviceSize listRays(const FrameSize& size);
+
 // Error "render-size": no pixels, or more than the device can do.
 Status checkFrameSize(const Context::State& context, const FrameSize& size);
 

@@ -150,10 +150,10 @@ void PassRecorder::dispatchPixels(const std::string& name, const PassPipeline& p
     endPass();
 }
 
-void PassRecorder::dispatchOnce(const std::string& name, const PassPipeline& pass) {
+void PassRecorder::dispatchGroups(const std::string& name, const PassPipeline& pass, std::uint32_t groups) {
     beginPass(name);
     bindPass(pass);
-    vk_.CmdDispatch(commands_, 1, 1, 1);
+    vk_.CmdDispatch(commands_, groups, 1, 1);
     endPass();
     barrier(dependencies_.passToPass);
 }

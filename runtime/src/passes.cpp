@@ -1,5 +1,6 @@
 // The passes of a frame in order.
 #include "pass_recorder.h"
+#include "tile_sort.h"
 
 #include <cstdint>
 #include <string>
@@ -69,12 +70,12 @@ private:
     // What a round of rays starts with.
     void clearLists() {
         fill(state_.frame.bucketCounts, VK_WHOLE_SIZE, 0);
+        fill(state_.frame.bucketCursors, VK_WHOLE_SIZE, 0);
         fill(state_.frame.visitedHits, VK_WHOLE_SIZE, 0);
     }
 
-    void dispatchRays(const std::string& name, ModuleRole role,
-                      std::uint32_t arguments = gpu::kDispatchRays) {
-        passes_.dispatchList(name, pass(role), state_.frame.rayDispatch, arguments);
+    void dispatchRays(const std::string& name, ModuleRole role) {
+        passes_.dispatchList(name, pass(role), state_.frame.rayDispatch, 0);
         passes_.barrier(dependencies().passToPass);
     }
 
@@ -141,11 +142,13 @@ private:
     void recordOrder() {
         dispatchRays("trace", ModuleRole::Trace);
         if (state_.choice.ordering == package::Ordering::TileSort) {
-            dispatchRays("count", ModuleRole::BucketCount, gpu::kDispatchCount);
-            dispatchRays("copy", ModuleRole::BucketCopy, gpu::kDispatchTiles);
+            const TileSortGroups groups =
+                tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
+            passes_.dispatchGroups("count", pass(ModuleRole::BucketCount), groups.count);
+            passes_.dispatchGroups("copy", pass(ModuleRole::BucketCopy), groups.copy);
         } else {
             dispatchRays("count", ModuleRole::BucketCount);
-            passes_.dispatchOnce("offset", pass(ModuleRole::BucketOffset));
+            passes_.dispatchGroups("offset", pass(ModuleRole::BucketOffset), 1);
             dispatchRays("copy", ModuleRole::BucketCopy);
         }
         if (state_.choice.checksOrder) {
@@ -173,7 +176,7 @@ private:
 
     // Shades what the rays of the list hit.
     void recordHits() {
-        passes_.dispatchOnce("ray dispatch", pass(ModuleRole::RayDispatch));
+        passes_.dispatchGroups("ray dispatch", pass(ModuleRole::RayDispatch), 1);
         switch (state_.choice.strategy) {
             case package::kStrategyUber:
                 dispatchRays("uber", ModuleRole::UberShade);
@@ -192,7 +195,7 @@ private:
                 recordBuckets();
         }
         if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
-            passes_.dispatchOnce("shadow dispatch", pass(ModuleRole::ShadowDispatch));
+            passes_.dispatchGroups("shadow dispatch", pass(ModuleRole::ShadowDispatch), 1);
             passes_.dispatchList("shadow", pass(ModuleRole::ShadowTrace), state_.frame.shadowDispatch, 0);
             passes_.barrier(dependencies().passToPass);
         }

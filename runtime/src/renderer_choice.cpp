@@ -1,5 +1,7 @@
 #include "renderer_choice.h"
 
+#include "tile_sort.h"
+
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -47,13 +49,6 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                      "compile the package with --tracer all");
 }
 
-// Whether tile-sort has what it takes.
-bool sortsTiles(const DeviceLimits& limits) {
-    return limits.core.maxComputeSharedMemorySize >= gpu::kTileSharedBytes &&
-           limits.core.maxComputeWorkGroupInvocations >= gpu::kTileMaxThreads &&
-           limits.core.maxComputeWorkGroupSize[0] >= gpu::kTileMaxThreads;
-}
-
 // As measured: docs/performance.md, "Ordering". On a CPU an atomic costs little more than what saves one. On
 // a GPU hits of one bucket wait for each other in memory, unless their workgroup or subgroup adds them up
 // first.
@@ -85,10 +80,11 @@ Status checkOrdering(const DeviceLimits& limits, package::Ordering ordering, std
     if (ordering == package::Ordering::TileSort && !sortsTiles(limits)) {
         return makeError("renderer-options", "",
                          "the ordering " + name + " takes " + std::to_string(gpu::kTileSharedBytes) +
-                             " bytes of shared memory and workgroups of " +
-                             std::to_string(gpu::kTileMaxThreads) + " threads; the device has " +
-                             std::to_string(limits.core.maxComputeSharedMemorySize) + " and " +
-                             std::to_string(limits.core.maxComputeWorkGroupInvocations),
+                             " bytes of shared memory, workgroups of " + std::to_string(gpu::kTileThreads) +
+                             " threads and subgroups of 4 to 64 that shuffle; the device has " +
+                             std::to_string(limits.core.maxComputeSharedMemorySize) + ", " +
+                             std::to_string(limits.core.maxComputeWorkGroupInvocations) + " and " +
+                             std::to_string(limits.subgroupSize),
                          "use another ordering");
     }
     return okStatus();

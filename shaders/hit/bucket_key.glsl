@@ -26,11 +26,18 @@ uint storedKey(uint index) {
     return uint(KeyPieces(GLINT_FRAME.bucketKeys).data[index]);
 }
 
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer KeyPairArray { uvec2 data[]; };
+
+const uint kKeysOfWord = 4u / kKeyBytes;
 const uint kKeysOfVector = 16u / kKeyBytes;
 
-// Bucket of key `index` of those in a vector.
-uint keyOf(uvec4 keys, uint index) {
-    const uint keysOfWord = 4u / kKeyBytes;
+// Key `index` of those in a word.
+uint keyOfWord(uint word, uint index) {
     const int bits = int(8u * kKeyBytes);
-    return bitfieldExtract(keys[index / keysOfWord], int(index % keysOfWord) * bits, bits);
+    return bitfieldExtract(word, int(index) * bits, bits);
+}
+
+// Key `index` of those in a vector.
+uint keyOf(uvec4 keys, uint index) {
+    return keyOfWord(keys[index / kKeysOfWord], index % kKeysOfWord);
 }

@@ -3,6 +3,3 @@
 
 // Renderers refuse this ordering where there are more buckets than kMaxLocalBuckets.
 const uint kLocalBuckets = min(kBuckets, kMaxLocalBuckets);
-
-// A tile: as many hits as a workgroup sorts. Each thread has those of one vector of keys.
-#define GLINT_TILE_GROUP_SIZE (kTileHits / kKeysOfVector)

@@ -16,14 +16,15 @@ GLINT_CONSTANT(kScanGroupSize, 256u);
 
 // Buckets that the orderings local-histogram and tile-sort hold in shared memory.
 GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
-// The ordering tile-sort: hits that a workgroup sorts; keys end at a multiple of it. Threads of a workgroup that counts,
-// and how many of those there are at most: enough for the largest GPUs, and few, as each adds to every bucket.
-GLINT_CONSTANT(kTileHits, 4096u);
+// The ordering tile-sort: hits of a tile, which a workgroup sorts at a time, by thread; threads of such a workgroup, fewer
+// where there are few buckets; and of one that counts. A vector of keys may be read up to the end of the last tile.
+GLINT_CONSTANT(kTileHitsOfThread, 8u);
+GLINT_CONSTANT(kSmallTileBuckets, 128u);
+GLINT_CONSTANT(kSmallTileThreads, 448u);
+GLINT_CONSTANT(kTileThreads, 512u);
 GLINT_CONSTANT(kCountGroupSize, 512u);
-GLINT_CONSTANT(kMaxCountGroups, 264u);
-// What it takes at most: threads of a workgroup, and bytes of shared memory (a word a hit, bucket and thread).
-GLINT_CONSTANT(kTileMaxThreads, 512u);
-GLINT_CONSTANT(kTileSharedBytes, 22528u);
+// What it takes at most: bytes of shared memory (a word a hit, a bucket and a subgroup).
+GLINT_CONSTANT(kTileSharedBytes, 20992u);
 
 // HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);
@@ -150,12 +151,6 @@ GLINT_CONSTANT(kCounterEffects, 4u);        // kCountsOfEffect for each effect, 
 GLINT_CONSTANT(kCounterNonFinite, 84u);     // pixels whose sample was no number: taken as black
 GLINT_CONSTANT(kCounterCount, 85u);
 
-// FrameConstants::rayDispatch: over the ray list.
-GLINT_CONSTANT(kDispatchRays, 0u);   // a thread a ray
-GLINT_CONSTANT(kDispatchCount, 1u);  // tile-sort: workgroups that count
-GLINT_CONSTANT(kDispatchTiles, 2u);  // tile-sort: a workgroup a tile
-GLINT_CONSTANT(kDispatchCountOfRays, 3u);
-
 // FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);
 GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
@@ -212,14 +207,14 @@ struct FrameConstants {
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
     // Bucket of a hit: 0 a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in as many bytes as the
-    // number of buckets takes: 1, 2 or 4. Of each bucket: its hits, its first slot in the ordered list, and the next
-    // free one while hits are copied. Behind the counts is that of workgroups that have counted.
+    // number of buckets takes: 1, 2 or 4. Of each bucket: its hits, its first slot in the ordered list, and how many of
+    // its slots have been given out while hits are copied.
     GLINT_ADDRESS(Key) bucketKeys;
-    GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount + 1
+    GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount
     GLINT_ADDRESS(Counter) bucketBegins;   // bucketCount
     GLINT_ADDRESS(Counter) bucketCursors;  // bucketCount
     GLINT_ADDRESS(Counter) visitedHits;  // a bit a hit, of the check of the order
-    GLINT_ADDRESS(Dispatch) rayDispatch;     // kDispatch*
+    GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
     GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
     GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays

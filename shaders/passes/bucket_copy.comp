@@ -10,9 +10,10 @@ layout(local_size_x = kRayGroupSize) in;
 
 void main() {
     uint index = listIndex();
-    bool hasHit = index < GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
-    uint slot = addHit(hasHit ? storedKey(index) : kNoBucket);
+    bool hasHit = index < GLINT_FRAME.rayDispatch.data[0].elementCount;
+    uint bucket = hasHit ? storedKey(index) : kNoBucket;
+    uint number = addHit(bucket);
     if (hasHit) {
-        GLINT_FRAME.orderedHits.data[slot] = index;
+        GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[bucket] + number] = index;
     }
 }

@@ -1,10 +1,8 @@
 #version 460
 // First pass of the ordering tile-sort: the number of hits in each bucket. Each workgroup counts many hits in shared
-// memory and adds what it has once. The last to finish scans the counts of all, which spares a pass.
+// memory and adds what it has once.
 #extension GL_EXT_control_flow_attributes : require
 
-#define GLINT_SCAN_GROUP_SIZE kCountGroupSize
-#include "hit/bucket_scan.glsl"
 #include "hit/tile_sort.glsl"
 
 layout(local_size_x = kCountGroupSize) in;
@@ -15,7 +13,6 @@ const uint kCopies = min(2048u / kLocalBuckets, 32u);
 const uint kCounters = kLocalBuckets * kCopies;
 
 shared uint counters[kCounters];
-shared bool isLast;
 
 void clearCounters() {
     for (uint i = gl_LocalInvocationIndex; i < kCounters; i += kCountGroupSize) {
@@ -23,38 +20,35 @@ void clearCounters() {
     }
 }
 
-void countKeys(uvec4 keys, uint count) {
-    uint copy = gl_LocalInvocationIndex % kCopies;
-    if (count >= kKeysOfVector) {
-        [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
-            atomicAdd(counters[keyOf(keys, k) * kCopies + copy], 1u);
-        }
-    } else {
-        for (uint k = 0u; k < count; ++k) {
-            atomicAdd(counters[keyOf(keys, k) * kCopies + copy], 1u);
-        }
-    }
+void countKey(uint key) {
+    atomicAdd(counters[key * kCopies + gl_LocalInvocationIndex % kCopies], 1u);
 }
 
-void countAllKeys() {
-    uint rays = GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
-    KeyArray list = GLINT_FRAME.bucketKeys;
-    uint vectors = (rays + kKeysOfVector - 1u) / kKeysOfVector;
+// The vector that follows is on its way while one is counted.
+void countKeys(KeyArray list, uint rays) {
+    uint vectors = rays / kKeysOfVector;
     uint stride = gl_NumWorkGroups.x * kCountGroupSize;
     uint i = gl_WorkGroupID.x * kCountGroupSize + gl_LocalInvocationIndex;
-    // Two vectors on their way at once.
-    for (; i + stride < vectors; i += 2u * stride) {
-        uvec4 keys = list.data[i];
-        uvec4 next = list.data[i + stride];
-        countKeys(keys, rays - i * kKeysOfVector);
-        countKeys(next, rays - (i + stride) * kKeysOfVector);
-    }
-    if (i < vectors) {
-        countKeys(list.data[i], rays - i * kKeysOfVector);
+    uvec4 keys = i < vectors ? list.data[i] : uvec4(0u);
+    while (i < vectors) {
+        i += stride;
+        uvec4 next = i < vectors ? list.data[i] : uvec4(0u);
+        [[unroll]] for (uint k = 0u; k < kKeysOfVector; ++k) {
+            countKey(keyOf(keys, k));
+        }
+        keys = next;
     }
 }
 
-void addCounters() {
+// Keys behind the last whole vector.
+void countRest(KeyArray list, uint rays) {
+    uint vectors = rays / kKeysOfVector;
+    if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex < rays % kKeysOfVector) {
+        countKey(keyOf(list.data[vectors], gl_LocalInvocationIndex));
+    }
+}
+
+void addCounters(CounterArray counts) {
     for (uint bucket = gl_LocalInvocationIndex; bucket < kLocalBuckets; bucket += kCountGroupSize) {
         uint sum = 0u;
         for (uint copy = 0u; copy < kCopies; ++copy) {
@@ -62,30 +56,20 @@ void addCounters() {
             sum += counters[bucket * kCopies + (copy + bucket) % kCopies];
         }
         if (sum > 0u) {
-            atomicAdd(GLINT_FRAME.bucketCounts.data[bucket], sum);
+            atomicAdd(counts.data[bucket], sum);
         }
     }
 }
 
-// Whether all other workgroups have added what they have.
-bool finishesLast() {
-    memoryBarrierBuffer();
-    barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-        isLast = atomicAdd(GLINT_FRAME.bucketCounts.data[kBuckets], 1u) == gl_NumWorkGroups.x - 1u;
-    }
-    barrier();
-    memoryBarrierBuffer();
-    return isLast;
-}
-
 void main() {
+    // What is written may be the constants, as far as a compiler knows: read once, an address is not read anew.
+    uint rays = GLINT_FRAME.rayDispatch.data[0].elementCount;
+    KeyArray list = GLINT_FRAME.bucketKeys;
+    CounterArray counts = GLINT_FRAME.bucketCounts;
     clearCounters();
     barrier();
-    countAllKeys();
+    countKeys(list, rays);
+    countRest(list, rays);
     barrier();
-    addCounters();
-    if (finishesLast()) {
-        scanBuckets();
-    }
+    addCounters(counts);
 }

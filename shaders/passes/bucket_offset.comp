@@ -1,11 +1,28 @@
 #version 460
 // Ordering, second pass: where each bucket begins. One workgroup, kScanGroupSize buckets at a time. The ordering
-// tile-sort has no such pass: the last workgroup of its first one does the same.
+// tile-sort has no such pass: each workgroup of its last one does the same for itself.
 #define GLINT_SCAN_GROUP_SIZE kScanGroupSize
+#define GLINT_SCAN_SHUFFLES 0
 #include "hit/bucket_scan.glsl"
+#include "hit/scan.glsl"
 
 layout(local_size_x = kScanGroupSize) in;
 
 void main() {
-    scanBuckets();
+    uint slots = 0u;
+    for (uint first = 0u; first < GLINT_FRAME.bucketCount; first += kScanGroupSize) {
+        uint bucket = first + scanThread();
+        bool inside = bucket < GLINT_FRAME.bucketCount;
+        uint count = inside ? GLINT_FRAME.bucketCounts.data[bucket] : 0u;
+        uint total;
+        uint begin = slots + scanWorkgroup(roomOf(count), total);
+        if (inside) {
+            storeBucket(bucket, begin, count);
+            clearGap(begin, count);
+        }
+        slots += total;
+    }
+    if (scanThread() == 0u) {
+        storeSlotCount(slots);
+    }
 }

@@ -33,7 +33,7 @@ uint endOfBucket(Bucket bucket) {
 void checkBucket(uint index, uint slotCount) {
     Bucket bucket = loadBucket(index);
     report(index == 0u && bucket.begin != 0u);
-    report(bucket.cursor != bucket.begin + bucket.count);
+    report(bucket.cursor != bucket.count);
     bool last = index + 1u == GLINT_FRAME.bucketCount;
     uint next = last ? slotCount : GLINT_FRAME.bucketBegins.data[index + 1u];
     report(endOfBucket(bucket) != next);
@@ -86,7 +86,7 @@ void checkSlot(uint slot, uint rayCount) {
 void main() {
     uint thread = listIndex();
     uint threadCount = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kRayGroupSize;
-    uint rayCount = GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount;
+    uint rayCount = GLINT_FRAME.rayDispatch.data[0].elementCount;
     uint slotCount = GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount].elementCount;
     if (thread == 0u) {
         checkSum(rayCount);

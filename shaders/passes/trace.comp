@@ -13,7 +13,7 @@ GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
-    if (index < GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount) {
+    if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
         HitRecord hit = traceRay(GLINT_FRAME.rays.data[index], index, gl_RayFlagsCullBackFacingTrianglesEXT);
         storeHit(index, hit);
         storeKey(index, bucketOfGeometry(hit.geometry));

@@ -12,7 +12,7 @@ GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
-    if (index >= GLINT_FRAME.rayDispatch.data[kDispatchRays].elementCount) {
+    if (index >= GLINT_FRAME.rayDispatch.data[0].elementCount) {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];

@@ -49,6 +49,8 @@ struct OrderTime {
     double total = 0.0;  // all of them, with nothing between that takes the time of one
 };
 
+struct OrderBuffers;
+
 class OrderKernel {
 public:
     // `context` must outlive the kernel. Errors: those of compileModules(), "vulkan-call".
@@ -77,22 +79,17 @@ public:
     Result<OrderResult> result();
 
 private:
-    struct Buffers;
     // Stretches of the timer.
     static constexpr std::uint32_t kMaxCopies = 8;
     static constexpr std::uint32_t kTimesOfRun = 4;
 
     OrderKernel(Context::State& context, std::uint32_t caseCount, package::HitRecordFormat hitRecord);
     Status createPipelines();
-    Result<std::unique_ptr<Buffers>> createBuffers(const OrderProblem& problem, bool withHits) const;
-    void recordStart(VkCommandBuffer commands, const Buffers& buffers) const;
-    void recordPasses(VkCommandBuffer commands, package::Ordering ordering, const Buffers& buffers,
+    void recordStart(VkCommandBuffer commands, const OrderBuffers& buffers) const;
+    void recordPasses(VkCommandBuffer commands, package::Ordering ordering, const OrderBuffers& buffers,
                       const std::function<void(std::uint32_t pass)>& between) const;
-    void recordCheck(VkCommandBuffer commands, const Buffers& buffers,
+    void recordCheck(VkCommandBuffer commands, const OrderBuffers& buffers,
                      std::span<const OrderFault> faults) const;
-    void recordInput(VkCommandBuffer commands, const Buffers& buffers) const;
-    void recordOutput(VkCommandBuffer commands, const Buffers& buffers) const;
-    OrderResult readResult(const Buffers& buffers) const;
     void bind(VkCommandBuffer commands, package::ModuleKey key) const;
     void wait(VkCommandBuffer commands) const;
     Result<std::vector<double>> readTimes(std::uint32_t count) const;
@@ -105,7 +102,7 @@ private:
     UniquePipeline plainCopy_;
     std::optional<Timer> timer_;
     std::optional<CommandRunner> runner_;
-    std::vector<std::unique_ptr<Buffers>> buffers_;
+    std::vector<std::unique_ptr<OrderBuffers>> buffers_;
 };
 
 }  // namespace glint::testing

@@ -55,7 +55,7 @@ void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const
     for (std::uint32_t bucket = 0; bucket < bucketCount; ++bucket) {
         ASSERT_EQ(result.counts[bucket], counts[bucket]) << "bucket " << bucket;
         ASSERT_EQ(result.begins[bucket], begin) << "bucket " << bucket;
-        ASSERT_EQ(result.cursors[bucket], begin + counts[bucket]) << "bucket " << bucket;
+        ASSERT_EQ(result.cursors[bucket], counts[bucket]) << "bucket " << bucket;
         expectDispatch(result.dispatches[bucket], counts[bucket]);
         const std::uint32_t room =
             (counts[bucket] + problem.alignment - 1) / problem.alignment * problem.alignment;
@@ -116,7 +116,7 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
 // 2^5, 2^8 and 2^10 are where ballots, scans and keys take another word, round or byte; 1024 is the most that
 // local-histogram and tile-sort hold.
 INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
-                         ::testing::Values(1U, 2U, 31U, 32U, 33U, 255U, 256U, 257U, 1024U, 1025U),
+                         ::testing::Values(1U, 2U, 31U, 32U, 33U, 128U, 129U, 255U, 256U, 257U, 1024U, 1025U),
                          ::testing::PrintToStringParamName());
 
 TEST(DefaultOrdering, HoldsAnyNumberOfBuckets) {
@@ -161,14 +161,12 @@ std::vector<FaultCase> faultCases() {
         // Sum and dispatch.
         {"a hit that was not counted",
          2,
-         {{Where::Counts, 4, 100},
-          {Where::Cursors, 4, 4 * 128 + 100},
-          {Where::Slots, 4 * 128 + 100, gpu::kNoHit}}},
-        // Cursor; ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
-        {"where a bucket begins", 131, {{Where::Begins, 2, 192}}},
-        {"where a bucket ends", 1, {{Where::Cursors, 4, 4 * 128 + 100}}},
-        // Begin, end, cursor, the first slot, the last.
-        {"where all begin", 5, {{Where::Begins, 0, 1}}},
+         {{Where::Counts, 4, 100}, {Where::Cursors, 4, 100}, {Where::Slots, 4 * 128 + 100, gpu::kNoHit}}},
+        // Ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
+        {"where a bucket begins", 130, {{Where::Begins, 2, 192}}},
+        {"slots that were given out", 1, {{Where::Cursors, 4, 100}}},
+        // Begin, end, the first slot, the last.
+        {"where all begin", 4, {{Where::Begins, 0, 1}}},
     };
 }
 

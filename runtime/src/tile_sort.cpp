@@ -1,0 +1,48 @@
+#include "tile_sort.h"
+
+#include "interop/frame.h"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+// Where the device does not say how many it has: between those of a small GPU and of a large one.
+constexpr std::uint32_t kGuessedMultiprocessors = 64;
+
+// Workgroups that a multiprocessor runs at once, by what an H200 has shared memory for: docs/performance.md.
+constexpr std::uint32_t kCountGroups = 2;
+constexpr std::uint32_t kSmallCopyGroups = 3;
+constexpr std::uint32_t kCopyGroups = 2;
+
+// Of scans: a word of shared memory for every fourth thread.
+constexpr std::uint32_t kLeastSubgroup = 4;
+
+std::uint32_t groupsFor(std::uint64_t hits, std::uint32_t hitsOfGroup, std::uint32_t atOnce) {
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>((hits + hitsOfGroup - 1) / hitsOfGroup, 1, atOnce));
+}
+
+}  // namespace
+
+bool sortsTiles(const DeviceLimits& limits) {
+    constexpr std::uint32_t kThreads = std::max(gpu::kTileThreads, gpu::kCountGroupSize);
+    return limits.core.maxComputeSharedMemorySize >= gpu::kTileSharedBytes &&
+           limits.core.maxComputeWorkGroupInvocations >= kThreads &&
+           limits.core.maxComputeWorkGroupSize[0] >= kThreads && limits.subgroupSize >= kLeastSubgroup &&
+           gpu::kSmallTileThreads % limits.subgroupSize == 0 &&
+           (limits.subgroupOperations & VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT) != 0;
+}
+
+TileSortGroups tileSortGroups(const DeviceLimits& limits, std::uint32_t bucketCount, std::uint64_t maxHits) {
+    const std::uint32_t processors =
+        limits.multiprocessors > 0 ? limits.multiprocessors : kGuessedMultiprocessors;
+    const bool small = bucketCount <= gpu::kSmallTileBuckets;
+    const std::uint32_t tileHits =
+        (small ? gpu::kSmallTileThreads : gpu::kTileThreads) * gpu::kTileHitsOfThread;
+    // Keys of four bytes are the fewest that a thread counts at a time.
+    return {groupsFor(maxHits, gpu::kCountGroupSize * 4, processors * kCountGroups),
+            groupsFor(maxHits, tileHits, processors * (small ? kSmallCopyGroups : kCopyGroups))};
+}
+
+}  // namespace glint
