@@ -2,11 +2,11 @@
 """Makes tool/plan/strategy_constants.h, the costs of strategies that Glint knows without a calibration.
 
     scripts/fit_strategy_costs.py [--check]
-    scripts/fit_strategy_costs.py --points FOLDER/calibration.json [--program PATH]
+    scripts/fit_strategy_costs.py --points FOLDER/calibration.json... [--program PATH]
 
 The first writes the header from the device files scripts/strategy_costs_cpu.json and scripts/strategy_costs_gpu.json,
 those of them that there are; --check writes nothing and exits 1 where the header is not what they give. The second first
-fits the device file of that type anew to what `glint bench --calibrate -o FOLDER` has measured, by the same program code
+fits the device file of that type anew to what `glint bench --calibrate -o FOLDER` has measured, in one run or more, by the same program code
 (glint_fit_strategies, which the build makes) as `glint bench --calibrate` does. The same files give the same header,
 byte for byte.
 """
@@ -15,6 +15,9 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
+
+import calibrations
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HEADER = ROOT / "tool/plan/strategy_constants.h"
@@ -29,8 +32,11 @@ def device_file(kind):
 
 def fit(points, program):
     """Replaces the device file of the type that the points are of."""
-    kind = json.loads(points.read_text(encoding="utf-8"))["machine"]["deviceType"]
-    subprocess.run([program, points, device_file(kind)], check=True)
+    calibration = calibrations.merged(points)
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "calibration.json"
+        file.write_text(json.dumps(calibration), encoding="utf-8")
+        subprocess.run([program, file, device_file(calibration["machine"]["deviceType"])], check=True)
 
 
 def number(value):
@@ -127,7 +133,7 @@ def header():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
-    parser.add_argument("--points", type=pathlib.Path)
+    parser.add_argument("--points", type=pathlib.Path, nargs="+")
     parser.add_argument("--program", type=pathlib.Path, default=PROGRAM)
     arguments = parser.parse_args()
     if arguments.points:

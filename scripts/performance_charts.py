@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Charts and the table of crossovers of what `glint bench --calibrate` measured. Needs python3-matplotlib.
 
-    scripts/performance_charts.py CALIBRATION.json CHARTS.png      the table goes to standard output, in Markdown
+    scripts/performance_charts.py CALIBRATION.json... CHARTS.png      the table goes to standard output, in Markdown
 
 A chart for each cost, kind of hits and number of rays: time as a ratio to uber's against the number of cases, medians
 with their quartiles. The table says from how many cases on a strategy is faster than uber: where the line through the
@@ -9,10 +9,10 @@ medians, over the logarithm of cases, crosses 1 for the last time, and what it g
 """
 import argparse
 import collections
-import json
 import math
 import pathlib
 
+import calibrations
 import matplotlib
 
 matplotlib.use("Agg")
@@ -120,12 +120,10 @@ def table(report):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("calibration", type=pathlib.Path)
+    parser.add_argument("calibrations", type=pathlib.Path, nargs="+")
     parser.add_argument("charts", type=pathlib.Path)
     arguments = parser.parse_args()
-    report = json.loads(arguments.calibration.read_text(encoding="utf-8"))
-    if not report["points"]:
-        parser.error(f"{arguments.calibration} has no points")
+    report = calibrations.merged(arguments.calibrations)
     charts(report, arguments.charts)
     print(table(report))
 

@@ -90,14 +90,19 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                     work.push_back({{"share", 1.0 / cases}, {"instructions", 500}, {"fetches", 2}});
                 }
                 Json times = Json::array();
+                const double first =
+                    estimatedMs(bench::roundOf(point), planted->costs.strategies.front(), 32.0);
                 for (const StrategyCosts& costs : planted->costs.strategies) {
                     const double ms = estimatedMs(bench::roundOf(point), costs, 32.0);
                     times.push_back({{"strategy", costs.strategy},
-                                     {"time", {{"median", ms}, {"q1", ms}, {"q3", ms}}},
+                                     // As on a device whose clock changes from round to round.
+                                     {"time", {{"median", times.empty() ? ms : 3.0 * ms}}},
+                                     {"ratio", {{"median", ms / first}}},
                                      {"difference", {{"wrong", false}}}});
                 }
                 times.push_back({{"strategy", "uber"},
-                                 {"time", {{"median", 99.0}, {"q1", 99.0}, {"q3", 99.0}}},
+                                 {"time", {{"median", 99.0}}},
+                                 {"ratio", {{"median", 99.0}}},
                                  {"difference", {{"wrong", true}}}});
                 times.push_back({{"strategy", "uber"}, {"skipped", "too large"}});
                 points.push_back({{"cases", cases},

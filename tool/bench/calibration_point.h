@@ -14,13 +14,12 @@ struct CaseWork {
     double fetches = 0.0;       // of textures, likewise
 };
 
-// Milliseconds of the device for one sample, from the list of rays to their shaded hits: median and
-// quartiles.
+// Milliseconds of the device for one sample, from the list of rays to their shaded hits: the median of the
+// first strategy, times the median of this one's ratio to it in the same round, which a clock that changes
+// between rounds leaves alone.
 struct StrategyTime {
     std::string strategy;  // as --strategy has it
     double ms = 0.0;
-    double low = 0.0;
-    double high = 0.0;
 };
 
 struct CalibrationPoint {

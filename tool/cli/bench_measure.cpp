@@ -1,5 +1,6 @@
 #include "cli/bench_measure.h"
 
+#include "bench/rounds.h"
 #include "image/error.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <numeric>
 #include <random>
 #include <thread>
 #include <utility>
@@ -17,21 +17,6 @@ namespace glint {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// How long a GPU renders before a round, and before each picture that counts: its clocks fall while the host
-// works between rounds, and take a while to come up.
-constexpr std::chrono::milliseconds kRoundWarmUp{250};
-constexpr std::chrono::milliseconds kWarmUp{10};
-
-// A permutation of [0, count): Fisher and Yates, as std::shuffle differs between libraries.
-std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    for (std::size_t i = count; i > 1; --i) {
-        std::swap(order[i - 1], order[random() % i]);
-    }
-    return order;
-}
 
 bool sameBits(const LinearImage& a, const LinearImage& b) {
     return a.pixels == b.pixels;
@@ -131,10 +116,10 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // spreads small seeds over 64 bits
     std::mt19937_64 random(options_.seed + kOdd * seed);
     for (std::uint32_t round = 0; round < options_.rounds; ++round) {
-        if (Status warm = warmUp(baseEntry_.front(), kRoundWarmUp); !warm) {
+        if (Status warm = warmUp(baseEntry_.front(), bench::kRoundWarmUp); !warm) {
             return warm;
         }
-        for (const std::size_t i : shuffled(all.size(), random)) {
+        for (const std::size_t i : bench::shuffled(all.size(), random)) {
             if (Status exposed = expose(*all[i], options_.seed + round); !exposed) {
                 return exposed;
             }
@@ -156,7 +141,7 @@ Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) cons
 }
 
 Status Measurer::expose(Entry& entry, std::uint32_t seed) const {
-    if (Status warm = warmUp(entry, kWarmUp); !warm) {
+    if (Status warm = warmUp(entry, bench::kWarmUp); !warm) {
         return warm;
     }
     Result<Exposure> exposure = entry.mount.expose(seed);

@@ -1,5 +1,6 @@
 #include "cli/calibrate_measure.h"
 
+#include "bench/rounds.h"
 #include "cli/bench_bed.h"
 #include "cli/render_setup.h"
 #include "image/image_file.h"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <utility>
 
@@ -22,9 +22,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
-// As for every bench: before a round, and before each time that counts.
-constexpr Milliseconds kRoundWarmUp{250.0};
-constexpr Milliseconds kWarmUp{10.0};
 // So many samples that uber takes this long, within limits: the clock of a GPU ticks in microseconds at
 // worst, and a sample of 10⁶ rays takes about one millisecond.
 constexpr double kLeastMs = 10.0;
@@ -224,19 +221,13 @@ private:
     }
 
     Status measureRound(std::uint32_t round, std::mt19937_64& random, bool warms) {
-        if (Status warm = warms ? warmUp(runners_.front(), kRoundWarmUp) : okStatus(); !warm) {
+        if (Status warm = warms ? warmUp(runners_.front(), bench::kRoundWarmUp) : okStatus(); !warm) {
             return warm;
-        }
-        // Fisher and Yates; as std::shuffle differs between libraries.
-        std::vector<std::size_t> order(runners_.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        for (std::size_t i = order.size(); i > 1; --i) {
-            std::swap(order[i - 1], order[random() % i]);
         }
         FrameOptions frame = frame_;
         frame.seed = options_.seed + round;
-        for (const std::size_t i : order) {
-            Status measured = warms ? warmUp(runners_[i], kWarmUp) : okStatus();
+        for (const std::size_t i : bench::shuffled(runners_.size(), random)) {
+            Status measured = warms ? warmUp(runners_[i], bench::kWarmUp) : okStatus();
             measured = measured ? measureOnce(runners_[i], frame) : measured;
             if (!measured) {
                 return measured;

@@ -155,11 +155,15 @@ void settleEntry(CalibrationEntry& entry) {
     entry.point.times.clear();
     entry.fastest.clear();
     std::vector<std::pair<std::string, Interval>> ratios;
+    // What ratios are to: the first that was measured.
+    const auto base = std::ranges::find_if(
+        entry.strategies, [](const StrategyMeasure& measure) { return !measure.times.empty(); });
+    const double baseMs = base != entry.strategies.end() ? bench::intervalOf(base->times).median : 0.0;
     for (const StrategyMeasure& measure : entry.strategies) {
         if (counts(measure)) {
-            const Interval time = bench::intervalOf(measure.times);
-            entry.point.times.push_back({measure.strategy, time.median, time.q1, time.q3});
-            ratios.emplace_back(measure.strategy, bench::intervalOf(measure.ratios));
+            const Interval ratio = bench::intervalOf(measure.ratios);
+            entry.point.times.push_back({measure.strategy, baseMs * ratio.median});
+            ratios.emplace_back(measure.strategy, ratio);
         }
     }
     const auto least =

@@ -38,24 +38,24 @@ DeviceCosts readMachine(JsonReader& reader, const Json& json) {
 }
 
 // Adds the time of a strategy that was measured, and drew the picture that uber drew: of another one it would
-// say nothing.
-void readTime(JsonReader& reader, const Json& json, const std::string& place,
+// say nothing. `baseMs`: of the first that was measured, to which ratios are; 0 before.
+void readTime(JsonReader& reader, const Json& json, const std::string& place, double& baseMs,
               bench::CalibrationPoint& point) {
     if (json.is_object() && json.contains("skipped")) {
         return;
     }
     const std::string strategy = reader.text(json, place, "strategy");
     const Json* const time = reader.member(json, place, "time");
+    const Json* const ratio = reader.member(json, place, "ratio");
     const Json* const difference = reader.member(json, place, "difference");
-    if (time == nullptr || difference == nullptr) {
+    if (time == nullptr || ratio == nullptr || difference == nullptr) {
         return;
     }
-    const std::string there = place + "/time";
-    const double median = reader.number(*time, there, "median", 0.0, kAny);
-    const double low = reader.number(*time, there, "q1", 0.0, kAny);
-    const double high = reader.number(*time, there, "q3", 0.0, kAny);
+    const double median = reader.number(*time, place + "/time", "median", 0.0, kAny);
+    const double toBase = reader.number(*ratio, place + "/ratio", "median", 0.0, kAny);
+    baseMs = baseMs > 0.0 ? baseMs : median;
     if (!reader.flag(*difference, place + "/difference", "wrong")) {
-        point.times.push_back({strategy, median, low, high});
+        point.times.push_back({strategy, baseMs * toBase});
     }
 }
 
@@ -74,8 +74,9 @@ bench::CalibrationPoint readPoint(JsonReader& reader, const Json& json, const st
                               reader.number(work, there, "instructions", 0.0, kAny),
                               reader.number(work, there, "fetches", 0.0, kAny)});
     });
+    double baseMs = 0.0;
     reader.each(json, place, "strategies", [&](const Json& measured, const std::string& there) {
-        readTime(reader, measured, there, point);
+        readTime(reader, measured, there, baseMs, point);
     });
     return point;
 }

@@ -28,17 +28,17 @@ struct DeviceRow {
 };
 
 // NVIDIA H200, NVIDIA 580.159.04
-//     uber           24 points, estimates off by 9.2 % (median), 30.1 % at most
-//     sorted-uber    24 points, estimates off by 6.7 % (median), 17.7 % at most
-//     visibility     24 points, estimates off by 8.5 % (median), 34.2 % at most
-//     hit-shaders    24 points, estimates off by 17.4 % (median), 56.0 % at most
-//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.4 % (median),
-//     9.4 % at most; within 5 % at 91.7 % of 24 points
+//     uber           46 points, estimates off by 10.8 % (median), 37.4 % at most
+//     sorted-uber    46 points, estimates off by 4.8 % (median), 16.8 % at most
+//     visibility     46 points, estimates off by 5.8 % (median), 33.3 % at most
+//     hit-shaders    46 points, estimates off by 22.6 % (median), 126.2 % at most
+//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
+//     9.4 % at most; within 5 % at 97.8 % of 46 points
 inline constexpr StrategyConstants kGpu[] = {
-    {"uber", {0.05567, 0.0, 0.08413, 0.09457, 0.0, 0.07947, 0.0, 0.04324, 0.08733}},
-    {"sorted-uber", {0.09264, 0.0, 0.133, 0.1136, 0.0, 0.05273, 0.0, 0.002823, 0.0}},
-    {"visibility", {0.09324, 0.0004416, 0.1365, 0.1079, 0.00238, 0.05624, 0.0, 0.0, 0.0}},
-    {"hit-shaders", {0.08049, 0.0, 0.1116, 0.07341, 0.0, 0.0651, 0.07144, 0.06468, 0.1019}},
+    {"uber", {0.06173, 0.0, 0.08592, 0.07879, 0.0, 0.07791, 0.0, 0.0375, 0.08233}},
+    {"sorted-uber", {0.08911, 0.0001723, 0.1415, 0.1184, 0.0, 0.04257, 0.0, 0.00266, 0.0}},
+    {"visibility", {0.09047, 0.000675, 0.1403, 0.1189, 0.001912, 0.04537, 0.0, 0.0, 0.0}},
+    {"hit-shaders", {0.05956, 0.0, 0.1006, 0.05974, 0.0, 0.06646, 0.0, 0.05789, 0.07672}},
 };
 
 // llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
@@ -58,7 +58,7 @@ inline constexpr StrategyConstants kCpu[] = {
 inline constexpr DeviceRow kDevices[] = {
     {"NVIDIA H200", "NVIDIA 580.159.04",
      false, 32.0, "ray-pipeline", "inline",
-     "glint bench --output=/root/out/cal --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M",
+     "glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=4 --calibrate-rays=1M,8M,32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=32M",
      kGpu},
     {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
      true, 8.0, "ray-query", "inline",

@@ -125,7 +125,7 @@ void measure(std::vector<CalibrationPoint>& points, double noise) {
     for (CalibrationPoint& point : points) {
         for (const StrategyCosts& costs : kPlanted) {
             const double ms = estimatedMs(roundOf(point), costs, kSubgroup) * (1.0 + uniform(random));
-            point.times.push_back({costs.strategy, ms, ms, ms});
+            point.times.push_back({costs.strategy, ms});
         }
     }
 }
@@ -214,7 +214,7 @@ TEST(StrategyFit, SaysWhatItCanNotUse) {
     points[0].rays = std::numeric_limits<double>::quiet_NaN();
     points[1].times[0].ms = 0.0;
     points[2].work.clear();
-    points[3].times.push_back({"magic", 1.0, 1.0, 1.0});
+    points[3].times.push_back({"magic", 1.0});
     const DeviceFit fit = fitStrategies(points, kSubgroup);
     EXPECT_TRUE(fit.strategies.empty());
     std::string all;
