@@ -55,13 +55,13 @@ def print_best(rows, cub):
 
 def print_all(rows):
     names = list(dict.fromkeys(name for *_, name in rows))
-    hits = max(h for h, _, _, name in rows if name != "tile-sort")
-    print(f"\n| buckets | hits | {' | '.join(names)} |")
-    print("|---|---|" + "---|" * len(names))
-    for buckets in sorted({b for h, b, _, name in rows if h == hits and name != "tile-sort"}):
+    print(f"\n| hits | buckets | spread | {' | '.join(names)} |")
+    print("|---|---|---|" + "---|" * len(names))
+    for hits, buckets in sorted({(h, b) for h, b, _, name in rows if name != "tile-sort"}):
         for spread, title in SPREADS.items():
             found = [rows.get((hits, buckets, spread, name)) for name in names]
-            print(f"| {buckets} | {title} | " + " | ".join(f"{e['total']['median']:.0f}" if e else "-" for e in found) + " |")
+            cells = " | ".join(f"{e['total']['median']:.0f}" if e else "-" for e in found)
+            print(f"| {hits} | {buckets} | {title} | {cells} |")
 
 
 def draw(rows, cub, path):

@@ -24,9 +24,11 @@ struct PassDependencies {
                             VK_ACCESS_2_SHADER_WRITE_BIT},
           rasterToPasses{kRasterStage, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, stages,
                          VK_ACCESS_2_SHADER_READ_BIT},
-          passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
-                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
+          passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT},
+          passToDispatch{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                         VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
+                             VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
           passToClear{
               stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
               VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
@@ -37,9 +39,10 @@ struct PassDependencies {
 
     MemoryDependency clearToPasses;
     MemoryDependency rasterToPasses;
-    MemoryDependency passToPass;    // also into indirect arguments, which the dispatching passes read
-    MemoryDependency passToClear;   // of lists that are filled anew
-    MemoryDependency passesToCopy;  // counters that no pass touched were last written by a fill
+    MemoryDependency passToPass;
+    MemoryDependency passToDispatch;  // of one that writes indirect arguments
+    MemoryDependency passToClear;     // of lists that are filled anew
+    MemoryDependency passesToCopy;    // counters that no pass touched were last written by a fill
 };
 
 // Of passes that are not raster passes.

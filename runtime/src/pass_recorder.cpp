@@ -155,7 +155,6 @@ void PassRecorder::dispatchGroups(const std::string& name, const PassPipeline& p
     bindPass(pass);
     vk_.CmdDispatch(commands_, groups, 1, 1);
     endPass();
-    barrier(dependencies_.passToPass);
 }
 
 void PassRecorder::dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,

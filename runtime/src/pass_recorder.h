@@ -24,7 +24,7 @@ public:
     void drawScene();
     // Over the image.
     void dispatchPixels(const std::string& name, const PassPipeline& pass);
-    // So many workgroups, with a barrier behind them.
+    // So many workgroups.
     void dispatchGroups(const std::string& name, const PassPipeline& pass, std::uint32_t groups);
     // Over a list whose length the device knows: entry `index` of the arguments.
     void dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,

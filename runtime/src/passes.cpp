@@ -145,10 +145,13 @@ private:
             const TileSortGroups groups =
                 tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
             passes_.dispatchGroups("count", pass(ModuleRole::BucketCount), groups.count);
+            passes_.barrier(dependencies().passToPass);
             passes_.dispatchGroups("copy", pass(ModuleRole::BucketCopy), groups.copy);
+            passes_.barrier(dependencies().passToDispatch);
         } else {
             dispatchRays("count", ModuleRole::BucketCount);
             passes_.dispatchGroups("offset", pass(ModuleRole::BucketOffset), 1);
+            passes_.barrier(dependencies().passToDispatch);
             dispatchRays("copy", ModuleRole::BucketCopy);
         }
         if (state_.choice.checksOrder) {
@@ -177,6 +180,7 @@ private:
     // Shades what the rays of the list hit.
     void recordHits() {
         passes_.dispatchGroups("ray dispatch", pass(ModuleRole::RayDispatch), 1);
+        passes_.barrier(dependencies().passToDispatch);
         switch (state_.choice.strategy) {
             case package::kStrategyUber:
                 dispatchRays("uber", ModuleRole::UberShade);
@@ -196,6 +200,7 @@ private:
         }
         if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
             passes_.dispatchGroups("shadow dispatch", pass(ModuleRole::ShadowDispatch), 1);
+            passes_.barrier(dependencies().passToDispatch);
             passes_.dispatchList("shadow", pass(ModuleRole::ShadowTrace), state_.frame.shadowDispatch, 0);
             passes_.barrier(dependencies().passToPass);
         }

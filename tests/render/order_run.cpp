@@ -1,5 +1,6 @@
 // What an OrderKernel runs and times.
 #include "context_state.h"
+#include "pass_dependencies.h"
 #include "render/order_buffers.h"
 #include "render/order_kernel.h"
 #include "tile_sort.h"
@@ -23,12 +24,6 @@ constexpr std::uint32_t kPasses = 3;
 // Workgroups of the check: it takes any number.
 constexpr std::uint32_t kCheckGroups = 64;
 constexpr VkDeviceSize kWord = sizeof(std::uint32_t);
-
-// As between the passes of a frame.
-constexpr MemoryDependency kPassToPass{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-    VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
 
 }  // namespace
 
@@ -61,6 +56,7 @@ void OrderKernel::recordPasses(VkCommandBuffer commands, Ordering ordering, cons
     const auto index = static_cast<std::uint32_t>(ordering);
     const bool sortsTiles = ordering == Ordering::TileSort;
     const TileSortGroups groups = tileSortGroups(context_.limits, caseCount_ + 1, buffers.rays);
+    const PassDependencies dependencies(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
     const auto dispatch = [&](ModuleRole role, std::uint32_t groupsOfTiles) {
         bind(commands, {role, index});
         if (sortsTiles) {
@@ -68,18 +64,19 @@ void OrderKernel::recordPasses(VkCommandBuffer commands, Ordering ordering, cons
         } else {
             vk.CmdDispatchIndirect(commands, buffers.rayDispatch.handle.get(), 0);
         }
-        recordDependency(context_, commands, kPassToPass);
     };
     between(kCountPass);
     dispatch(ModuleRole::BucketCount, groups.count);
+    recordDependency(context_, commands, dependencies.passToPass);
     between(1 + kCountPass);
     if (!sortsTiles) {
         bind(commands, {ModuleRole::BucketOffset});
         vk.CmdDispatch(commands, 1, 1, 1);
-        recordDependency(context_, commands, kPassToPass);
+        recordDependency(context_, commands, dependencies.passToDispatch);
     }
     between(1 + kOffsetPass);
     dispatch(ModuleRole::BucketCopy, groups.copy);
+    recordDependency(context_, commands, sortsTiles ? dependencies.passToDispatch : dependencies.passToPass);
     between(1 + kCopyPass);
 }
 
@@ -208,6 +205,7 @@ Result<std::vector<double>> OrderKernel::copyTimes() {
     }
     timer_->recordReset(*commands);
     const auto runs = static_cast<std::uint32_t>(buffers_.size());
+    const PassDependencies dependencies(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
     context_.vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, plainCopy_.get());
     for (std::uint32_t i = 0; i < runs; ++i) {
         const OrderBuffers& from = *buffers_[i];
@@ -225,7 +223,7 @@ Result<std::vector<double>> OrderKernel::copyTimes() {
         const std::uint32_t groups = (pushed.vectors + 255) / 256;
         const std::uint32_t rows = groups / gpu::kMaxRayGroupsX + 1;
         context_.vk.CmdDispatch(*commands, (groups + rows - 1) / rows, rows, 1);
-        recordDependency(context_, *commands, kPassToPass);
+        recordDependency(context_, *commands, dependencies.passToPass);
         timer_->recordEnd(*commands, i);
     }
     if (Status status = runner_->submitAndWait(); !status) {
