@@ -42,17 +42,17 @@ inline constexpr StrategyConstants kGpu[] = {
 };
 
 // llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
-//     uber           32 points, estimates off by 57.8 % (median), 359.2 % at most
-//     sorted-uber    32 points, estimates off by 60.5 % (median), 220.1 % at most
-//     visibility     32 points, estimates off by 44.0 % (median), 155.1 % at most
-//     hit-shaders    32 points, estimates off by 45.3 % (median), 357.9 % at most
+//     uber           32 points, estimates off by 29.4 % (median), 69.2 % at most
+//     sorted-uber    32 points, estimates off by 48.1 % (median), 111.1 % at most
+//     visibility     32 points, estimates off by 43.1 % (median), 89.6 % at most
+//     hit-shaders    32 points, estimates off by 29.3 % (median), 68.5 % at most
 //     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
-//     154.5 % at most; within 5 % at 68.8 % of 32 points
+//     1.5 % at most; within 5 % at 100.0 % of 32 points
 inline constexpr StrategyConstants kCpu[] = {
-    {"uber", {0.0, 0.0, 127.3, 246.1, 0.0, 22.94, 62.08, 0.0, 0.0}},
-    {"sorted-uber", {0.0, 0.0, 20.84, 320.3, 18.35, 100.0, 0.0, 0.0, 0.0}},
-    {"visibility", {0.0, 0.006262, 21.92, 290.8, 36.84, 105.0, 0.0, 0.0, 0.0}},
-    {"hit-shaders", {0.0, 0.0, 206.3, 185.7, 0.0, 0.0, 64.81, 0.0, 0.0}},
+    {"uber", {0.0, 0.0, 93.63, 52.74, 0.0, 29.23, 0.0, 0.0, 36.53}},
+    {"sorted-uber", {0.2256, 0.0, 63.03, 142.0, 17.47, 49.3, 0.0, 3.117, 0.0}},
+    {"visibility", {0.357, 0.0308, 31.44, 152.7, 30.58, 52.24, 0.0, 0.0, 0.0}},
+    {"hit-shaders", {0.0, 0.0, 102.3, 72.86, 0.0, 36.66, 0.0, 0.0, 43.11}},
 };
 
 inline constexpr DeviceRow kDevices[] = {
@@ -62,7 +62,7 @@ inline constexpr DeviceRow kDevices[] = {
      kGpu},
     {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
      true, 8.0, "ray-query", "inline",
-     "glint bench --output=out/calibration --rounds=6 --calibrate --calibrate-cases=1,4,16,64 --calibrate-rays=16k,64k",
+     "glint bench --output=DIR --rounds=6 --calibrate --calibrate-cases=1,4,16,64 --calibrate-rays=16k,64k",
      kCpu},
 };
 
