@@ -6,9 +6,9 @@
 
 The first writes the header from the device files scripts/strategy_costs_cpu.json and scripts/strategy_costs_gpu.json,
 those of them that there are; --check writes nothing and exits 1 where the header is not what they give. The second first
-fits the device file of that type anew to what `glint bench --calibrate -o FOLDER` has measured, in one run or more, by the same program code
-(glint_fit_strategies, which the build makes) as `glint bench --calibrate` does. The same files give the same header,
-byte for byte.
+fits the device file of that type anew to what `glint bench --calibrate -o FOLDER` has measured, in one run or more, by the
+same program code (glint_fit_strategies, which the build makes) as `glint bench --calibrate` does. The same files give the
+same header, byte for byte.
 """
 import argparse
 import json

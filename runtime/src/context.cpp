@@ -41,7 +41,7 @@ namespace {
 // Sharp down to a cosine of 1 / 16.
 constexpr float kMaxAnisotropy = 16.0F;
 
-// Status "vulkan-call".
+// Error "vulkan-call".
 Status queryMultiprocessors(Context::State& state) {
     DeviceReport report;
     if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
