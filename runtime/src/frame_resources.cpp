@@ -119,7 +119,8 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
     // Up to the end of the last tile that may be read.
-    const VkDeviceSize keys = hits > 0 ? hits + VkDeviceSize{gpu::kTileThreads} * gpu::kTileHitsOfThread : 0;
+    const VkDeviceSize keys =
+        hits > 0 ? hits + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
     const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;

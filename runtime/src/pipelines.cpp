@@ -3,6 +3,7 @@
 #include "frame_resources.h"
 #include "ray_passes.h"
 #include "shader_modules.h"
+#include "tile_sort.h"
 #include "vulkan_error.h"
 
 #include <array>
@@ -145,6 +146,7 @@ PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipeli
 // Every compute pass and case of the choice.
 void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
                        VkPipelineLayout layout, PipelinePlan& plan) {
+    const bool sortsTiles = choice.ordering == package::Ordering::TileSort;
     // The loader gives entries that name one file the same words.
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
@@ -153,10 +155,14 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
             continue;
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
+        const std::uint32_t threads = key.role == ModuleRole::BucketCopy && sortsTiles
+                                          ? tileSortThreads(context.limits, package.bucketCount())
+                                          : 0;
         const auto [known, fresh] = byWords.emplace(words.data(), plan.jobs.size());
         if (fresh) {
             plan.jobs.push_back({pipelineName(package, key), words.size(),
-                                 [&context, words, layout](PipelineCreation& creation) {
+                                 [&context, words, layout, threads](PipelineCreation& creation) {
+                                     creation.threads = threads;
                                      return createComputePipeline(context, words, layout, creation);
                                  }});
         }

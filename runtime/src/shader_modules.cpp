@@ -38,6 +38,11 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     info.pNext = &feedback;
     info.flags = creation.flags;
     info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
+    const VkSpecializationMapEntry entry{0, 0, sizeof(creation.threads)};
+    const VkSpecializationInfo specialization{1, &entry, sizeof(creation.threads), &creation.threads};
+    if (creation.threads > 0) {
+        info.stage.pSpecializationInfo = &specialization;
+    }
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,

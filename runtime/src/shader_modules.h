@@ -17,6 +17,8 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
 // How a pipeline is to be made, and what the driver says of how it was.
 struct PipelineCreation {
     VkPipelineCreateFlags flags = 0;
+    std::uint32_t threads =
+        0;  // of a compute shader's workgroup, where that is its constant 0; 0: it has none
     VkPipelineCreationFeedback feedback{};  // without the flag VALID: nothing
 };
 

@@ -14,6 +14,7 @@ constexpr std::uint32_t kGuessedMultiprocessors = 64;
 constexpr std::uint32_t kCountGroups = 2;
 constexpr std::uint32_t kSmallCopyGroups = 3;
 constexpr std::uint32_t kCopyGroups = 2;
+constexpr std::uint32_t kLargeCopyGroups = 1;
 
 // Of scans: a word of shared memory for every fourth thread.
 constexpr std::uint32_t kLeastSubgroup = 4;
@@ -34,15 +35,27 @@ bool sortsTiles(const DeviceLimits& limits) {
            (limits.subgroupOperations & VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT) != 0;
 }
 
+std::uint32_t tileSortThreads(const DeviceLimits& limits, std::uint32_t bucketCount) {
+    if (bucketCount <= gpu::kSmallTileBuckets) {
+        return gpu::kSmallTileThreads;
+    }
+    const bool large = bucketCount > gpu::kTileBuckets &&
+                       limits.core.maxComputeSharedMemorySize >= gpu::kLargeTileSharedBytes &&
+                       limits.core.maxComputeWorkGroupInvocations >= gpu::kLargeTileThreads &&
+                       limits.core.maxComputeWorkGroupSize[0] >= gpu::kLargeTileThreads;
+    return large ? gpu::kLargeTileThreads : gpu::kTileThreads;
+}
+
 TileSortGroups tileSortGroups(const DeviceLimits& limits, std::uint32_t bucketCount, std::uint64_t maxHits) {
     const std::uint32_t processors =
         limits.multiprocessors > 0 ? limits.multiprocessors : kGuessedMultiprocessors;
-    const bool small = bucketCount <= gpu::kSmallTileBuckets;
-    const std::uint32_t tileHits =
-        (small ? gpu::kSmallTileThreads : gpu::kTileThreads) * gpu::kTileHitsOfThread;
+    const std::uint32_t threads = tileSortThreads(limits, bucketCount);
+    const std::uint32_t copyGroups = threads < gpu::kTileThreads   ? kSmallCopyGroups
+                                     : threads > gpu::kTileThreads ? kLargeCopyGroups
+                                                                   : kCopyGroups;
     // Keys of four bytes are the fewest that a thread counts at a time.
     return {groupsFor(maxHits, gpu::kCountGroupSize * 4, processors * kCountGroups),
-            groupsFor(maxHits, tileHits, processors * (small ? kSmallCopyGroups : kCopyGroups))};
+            groupsFor(maxHits, threads * gpu::kTileHitsOfThread, processors * copyGroups)};
 }
 
 }  // namespace glint

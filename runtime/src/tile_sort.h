@@ -10,6 +10,9 @@ namespace glint {
 // Whether the device has the shared memory, threads and subgroups that it takes.
 bool sortsTiles(const DeviceLimits& limits);
 
+// Threads of a workgroup of its copy pass.
+std::uint32_t tileSortThreads(const DeviceLimits& limits, std::uint32_t bucketCount);
+
 // Workgroups of its passes: as many as run at once, which share the hits out among them, and no more than
 // `maxHits` keep busy.
 struct TileSortGroups {

@@ -16,15 +16,19 @@ GLINT_CONSTANT(kScanGroupSize, 256u);
 
 // Buckets that the orderings local-histogram and tile-sort hold in shared memory.
 GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
-// The ordering tile-sort: hits of a tile, which a workgroup sorts at a time, by thread; threads of such a workgroup, fewer
-// where there are few buckets; and of one that counts. A vector of keys may be read up to the end of the last tile.
+// The ordering tile-sort: hits of a tile, which a workgroup sorts at a time, by thread; threads of such a workgroup by the
+// number of buckets, up to kSmallTileBuckets, up to kTileBuckets, and above it, where a device can; and of one that
+// counts. A vector of keys may be read up to the end of the last tile.
 GLINT_CONSTANT(kTileHitsOfThread, 8u);
 GLINT_CONSTANT(kSmallTileBuckets, 128u);
+GLINT_CONSTANT(kTileBuckets, 512u);
 GLINT_CONSTANT(kSmallTileThreads, 448u);
 GLINT_CONSTANT(kTileThreads, 512u);
+GLINT_CONSTANT(kLargeTileThreads, 1024u);
 GLINT_CONSTANT(kCountGroupSize, 512u);
-// What it takes at most: bytes of shared memory (a word a hit, a bucket and a subgroup).
+// What it takes at most: bytes of shared memory (a word a hit, a bucket and a subgroup); and with kLargeTileThreads.
 GLINT_CONSTANT(kTileSharedBytes, 20992u);
+GLINT_CONSTANT(kLargeTileSharedBytes, 37888u);
 
 // HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);

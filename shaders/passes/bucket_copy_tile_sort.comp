@@ -12,26 +12,33 @@
 #include "hit/bucket_scan.glsl"
 #include "hit/tile_sort.glsl"
 
-// An H200 has shared memory for three of the small workgroups on a multiprocessor, for two of the others.
+// An H200 has shared memory for three of the small workgroups on a multiprocessor, for two of the next, for one of the
+// large ones, whose tiles have twice as many hits of each bucket. A device that cannot run these runs kTileThreads.
+#if GLINT_CASE_COUNT < 512  // kTileBuckets
 const uint kThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
+layout(local_size_x = kThreads) in;
+#else
+layout(local_size_x_id = 0) in;
+const uint kThreads = gl_WorkGroupSize.x;
+#endif
 const uint kTileHits = kThreads * kTileHitsOfThread;
+// What arrays are as long as is known without the constant.
+const uint kLeastThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
 
 #include "hit/scan.glsl"
-
-layout(local_size_x = kThreads) in;
 
 // Counters of a bucket, so that neighbours with hits of the same one do not wait for each other: an atomic that returns
 // takes its turn. Few, as they have to be scanned.
 const uint kCopies = clamp(2048u / kLocalBuckets, 1u, 16u);
 const uint kCounters = kLocalBuckets * kCopies;
 // Odd, so that threads that scan their own read from different banks.
-const uint kCountersOfThread = (kCounters + kThreads - 1u) / kThreads | 1u;
+const uint kCountersOfThread = (kCounters + kLeastThreads - 1u) / kLeastThreads | 1u;
 // Those that a thread takes room in.
-const uint kBucketsOfThread = (kLocalBuckets + kThreads - 1u) / kThreads;
+const uint kBucketsOfThread = (kLocalBuckets + kLeastThreads - 1u) / kLeastThreads;
 // Words with the keys of a thread's hits.
 const uint kKeyWords = kTileHitsOfThread * kKeyBytes / 4u;
 
-shared uint tile[max(kCountersOfThread * kThreads, kTileHits)];  // counters; later the sorted hits
+shared uint tile[kThreads * max(kCountersOfThread, kTileHitsOfThread)];  // counters; later the sorted hits
 shared uint slotOffsets[kLocalBuckets];                          // from a place in the sorted tile to the slot, by bucket
 
 // Keys of a thread's hits in the tile that begins with hit `first`.

@@ -38,7 +38,8 @@ std::vector<std::uint8_t> hitBytes(const OrderProblem& problem, package::HitReco
 // As the trace pass leaves them, and behind them what tile-sort may read.
 std::vector<std::uint8_t> keyBytes(const OrderProblem& problem, std::uint32_t bucketCount) {
     const std::size_t stride = bucketCount <= 0x100 ? 1 : bucketCount <= 0x10000 ? 2 : 4;
-    const std::size_t keys = problem.hits.size() + std::size_t{gpu::kTileThreads} * gpu::kTileHitsOfThread;
+    const std::size_t keys =
+        problem.hits.size() + std::size_t{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread;
     std::vector<std::uint8_t> bytes(keys * stride, 0xFF);
     for (std::size_t i = 0; i < problem.hits.size(); ++i) {
         const std::uint32_t bucket = bucketOf(problem, i, bucketCount);

@@ -5,6 +5,7 @@
 #include "emit/modules.h"
 #include "shader_modules.h"
 #include "spirv/compiler.h"
+#include "tile_sort.h"
 #include "vulkan_error.h"
 
 #include <fmt/format.h>
@@ -109,7 +110,13 @@ Status OrderKernel::createPipelines() {
         return modules.error();
     }
     for (const CompiledModule& module : *modules) {
-        Result<UniquePipeline> pipeline = createComputePipeline(context_, module.spirv, layout_.get());
+        PipelineCreation creation;
+        if (module.key == package::ModuleKey{ModuleRole::BucketCopy,
+                                             static_cast<std::uint32_t>(package::Ordering::TileSort)}) {
+            creation.threads = tileSortThreads(context_.limits, caseCount_ + 1);
+        }
+        Result<UniquePipeline> pipeline =
+            createComputePipeline(context_, module.spirv, layout_.get(), creation);
         if (!pipeline) {
             return pipeline.error();
         }

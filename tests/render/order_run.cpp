@@ -76,7 +76,9 @@ void OrderKernel::recordPasses(VkCommandBuffer commands, Ordering ordering, cons
     }
     between(1 + kOffsetPass);
     dispatch(ModuleRole::BucketCopy, groups.copy);
-    recordDependency(context_, commands, sortsTiles ? dependencies.passToDispatch : dependencies.passToPass);
+    // As behind the plain copy. What reads indirect arguments that tile-sort's last pass writes has to wait
+    // for those as well.
+    recordDependency(context_, commands, dependencies.passToPass);
     between(1 + kCopyPass);
 }
 
