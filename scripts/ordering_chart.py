@@ -54,7 +54,7 @@ def print_best(rows, cub):
 
 
 def print_all(rows):
-    names = list(dict.fromkeys(name for *_, name in rows))
+    names = sorted(dict.fromkeys(name for *_, name in rows), key="tile-sort".__eq__)
     print(f"\n| hits | buckets | spread | {' | '.join(names)} |")
     print("|---|---|---|" + "---|" * len(names))
     for hits, buckets in sorted({(h, b) for h, b, _, name in rows if name != "tile-sort"}):
@@ -73,7 +73,7 @@ def draw(rows, cub, path):
             axis.plot([b for b, _ in points], [e["total"]["median"] for _, e in points], "o-", color=color, label=f"tile-sort, {SPREADS[spread]}")
         sorts = sorted((b, e) for (h, b), e in cub.items() if h == hits)
         axis.plot([b for b, _ in sorts], [e["sortNarrowKeys"]["median"] for _, e in sorts], "s--", color="black", label="CUB, narrow keys")
-        copies = [e["plainCopy"]["median"] for (h, *_), e in rows.items() if h == hits]
+        copies = [e["plainCopy"]["median"] for (h, _, _, name), e in rows.items() if (h, name) == (hits, "tile-sort")]
         axis.axhline(sorted(copies)[len(copies) // 2], color="grey", label="copy of 4 bytes a hit")
         axis.set(xscale="log", title=f"{hits / 2**20:.0f} · 2²⁰ hits", xlabel="buckets", ylabel="µs", ylim=(0, None))
         axis.set_xticks([2, 16, 64, 256, 1024], ["2", "16", "64", "256", "1024"])

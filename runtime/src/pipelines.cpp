@@ -125,6 +125,9 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     if (info.repeated == package::Repeated::ByOrdering) {
         return key.index == static_cast<std::uint32_t>(choice.ordering);
     }
+    if (key.role == ModuleRole::BucketOffset) {
+        return choice.ordering != package::Ordering::TileSort;
+    }
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 

@@ -28,17 +28,17 @@ struct DeviceRow {
 };
 
 // NVIDIA H200, NVIDIA 580.159.04
-//     uber           46 points, estimates off by 10.8 % (median), 37.4 % at most
-//     sorted-uber    46 points, estimates off by 4.8 % (median), 16.8 % at most
-//     visibility     46 points, estimates off by 5.8 % (median), 33.3 % at most
-//     hit-shaders    46 points, estimates off by 22.6 % (median), 126.2 % at most
+//     uber           52 points, estimates off by 9.3 % (median), 34.2 % at most
+//     sorted-uber    52 points, estimates off by 4.6 % (median), 17.7 % at most
+//     visibility     52 points, estimates off by 6.0 % (median), 31.2 % at most
+//     hit-shaders    52 points, estimates off by 19.0 % (median), 136.2 % at most
 //     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
-//     9.4 % at most; within 5 % at 97.8 % of 46 points
+//     8.6 % at most; within 5 % at 96.2 % of 52 points
 inline constexpr StrategyConstants kGpu[] = {
-    {"uber", {0.06173, 0.0, 0.08592, 0.07879, 0.0, 0.07791, 0.0, 0.0375, 0.08233}},
-    {"sorted-uber", {0.08911, 0.0001723, 0.1415, 0.1184, 0.0, 0.04257, 0.0, 0.00266, 0.0}},
-    {"visibility", {0.09047, 0.000675, 0.1403, 0.1189, 0.001912, 0.04537, 0.0, 0.0, 0.0}},
-    {"hit-shaders", {0.05956, 0.0, 0.1006, 0.05974, 0.0, 0.06646, 0.0, 0.05789, 0.07672}},
+    {"uber", {0.06097, 0.0, 0.08762, 0.07144, 0.0, 0.08059, 0.0, 0.03316, 0.0853}},
+    {"sorted-uber", {0.09131, 0.0, 0.1421, 0.1203, 0.0, 0.04314, 0.0, 0.00171, 0.0}},
+    {"visibility", {0.09988, 0.0001272, 0.1371, 0.1197, 0.003504, 0.04388, 0.0, 0.0, 0.0}},
+    {"hit-shaders", {0.05827, 0.0, 0.1029, 0.04979, 0.0, 0.06789, 0.0, 0.05379, 0.08257}},
 };
 
 // llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
@@ -58,7 +58,7 @@ inline constexpr StrategyConstants kCpu[] = {
 inline constexpr DeviceRow kDevices[] = {
     {"NVIDIA H200", "NVIDIA 580.159.04",
      false, 32.0, "ray-pipeline", "inline",
-     "glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=4 --calibrate-rays=1M,8M,32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=32M",
+     "glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=4 --calibrate-rays=1M,8M,32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=64 --calibrate-rays=32M --calibrate-cost=expensive; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=256 --calibrate-rays=1M,8M --calibrate-cost=cheap",
      kGpu},
     {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
      true, 8.0, "ray-query", "inline",
