@@ -18,7 +18,7 @@
 const uint kThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
 layout(local_size_x = kThreads) in;
 #else
-layout(local_size_x_id = 0) in;
+layout(local_size_x = kTileThreads, local_size_x_id = 0) in;
 const uint kThreads = gl_WorkGroupSize.x;
 #endif
 const uint kTileHits = kThreads * kTileHitsOfThread;
