@@ -149,7 +149,6 @@ PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipeli
 // Every compute pass and case of the choice.
 void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
                        VkPipelineLayout layout, PipelinePlan& plan) {
-    const bool sortsTiles = choice.ordering == package::Ordering::TileSort;
     // The loader gives entries that name one file the same words.
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
@@ -158,9 +157,7 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
             continue;
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
-        const std::uint32_t threads = key.role == ModuleRole::BucketCopy && sortsTiles
-                                          ? tileSortThreads(context.limits, package.bucketCount())
-                                          : 0;
+        const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
         const auto [known, fresh] = byWords.emplace(words.data(), plan.jobs.size());
         if (fresh) {
             plan.jobs.push_back({pipelineName(package, key), words.size(),

@@ -46,6 +46,13 @@ std::uint32_t tileSortThreads(const DeviceLimits& limits, std::uint32_t bucketCo
     return large ? gpu::kLargeTileThreads : gpu::kTileThreads;
 }
 
+std::uint32_t chosenThreads(const DeviceLimits& limits, const package::ModuleKey& key,
+                            std::uint32_t bucketCount) {
+    constexpr auto kTileSort = static_cast<std::uint32_t>(package::Ordering::TileSort);
+    const bool copiesTiles = key.role == package::ModuleRole::BucketCopy && key.index == kTileSort;
+    return copiesTiles ? tileSortThreads(limits, bucketCount) : 0;
+}
+
 TileSortGroups tileSortGroups(const DeviceLimits& limits, std::uint32_t bucketCount, std::uint64_t maxHits) {
     const std::uint32_t processors =
         limits.multiprocessors > 0 ? limits.multiprocessors : kGuessedMultiprocessors;

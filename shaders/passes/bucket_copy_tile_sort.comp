@@ -14,16 +14,16 @@
 
 // An H200 has shared memory for three of the small workgroups on a multiprocessor, for two of the next, for one of the
 // large ones, whose tiles have twice as many hits of each bucket. A device that cannot run these runs kTileThreads.
+// Arrays are as long as the least takes, which is known without the constant.
+const uint kLeastThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
 #if GLINT_CASE_COUNT < 512  // kTileBuckets
-const uint kThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
-layout(local_size_x = kThreads) in;
+layout(local_size_x = kLeastThreads) in;
+const uint kThreads = kLeastThreads;
 #else
 layout(local_size_x = kTileThreads, local_size_x_id = 0) in;
 const uint kThreads = gl_WorkGroupSize.x;
 #endif
 const uint kTileHits = kThreads * kTileHitsOfThread;
-// What arrays are as long as is known without the constant.
-const uint kLeastThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
 
 #include "hit/scan.glsl"
 
@@ -39,7 +39,7 @@ const uint kBucketsOfThread = (kLocalBuckets + kLeastThreads - 1u) / kLeastThrea
 const uint kKeyWords = kTileHitsOfThread * kKeyBytes / 4u;
 
 shared uint tile[kThreads * max(kCountersOfThread, kTileHitsOfThread)];  // counters; later the sorted hits
-shared uint slotOffsets[kLocalBuckets];                          // from a place in the sorted tile to the slot, by bucket
+shared uint slotOffsets[kLocalBuckets];  // from a place in the sorted tile to the slot, by bucket
 
 // Keys of a thread's hits in the tile that begins with hit `first`.
 uint[kKeyWords] loadKeys(KeyArray list, uint first) {

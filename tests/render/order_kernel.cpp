@@ -111,10 +111,7 @@ Status OrderKernel::createPipelines() {
     }
     for (const CompiledModule& module : *modules) {
         PipelineCreation creation;
-        if (module.key == package::ModuleKey{ModuleRole::BucketCopy,
-                                             static_cast<std::uint32_t>(package::Ordering::TileSort)}) {
-            creation.threads = tileSortThreads(context_.limits, caseCount_ + 1);
-        }
+        creation.threads = chosenThreads(context_.limits, module.key, caseCount_ + 1);
         Result<UniquePipeline> pipeline =
             createComputePipeline(context_, module.spirv, layout_.get(), creation);
         if (!pipeline) {
