@@ -19,11 +19,17 @@ static_assert(gpu::kEffectReflection == package::kEffectReflection);
 static_assert(gpu::kEffectRefraction == package::kEffectRefraction);
 static_assert(gpu::kEffectIndirectDiffuse == package::kEffectIndirectDiffuse);
 static_assert(gpu::kEffectCount == package::kEffectCount);
-static_assert(gpu::kCounterNonFinite == gpu::kCounterEffects + gpu::kEffectCount * gpu::kCountsOfEffect);
 
 EffectCounters countersOf(const Counters& values, package::Effect effect) {
     const auto count = [&](std::uint32_t kind) {
-        return values[gpu::kCounterEffects + gpu::kCountsOfEffect * package::effectNumber(effect) + kind];
+        constexpr std::uint32_t kCountersOfCopy = gpu::kEffectCount * gpu::kCountsOfEffect;
+        std::uint32_t place =
+            gpu::kCounterEffects + gpu::kCountsOfEffect * package::effectNumber(effect) + kind;
+        std::uint32_t sum = 0;
+        for (std::uint32_t copy = 0; copy < gpu::kCounterCopies; ++copy, place += kCountersOfCopy) {
+            sum += values[place];
+        }
+        return sum;
     };
     EffectCounters counters;
     counters.effect = effect;

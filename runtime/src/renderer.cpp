@@ -234,7 +234,9 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
     if (sampleCount == 0) {
         return makeError("frame-options", "", "0 samples make no image", "render at least one sample");
     }
+    const Timing asked = sample.timing;
     for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
+        sample.timing = sample.sampleIndex + 1 == sampleCount ? asked : Timing::Frame;
         Result<VkCommandBuffer> commands = runner.begin();
         if (!commands) {
             return commands.error();

@@ -1,5 +1,8 @@
-// Counts of what effects do. In compute shaders one atomic a subgroup, and all threads of it call; ray generation
-// shaders, which may lack subgroup operations, add one by one.
+// Counts of what effects do. Each has kCounterCopies counters, and workgroups next to each other add to different ones:
+// a GPU adds to one address by one atomic after the other. The host sums them up.
+//
+// In compute shaders one atomic a subgroup, and all threads of it call; ray generation shaders, which may lack subgroup
+// operations, add one by one.
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
@@ -9,9 +12,19 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
 
+// Which of the copies this thread adds to: equal in all threads of a subgroup.
+uint counterCopy() {
+#if GLINT_RAY_GENERATION
+    return (gl_LaunchIDEXT.x / kRayGroupSize + gl_LaunchIDEXT.y) % kCounterCopies;
+#else
+    return (gl_WorkGroupID.x + gl_WorkGroupID.y) % kCounterCopies;
+#endif
+}
+
 // Place of a count (kRay*, kCount*) of an effect.
 uint counterOf(uint effect, uint kind) {
-    return kCounterEffects + kCountsOfEffect * uint(findLSB(effect)) + kind;
+    uint number = kEffectCount * counterCopy() + uint(findLSB(effect));
+    return kCounterEffects + kCountsOfEffect * number + kind;
 }
 
 void addToCounter(uint counter, uint amount) {
@@ -29,17 +42,12 @@ void addToCounter(uint counter, uint amount) {
 
 #if !GLINT_RAY_GENERATION
 
-// Adds the number of threads that say so to a counter; returns the first of the counts given to this subgroup.
-uint countInSubgroup(uint counter, bool counted) {
-    uvec4 ballot = subgroupBallot(counted);
-    uint base = 0u;
-    if (subgroupElect()) {
-        uint total = subgroupBallotBitCount(ballot);
-        if (total > 0u) {
-            base = atomicAdd(GLINT_FRAME.counters.data[counter], total);
-        }
+// Adds the number of threads that say so.
+void countThreads(uint counter, bool counted) {
+    uint total = subgroupBallotBitCount(subgroupBallot(counted));
+    if (subgroupElect() && total > 0u) {
+        atomicAdd(GLINT_FRAME.counters.data[counter], total);
     }
-    return subgroupBroadcastFirst(base) + subgroupBallotExclusiveBitCount(ballot);
 }
 
 // Adds one to the count `kind` of each thread that says so, with an atomic for each that the subgroup has.
@@ -48,7 +56,7 @@ void countKinds(uint effect, bool counted, uint kind) {
     uint waiting = counted ? kind : kNone;
     uint next = subgroupMin(waiting);
     while (next != kNone) {
-        countInSubgroup(counterOf(effect, next), waiting == next);
+        countThreads(counterOf(effect, next), waiting == next);
         waiting = waiting == next ? kNone : waiting;
         next = subgroupMin(waiting);
     }

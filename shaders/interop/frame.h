@@ -151,9 +151,12 @@ GLINT_CONSTANT(kCounterRays, 0u);           // rays appended to the list
 GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays of the list
 GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
 GLINT_CONSTANT(kCounterOrderErrors, 3u);    // found by the check of the order: lost, doubled or misplaced hits
-GLINT_CONSTANT(kCounterEffects, 4u);        // kCountsOfEffect for each effect, in order of their bits
-GLINT_CONSTANT(kCounterNonFinite, 84u);     // pixels whose sample was no number: taken as black
-GLINT_CONSTANT(kCounterCount, 85u);
+// kCounterCopies times, to be added up: kCountsOfEffect for each effect, in order of their bits.
+GLINT_CONSTANT(kCounterEffects, 4u);
+GLINT_CONSTANT(kCounterCopies, 64u);
+// Pixels whose sample was no number: taken as black.
+GLINT_CONSTANT(kCounterNonFinite, kCounterEffects + kCounterCopies * kEffectCount * kCountsOfEffect);
+GLINT_CONSTANT(kCounterCount, kCounterNonFinite + 1u);
 
 // FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);

@@ -30,12 +30,9 @@ StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string&
     row.hitRatio = bench::intervalOf(point.hitRatios);
     row.traceMs = overRounds(point, [](const Hits& hits) { return hits.trace; }).median;
     row.orderMs = overRounds(point, [](const Hits& hits) { return hits.order; }).median;
-    row.shadeMs = overRounds(point, [](const Hits& hits) { return hits.shade + hits.shadow; }).median;
-    double all = 0.0;
-    for (const auto& [name, times] : point.passes) {
-        all += bench::intervalOf(times).median;
-    }
-    row.commonMs = all - row.traceMs - row.orderMs - row.shadeMs;
+    // The rest, as passes that shade overlap where nothing is measured between them.
+    row.shadeMs = std::max(row.hits.median - row.traceMs - row.orderMs, 0.0);
+    row.commonMs = std::max(bench::intervalOf(point.times).median - row.hits.median, 0.0);
     row.rays = point.counters.rays;
     return row;
 }

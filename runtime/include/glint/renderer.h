@@ -261,8 +261,8 @@ public:
 
     // Records, submits and waits: samples [0, sampleCount) of the frame; then reads back. For tools and
     // tests.
-    // `afterSample` is called when a sample has completed and counters() are its own; its error ends the
-    // work.
+    // `afterSample` is called when a sample has completed, and counters() and timings() are its own; its
+    // error ends the work. FrameOptions::timing is of the last sample, those before are timed as a frame.
     Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1,
                                const std::function<Status()>& afterSample = {});
 

@@ -179,7 +179,14 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     EXPECT_EQ((*stretches)[1].name, "hits");
     EXPECT_GE((*stretches)[0].milliseconds, (*stretches)[1].milliseconds);
     frame.timing = Timing::Passes;
-    ASSERT_TRUE(renderer_->render(frame));
+    std::vector<std::size_t> timed;  // of each sample: only the last has its passes measured
+    ASSERT_TRUE(renderer_->render(frame, 2, [&] {
+        timed.push_back(renderer_->timings()->size());
+        return okStatus();
+    }));
+    ASSERT_EQ(timed.size(), 2U);
+    EXPECT_EQ(timed[0], 2U);
+    EXPECT_GT(timed[1], 2U);
 
     const Result<FrameCounters> counters = renderer_->counters();
     ASSERT_TRUE(counters);
