@@ -28,17 +28,17 @@ struct DeviceRow {
 };
 
 // NVIDIA H200, NVIDIA 580.159.04
-//     uber           52 points, estimates off by 9.3 % (median), 34.2 % at most
-//     sorted-uber    52 points, estimates off by 4.6 % (median), 17.7 % at most
-//     visibility     52 points, estimates off by 6.0 % (median), 31.2 % at most
-//     hit-shaders    52 points, estimates off by 19.0 % (median), 136.2 % at most
+//     uber           56 points, estimates off by 11.7 % (median), 85.5 % at most
+//     sorted-uber    56 points, estimates off by 5.1 % (median), 17.2 % at most
+//     visibility     56 points, estimates off by 6.2 % (median), 33.4 % at most
+//     hit-shaders    56 points, estimates off by 29.5 % (median), 136.3 % at most
 //     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
-//     8.6 % at most; within 5 % at 96.2 % of 52 points
+//     9.2 % at most; within 5 % at 94.6 % of 56 points
 inline constexpr StrategyConstants kGpu[] = {
-    {"uber", {0.06097, 0.0, 0.08762, 0.07144, 0.0, 0.08059, 0.0, 0.03316, 0.0853}},
-    {"sorted-uber", {0.09131, 0.0, 0.1421, 0.1203, 0.0, 0.04314, 0.0, 0.00171, 0.0}},
-    {"visibility", {0.09988, 0.0001272, 0.1371, 0.1197, 0.003504, 0.04388, 0.0, 0.0, 0.0}},
-    {"hit-shaders", {0.05827, 0.0, 0.1029, 0.04979, 0.0, 0.06789, 0.0, 0.05379, 0.08257}},
+    {"uber", {0.06096, 0.0, 0.1135, 0.05625, 0.0, 0.07318, 0.0, 0.02379, 0.08667}},
+    {"sorted-uber", {0.09272, 0.0, 0.1368, 0.1207, 0.0, 0.0443, 0.0, 0.002533, 0.0}},
+    {"visibility", {0.09655, 0.0002409, 0.1239, 0.1202, 0.004866, 0.05046, 0.0, 0.0, 0.0}},
+    {"hit-shaders", {0.05699, 0.0, 0.1364, 0.02626, 0.0, 0.05988, 0.0, 0.03607, 0.08683}},
 };
 
 // llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
@@ -58,7 +58,7 @@ inline constexpr StrategyConstants kCpu[] = {
 inline constexpr DeviceRow kDevices[] = {
     {"NVIDIA H200", "NVIDIA 580.159.04",
      false, 32.0, "ray-pipeline", "inline",
-     "glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=4 --calibrate-rays=1M,8M,32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=64 --calibrate-rays=32M --calibrate-cost=expensive; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=256 --calibrate-rays=1M,8M --calibrate-cost=cheap",
+     "glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=1M,8M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=256 --calibrate-rays=1M,8M --calibrate-cost=cheap; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=256 --calibrate-rays=1M,8M --calibrate-cost=expensive --calibrate-coherence=coherent; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=256 --calibrate-rays=1M,8M --calibrate-cost=expensive --calibrate-coherence=incoherent; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=1,16,64 --calibrate-rays=32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=4 --calibrate-rays=1M,8M,32M; glint bench --output=DIR --rounds=3 --calibrate --calibrate-cases=64 --calibrate-rays=32M --calibrate-cost=expensive",
      kGpu},
     {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
      true, 8.0, "ray-query", "inline",
