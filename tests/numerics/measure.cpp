@@ -35,7 +35,7 @@ Result<Calls> findCalls(std::string_view name) {
     const Calls calls{findCall(floatProbes(), name), findCall(doubleProbes(), name)};
     if (calls.single == nullptr) {
         return makeError("probe-name", std::string(name),
-                         "no probe of that name in probes.glsl or textbook.glsl",
+                         "no probe of that name in probes_*.glsl or textbook.glsl",
                          "name the probe as PROBE() does");
     }
     return calls;
