@@ -90,7 +90,8 @@ double expectLikeRays(const TracedFrame& hybrid, const TracedFrame& rays) {
 
 class ScreenSpace : public ::testing::TestWithParam<std::uint32_t> {};
 
-INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPixel));
+INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPixel),
+                         ::testing::PrintToStringParamName());
 
 // The floor's pixels show what a camera two metres below, looking up through it, would see: the line of sight
 // of row y meets the plane z = -d at the height -2 + d s, s = 2 (y + 1/2) / 64 - 1.

@@ -32,7 +32,10 @@ std::vector<std::array<float, 3>> exactPixels() {
 
 class Hdr : public ::testing::TestWithParam<HdrEncoding> {};
 
-INSTANTIATE_TEST_SUITE_P(Encodings, Hdr, ::testing::Values(HdrEncoding::Flat, HdrEncoding::RunLength));
+INSTANTIATE_TEST_SUITE_P(Encodings, Hdr, ::testing::Values(HdrEncoding::Flat, HdrEncoding::RunLength),
+                         [](const ::testing::TestParamInfo<HdrEncoding>& encoding) {
+                             return encoding.param == HdrEncoding::Flat ? "Flat" : "RunLength";
+                         });
 
 TEST_P(Hdr, ReadsWhatWasWritten) {
     const auto pixels = exactPixels();
