@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Charts and the table of crossovers of what `glint bench --calibrate` measured. Needs python3-matplotlib.
+"""Charts and tables of what `glint bench --calibrate` measured. Needs python3-matplotlib.
 
-    scripts/performance_charts.py CALIBRATION.json... CHARTS.png      the table goes to standard output, in Markdown
+    scripts/performance_charts.py CALIBRATION.json... CHARTS.png      the tables go to standard output, in Markdown
 
 A chart for each cost, kind of hits and number of rays: time as a ratio to uber's against the number of cases, medians
-with their quartiles. The table says from how many cases on a strategy is faster than uber: where the line through the
-medians, over the logarithm of cases, crosses 1 for the last time, and what it gains at the most cases.
+with their quartiles. The first table says from how many cases on a strategy is faster than uber: where the line through
+the medians, over the logarithm of cases, crosses 1 for the last time, and what it gains at the most cases. The second
+says where the time goes, of every point: tracing and ordering measured alone, as visibility does them, and shading as
+what is left of a strategy's time, as passes that shade overlap where nothing is measured between them.
 """
 import argparse
 import collections
@@ -118,6 +120,27 @@ def table(report):
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
 
+def split_table(report):
+    """Milliseconds: the time of uber, and of the others that times their ratio to it in the same round."""
+    rows = [["cases", "cost", "hits", "rays", "trace", "order", "shade, visibility", "shade, sorted-uber", "uber, trace and shade"]]
+    rows.append(["---"] * len(rows[0]))
+    kinds = list(lines_of(report))
+    for point in sorted(report["points"], key=lambda p: (kinds.index((p["cost"], p["coherence"])), p["rays"], p["cases"])):
+        measures = {measure["strategy"]: measure for measure in point["strategies"] if "skipped" not in measure}
+        if not {"uber", "visibility", "sorted-uber"} <= set(measures):
+            continue
+        whole = measures["uber"]["time"]["median"]
+        traced = measures["visibility"]["split"]
+        row = [str(point["cases"]), point["cost"], point["coherence"], name_of_rays(point["rays"]),
+               f"{traced['trace']:.2f}", f"{traced['order']:.3f}"]
+        for name in ("visibility", "sorted-uber"):
+            split = measures[name]["split"]
+            rest = whole * measures[name]["ratio"]["median"] - split["dispatch"] - split["trace"] - split["order"]
+            row.append(f"{rest:.2f}")
+        rows.append(row + [f"{whole:.2f}"])
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("calibrations", type=pathlib.Path, nargs="+")
@@ -126,6 +149,8 @@ def main():
     report = calibrations.merged(arguments.calibrations)
     charts(report, arguments.charts)
     print(table(report))
+    print()
+    print(split_table(report))
 
 
 if __name__ == "__main__":
