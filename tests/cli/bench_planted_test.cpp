@@ -76,7 +76,8 @@ protected:
         arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
         arguments.insert(arguments.end(), kExactFrame.begin(), kExactFrame.end());
         for (const std::string& name : packages) {
-            arguments.insert(arguments.end(), {"--candidate", name + "=" + name});
+            arguments.emplace_back("--candidate");
+            arguments.emplace_back(name).append("=").append(name);
         }
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.exit, 0) << outcome.err;

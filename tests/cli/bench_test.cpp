@@ -87,7 +87,7 @@ TEST_F(Bench, WritesWhatItMeasured) {
     EXPECT_EQ(settings.at("format"), "glint-settings");
     const Outcome again = render("advised.exr", {"--settings", "out/settings.json", "--json"});
     ASSERT_EQ(again.exit, 0) << again.err;
-    const Json advice = report.at("advice");
+    const Json& advice = report.at("advice");
     EXPECT_EQ(std::to_string(again.json().at("spp").get<int>()), advice.at("render").at("spp"));
     EXPECT_EQ(again.json().at("strategy"), advice.at("compile").at("strategy"));
     EXPECT_EQ(run({"compile", scene_, "-o", "package", "--settings", "out/settings.json"}).exit, 0);

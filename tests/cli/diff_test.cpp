@@ -78,8 +78,8 @@ TEST_F(Diff, MergedAndSplitShaders) {
     EXPECT_TRUE(removed[0].at("after").is_null());
     ASSERT_EQ(merged.at("materials").size(), 1U);
     EXPECT_EQ(merged.at("materials")[0].at("name"), "Floor");
-    EXPECT_EQ(merged.at("materials")[0].at("before"), Json({1}));
-    EXPECT_EQ(merged.at("materials")[0].at("after"), Json({0}));
+    EXPECT_EQ(merged.at("materials")[0].at("before"), Json::array({1}));
+    EXPECT_EQ(merged.at("materials")[0].at("after"), Json::array({0}));
 
     const Outcome text = run({"diff", "b", "a", "--exit-code"});
     EXPECT_EQ(text.exit, 1);

@@ -101,7 +101,7 @@ TEST_F(StrategyAuto, ExplainListsWhatEachStrategyTakes) {
     asJson.emplace_back("--json");
     const Json explained = run(asJson).json();
     expectFits("explain", explained);
-    const Json strategies = explained.at("strategies");
+    const Json& strategies = explained.at("strategies");
     EXPECT_EQ(strategies.at("strategy"), "sorted-uber");
     EXPECT_EQ(strategies.at("pixels"), 1920.0 * 1080.0);
     ASSERT_EQ(strategies.at("estimates").size(), 4U);

@@ -188,6 +188,7 @@ TEST_F(Store, ManyProcessesAndThreadsMayWriteAtOnce) {
     std::vector<int> found(2);
     {
         std::vector<std::jthread> threads;
+        threads.reserve(found.size());
         for (int& count : found) {
             threads.emplace_back([&] { count = hammer(small, kRounds); });
         }

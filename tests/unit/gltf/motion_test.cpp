@@ -29,7 +29,7 @@ std::string errorId(const GltfBuilder& builder) {
 
 // A triangle that an animation of one channel moves.
 struct Animated {
-    explicit Animated(const std::string& path, std::vector<float> times = {0, 1}, int output = -1,
+    explicit Animated(const std::string& path, const std::vector<float>& times = {0, 1}, int output = -1,
                       int components = 3) {
         builder.addTriangle();
         const int input = builder.addAccessor(times, 1);

@@ -143,13 +143,15 @@ std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
     const auto word = [&] { return FeatureMask{random()} << 32U | random(); };
     std::map<FeatureMask, double> weights;
     while (weights.size() < count) {
-        weights[word() & word() & known] = std::exp2(static_cast<double>(random() % 17));
+        const FeatureMask some = word();
+        weights[some & word() & known] = std::exp2(static_cast<double>(random() % 17));
     }
     double sum = 0.0;
     for (const auto& [mask, weight] : weights) {
         sum += weight;
     }
     std::vector<WeightedKey> keys;
+    keys.reserve(weights.size());
     for (const auto& [mask, weight] : weights) {
         keys.push_back({mask, weight / sum});
     }
@@ -158,6 +160,7 @@ std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
 
 std::vector<Cluster> clustersOf(const std::vector<CaseKeys>& cases) {
     std::vector<Cluster> clusters;
+    clusters.reserve(cases.size());
     for (const CaseKeys& shaderCase : cases) {
         clusters.push_back({shaderCase.keys});
     }
@@ -245,7 +248,8 @@ TEST(Planner, MoreHitsOfAKeyRarelyMergeItWithMoreKeys) {
         const std::vector<WeightedKey> start = distinctKeys(random, 20);
         for (int key = 0; key < 20; ++key) {
             std::size_t last = start.size();
-            for (double weight = 1e-4; weight < 100.0; weight *= 4.0) {
+            for (int step = 0; step < 10; ++step) {
+                const double weight = 1e-4 * std::pow(4.0, step);
                 std::vector<WeightedKey> keys = start;
                 keys[static_cast<std::size_t>(key)].share = weight;
                 const double sum = 1.0 - start[static_cast<std::size_t>(key)].share + weight;

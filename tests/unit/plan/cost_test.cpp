@@ -86,7 +86,8 @@ TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
     for (const FeatureMask a : masks) {
         for (const FeatureMask b : masks) {
             double last = 0.0;
-            for (double weight = 1e-4; weight < 10.0; weight *= 1.7) {
+            for (int step = 0; step < 22; ++step) {
+                const double weight = 1e-4 * std::pow(1.7, step);
                 const double cost = mergingCost(toSet({a, weight}), toSet({b, 0.1}));
                 EXPECT_GE(cost, last);
                 last = cost;
