@@ -24,6 +24,7 @@ tidy() {
 }
 
 # tidy_project FOLDER FILE…: of a project of its own, which is built with the Glint of this build.
+# With a standard in the commands: clang-tidy's own default is older than the compiler's.
 tidy_project() {
     local folder=$1 build=build/lint/${1//\//-}
     shift
@@ -31,7 +32,7 @@ tidy_project() {
     cp examples/cmake-consumer/scene/* build/lint/scenes/
     cp build/lint/scenes/cubes.gltf build/lint/scenes/copy.gltf
     cmake -S "$folder" -B "$build" -G Ninja -DGlint_DIR="$PWD/build/release" -DSCENES="$PWD/build/lint/scenes" \
-        -DCMAKE_EXPORT_COMPILE_COMMANDS=ON --no-warn-unused-cli >/dev/null &&
+        -DCMAKE_CXX_STANDARD=20 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON --no-warn-unused-cli >/dev/null &&
         cmake --build "$build" &&
         tidy "$build" "$@"
 }
