@@ -1,12 +1,12 @@
-// The devices whose costs Glint knows without a calibration.
+// The constants of the cost model that Glint has built in, for devices without a calibration.
 #pragma once
 
 #include "plan/strategy_cost.h"
 
 namespace glint {
 
-// Those of the device of that type that was measured (plan/strategy_constants.h); of the other type where
-// there is none.
+// Returns the constants of the measured device of that type (plan/strategy_constants.h). If no device of that
+// type was measured, it returns those of the other type.
 DeviceCosts builtInCosts(bool onCpu);
 
 }  // namespace glint

@@ -15,7 +15,8 @@ struct Group {
     KeySet set;
     double cost = 0.0;
     bool alive = true;
-    // The later group with which merging costs least, and what that adds to the cost of all.
+    // `partner` is the later group with which merging costs least; `increase` is what that merge adds to the
+    // total cost.
     std::size_t partner = kNone;
     double increase = 0.0;
 };
@@ -60,7 +61,7 @@ std::vector<Group> makeGroups(std::vector<Cluster> start, std::span<const Weight
     return groups;
 }
 
-// The group whose merge with its partner costs least; kNone where only one is left.
+// Returns the group whose merge with its partner costs least, or kNone if only one group is left.
 std::size_t cheapest(const std::vector<Group>& groups) {
     std::size_t best = kNone;
     for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -72,7 +73,7 @@ std::size_t cheapest(const std::vector<Group>& groups) {
     return best;
 }
 
-// Merges groups[index] with its partner, whose place dies.
+// Merges groups[index] with its partner, and marks the partner's entry as dead.
 void mergeWithPartner(std::vector<Group>& groups, std::size_t index) {
     Group& group = groups[index];
     const std::size_t gone = group.partner;
@@ -85,7 +86,8 @@ void mergeWithPartner(std::vector<Group>& groups, std::size_t index) {
     group.cost = mergingCost(group.set);
     other.alive = false;
 
-    // Only what knew either of the two, or stands before the union, can have another partner now.
+    // The partner can only change for groups whose partner was one of the two, and for groups before the
+    // union.
     for (std::size_t i = 0; i < gone; ++i) {
         Group& earlier = groups[i];
         if (!earlier.alive) {
@@ -103,10 +105,11 @@ void mergeWithPartner(std::vector<Group>& groups, std::size_t index) {
     }
 }
 
-// A move has to spare more than sums of doubles are off, or keys could go to and fro.
+// A move must save more than the rounding error of the sums, or keys could move back and forth forever.
 constexpr double kLeastSaving = 1e-9;
 
-// Of all clusters, without partners: those that lose their last key are not alive.
+// The state of moveKeys(): here clusters have no partners, and a cluster that loses its last key is not
+// alive.
 struct Movable {
     Cluster cluster;
     KeySet set;
@@ -119,7 +122,8 @@ struct Movable {
     }
 };
 
-// The index of the cluster to which moving `key` costs least, if that is less than `saving`; kNone if none.
+// Returns the index of the cluster to which moving `key` costs least, if that is less than `saving`, else
+// kNone.
 std::size_t betterPlace(const std::vector<Movable>& places, std::size_t from, const KeySet& key,
                         double saving, bool mayOpen) {
     std::size_t best = kNone;
@@ -141,7 +145,7 @@ std::size_t betterPlace(const std::vector<Movable>& places, std::size_t from, co
     return best;
 }
 
-// Whether `key` moved.
+// Returns whether `key` moved.
 bool moveKey(std::vector<Movable>& places, std::vector<std::size_t>& placeOf, int key,
              std::span<const WeightedKey> keys, int maxClusters) {
     const std::size_t from = placeOf[static_cast<std::size_t>(key)];
@@ -191,7 +195,7 @@ std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const Wei
 
 std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const WeightedKey> keys,
                               int maxClusters) {
-    std::vector<Movable> places(clusters.size() + 1);  // one to open
+    std::vector<Movable> places(clusters.size() + 1);  // one more, empty: a key may open it
     std::vector<std::size_t> placeOf(keys.size(), kNone);
     for (std::size_t i = 0; i < clusters.size(); ++i) {
         for (const int key : clusters[i].keys) {
@@ -206,7 +210,7 @@ std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const Wei
         for (std::size_t key = 0; key < keys.size(); ++key) {
             if (placeOf[key] != kNone && moveKey(places, placeOf, static_cast<int>(key), keys, maxClusters)) {
                 moved = true;
-                // There is always one to open.
+                // One empty cluster must always be there, so that a key can open it.
                 if (std::ranges::none_of(places, [](const Movable& m) { return m.cluster.keys.empty(); })) {
                     places.emplace_back();
                 }

@@ -24,7 +24,8 @@ constexpr std::array<Code, 64> makeCodeByBit() {
 }
 constexpr std::array<Code, 64> kCode = makeCodeByBit();
 
-// What hits that lack a feature run of it, if the share p of their case's hits have it.
+// Returns which part of a feature's code the hits without it run in vain, if the share p of their case's hits
+// have it.
 double idleShare(double p) {
     double noLane = 1.0 - std::clamp(p, 0.0, 1.0);
     for (int lanes = 1; lanes < kSubgroupSize; lanes *= 2) {
@@ -41,7 +42,7 @@ void forEachBit(FeatureMask mask, const Use& use) {
     }
 }
 
-// Of a hit of a case in which the share p of the hits have the feature.
+// Returns the surplus of an average hit of a case in which the share p of the hits have the feature.
 double surplusOf(std::size_t place, double p) {
     const FeatureMask feature = FeatureMask{1} << place;
     double cost = (feature & kLobeMask) != 0 ? fitted::kLobeBranch : fitted::kInputBranch;

@@ -1,20 +1,20 @@
-// What it costs that keys share a case: the model behind --merge auto.
+// The cost of keys that share a case: the model behind --merge auto.
 //
-// Unit: SPIR-V instructions that an average hit runs in vain. A hit runs the code of its own features in any
-// clustering, so only the surplus counts. A case whose hits have the share w of all hits costs
+// The unit is SPIR-V instructions that an average hit runs in vain. A hit runs the code of its own features
+// in any clustering, so only the surplus counts. A case that gets the share w of all hits costs
 //
 //     w * sum over its "sometimes" features f of ( branch(f) + code(f) * (q(f) - p(f)) )  + kCaseCost
 //
 //   p(f)       share of the case's hits that have f
-//   q(f)       chance that some lane of a subgroup has f, 1 - (1 - p)^kSubgroupSize, if neighbours are
-//              independent: the others wait for that lane. Neighbours are often alike, so this is an upper
-//              bound.
-//   code(f)    instructions(f) + kFetchCost * fetches(f): what a shader grows by with f
-//   branch(f)  what a case grows by beyond its features' own code when f becomes a branch, which all of its
-//              hits pay in tests, selects and registers: kInputBranch, kLobeBranch
+//   q(f)       chance that some lane of a subgroup has f, so that the others wait for it:
+//              1 - (1 - p)^kSubgroupSize if neighbours are independent. Neighbours are often alike, so this
+//              is an upper bound.
+//   code(f)    instructions(f) + kFetchCost * fetches(f): how much a shader grows with f
+//   branch(f)  how much a case grows beyond its features' own code when f becomes a branch. All of its hits
+//              pay for it in tests, selects and registers: kInputBranch, kLobeBranch
 //
-// Lit shading is such a feature too, which unlit keys lack. Instructions, fetches and branches are measured:
-// cost_constants.h. What stands here is chosen.
+// Lit shading counts as such a feature too, which unlit keys lack. Instructions, fetches and branches are
+// measured (cost_constants.h). The constants in this file are chosen.
 #pragma once
 
 #include "plan/features.h"
@@ -24,46 +24,48 @@
 
 namespace glint {
 
-// Instructions that a texture fetch weighs besides its own, which make its coordinates and level. A choice:
-// it hides behind other work or waits for memory, by device and scene.
+// The weight of a texture fetch in instructions, on top of those that make its coordinates and level. It is a
+// choice: a fetch hides behind other work or waits for memory, which depends on the device and the scene.
 inline constexpr double kFetchCost = 20.0;
 
-// Lanes of a subgroup on most GPUs (8 on lavapipe, 64 on some).
+// The number of lanes of a subgroup on most GPUs (8 on lavapipe, 64 on some GPUs).
 inline constexpr int kSubgroupSize = 32;
 
-// One per cent of a plain lit hit. A case brings a dispatch whose last workgroup is half empty or, in an uber
-// shader, one more way for a subgroup to diverge; some 25 kB of SPIR-V; and a tenth of a second or more to
-// compile. This is a choice rather than a measurement: what they weigh depends on the GPU.
+// One per cent of a plain lit hit. A further case brings a dispatch whose last workgroup is half empty or, in
+// an uber shader, one more way for a subgroup to diverge. It also brings some 25 kB of SPIR-V and takes a
+// tenth of a second or more to compile. This is a choice rather than a measurement, because the weight of
+// these depends on the GPU.
 inline constexpr double kCaseCost = 10.0;
 
-// A key, and the share of all hits that have it: not negative, 1 over all keys or 0 each.
+// A key and its share of all hits. Shares are not negative; they add up to 1 over all keys, or all of them
+// are 0.
 struct WeightedKey {
     FeatureMask mask = 0;
     double share = 0.0;
 };
 
-// What the model needs to know of a set of keys.
+// The facts about a set of keys that the model needs.
 struct KeySet {
     double share = 0.0;
     FeatureMask always = 0;
     FeatureMask any = 0;
-    std::array<double, 64> shareWith{};  // by bit: the part of `share` whose keys have it
+    std::array<double, 64> shareWith{};  // by bit: the total share of the keys that have it
 };
 
 KeySet toSet(const WeightedKey& key);
-// Of the keys with these indices, at least one.
+// Requires at least one index.
 KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys);
 KeySet unionOf(const KeySet& a, const KeySet& b);
 
-// The surplus of a case of these keys, without kCaseCost. Never negative; 0 for one key.
+// Returns the surplus of a case with these keys, without kCaseCost. It is never negative, and 0 for one key.
 double mergingCost(const KeySet& keys);
-// The surplus of a case of the keys of both.
+// Returns the surplus of a case with the keys of both sets.
 double mergingCost(const KeySet& a, const KeySet& b);
 
-// The surplus that one feature of `keys` brings, of which some keys have it and some don't.
+// Returns the surplus that comes from one feature which some of `keys` have and others don't.
 double branchCost(const KeySet& keys, Feature feature);
 
-// What the shader of a case is expected to hold; compiling it gives the truth.
+// An estimate of the code that the shader of a case holds; only compiling it gives the exact numbers.
 struct CodeEstimate {
     double instructions = 0.0;
     double fetches = 0.0;

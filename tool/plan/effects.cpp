@@ -24,13 +24,13 @@ bool hasTexture(const Material& material, TextureSlot slot) {
     return material.texture(slot).texture >= 0;
 }
 
-// Linear factors above 0 in any channel.
+// Returns whether no channel of a linear factor is above 0.
 template <typename Color>
 bool isBlack(const Color& color) {
     return color[0] <= 0.0F && color[1] <= 0.0F && color[2] <= 0.0F;
 }
 
-// The first material of which `test` holds; its reason is what the decision says.
+// Finds the first material for which `test` holds; its reason becomes the reason of the decision.
 template <typename Test>
 Finding findMaterial(std::span<const Material* const> materials, const std::string& none, const Test& test) {
     for (const Material* const material : materials) {
@@ -51,7 +51,7 @@ bool isMetal(const Material& material) {
            !material.specularGlossiness.given;
 }
 
-// What the microfacets of a material reflect at most: none where an extension takes it away.
+// Returns whether the microfacets of a material can reflect at all; an extension may take that away.
 bool reflects(const Material& material) {
     if (material.specularGlossiness.given) {
         return !isBlack(material.specularGlossiness.specularFactor);
@@ -59,12 +59,13 @@ bool reflects(const Material& material) {
     if (material.metallicFactor > 0.0F && !isBlack(material.baseColorFactor)) {
         return true;
     }
-    // At grazing angles all of the specular factor, whatever its colour and the index.
+    // At grazing angles the whole specular factor is reflected, whatever its colour and the index of
+    // refraction.
     return material.specular.factor > 0.0F;
 }
 
 std::string smoothness(const Material& material, float limit) {
-    // A texture may make it smoother than its factor, not rougher.
+    // A texture may make the surface smoother than its factor, but not rougher.
     const bool glossy = material.specularGlossiness.given;
     const float roughness =
         glossy ? 1.0F - material.specularGlossiness.glossinessFactor : material.roughnessFactor;
@@ -129,7 +130,7 @@ Finding find(Effect effect, std::span<const Material* const> materials, const Sc
     }
 }
 
-// Effects that refine the sky's light: every lit surface could use them, and no file asks for them.
+// These effects refine the sky's light. Every lit surface could use them, and no file asks for them.
 constexpr std::uint32_t kRefinements = package::kEffectAmbientOcclusion | package::kEffectIndirectDiffuse;
 
 }  // namespace

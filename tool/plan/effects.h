@@ -1,4 +1,5 @@
-// Which effects a package has: what is asked for, and what the scenes call for. Pure functions.
+// Decides which effects a package has, from what the user asks for and what the scenes call for. Pure
+// functions.
 #pragma once
 
 #include "plan/material.h"
@@ -14,15 +15,15 @@ namespace glint {
 
 // What the user asks for.
 struct EffectRequest {
-    bool automatic = false;   // those that the scenes call for
-    std::uint32_t named = 0;  // Effect bits: those in any case
-    // Surfaces with a greater roughness send no reflection ray: FrameOptions::maxReflectionRoughness.
+    bool automatic = false;   // chooses those that the scenes call for
+    std::uint32_t named = 0;  // Effect bits: always chosen
+    // Surfaces that are rougher than this send no reflection ray: FrameOptions::maxReflectionRoughness.
     float maxReflectionRoughness = 0.3F;
 };
 
-// What of a scene decides, apart from its materials.
+// The facts about a scene that decide, apart from its materials.
 struct SceneLights {
-    bool lit = false;  // some light has an intensity
+    bool lit = false;  // Some light has an intensity above 0.
 };
 
 struct EffectDecision {
@@ -37,13 +38,13 @@ struct EffectPlan {
     std::vector<EffectDecision> decisions;  // one for each of package::kEffects, in their order
 };
 
-// `materials`: those that primitives use, not null. Reasons are of values, not of the presence of an
-// extension.
+// `materials` are those that primitives use; no pointer is null. The reasons name values, not extensions that
+// are merely present.
 EffectPlan decideEffects(std::span<const Material* const> materials, const SceneLights& lights,
                          const EffectRequest& request);
 
-// Whether pixels of this material send rays of an effect of the kind Rays, as far as its factors tell: a
-// texture may make some of it rougher, or black.
+// Returns whether pixels of this material send rays of an effect of the kind Rays, judged by its factors
+// alone. A texture may make parts of it rougher or black.
 bool sendsRays(package::Effect effect, const Material& material, float maxReflectionRoughness);
 
 }  // namespace glint

@@ -10,7 +10,8 @@ namespace glint {
 
 namespace {
 
-// Lobes first, as their textures ask for them; what reads texture coordinates and tangents before those.
+// Lobes come first, because their textures depend on them. Textures come before the texture coordinates and
+// tangents that they need.
 constexpr FeatureInfo kTable[] = {
     {Feature::Unlit, "unlit", "Unlit", "GLINT_UNLIT", "materials[].extensions.KHR_materials_unlit",
      "never: its presence changes the shading", rules::unlit},

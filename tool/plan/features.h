@@ -1,5 +1,5 @@
-// The table of features: what shading can depend on, declared once. Everything else is derived from it: GLSL
-// macros, names in the manifest and the C++ header, keys.
+// The table of features that shading can depend on. Each is declared once, and everything else is derived
+// from it: GLSL macros, names in the manifest and the C++ header, keys.
 #pragma once
 
 #include "plan/material.h"
@@ -12,14 +12,14 @@
 
 namespace glint {
 
-// A set of features. Low 32 bits: lobes; high 32 bits: inputs.
+// A set of features. The low 32 bits are lobes, the high 32 bits are inputs.
 using FeatureMask = std::uint64_t;
 
-// Bit numbers. To add a feature: add it here and a row to the table in features.cpp; nothing else changes,
-// but scripts/measure_merge_model.py measures what it costs.
+// Bit numbers. To add a feature, add it here and add a row to the table in features.cpp. Nothing else
+// changes, but scripts/measure_merge_model.py must measure what it costs.
 //
 //   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
-//   bits 32..63  inputs: what the surface's parameters are read from
+//   bits 32..63  inputs: where the surface's parameters are read from
 enum class Feature : std::uint8_t {
     Unlit = 0,
     SpecularGlossiness,
@@ -51,7 +51,7 @@ enum class Feature : std::uint8_t {
     ClearcoatTexture,
     ClearcoatRoughnessTexture,
     ClearcoatNormalTexture,
-    ClearcoatSharesNormal,  // the coat's normal texture is that of the base: read once
+    ClearcoatSharesNormal,  // The coat uses the base's normal texture, which is read once.
     SheenColorTexture,
     SheenRoughnessTexture,
     AnisotropyTexture,
@@ -75,37 +75,39 @@ enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
 
 struct KeyOptions {
     AlphaPolicy alpha = AlphaPolicy::Opaque;
-    // Lobes that may be in a key; a lobe left out takes the inputs with it that nothing else reads.
+    // The lobes that a key may have. If a lobe is left out, inputs that only this lobe reads are left out
+    // too.
     FeatureMask keptLobes = kLobeMask;
 };
 
-// What a feature's rule says of one (material, primitive).
+// The answer of a feature's rule for one (material, primitive).
 struct Presence {
     bool present = false;
-    // Not empty: the file asks for the feature, and this is why it is not in the key.
+    // If not empty, the file asks for the feature, and this is the reason why the key lacks it.
     std::string droppedBecause;
 };
 
-// A row reads in this order, and there is one table.
+// Members stand in the order in which a row reads; padding is harmless, as there is only one table.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct FeatureInfo {
     Feature feature;
-    std::string_view name;       // in the manifest: "baseColorTexture"
+    std::string_view name;       // name in the manifest: "baseColorTexture"
     std::string_view shortName;  // part of a case's name: "BaseTex"
-    std::string_view macro;      // in GLSL: "GLINT_BASE_COLOR_TEXTURE"
-    std::string_view gltf;       // where it stands in glTF
-    std::string_view neutral;    // when it is there and changes nothing
-    // The rule. `soFar` holds the features of earlier rows that are present.
+    std::string_view macro;      // macro in GLSL: "GLINT_BASE_COLOR_TEXTURE"
+    std::string_view gltf;       // its place in glTF
+    std::string_view neutral;    // when it is given but changes nothing
+    // The rule that decides. `soFar` holds the features of earlier rows that are present.
     Presence (*rule)(const Material&, const PrimitiveInputs&, const KeyOptions&, FeatureMask soFar);
 };
 
-// In order of evaluation, which is the order of the table's rows, not that of the bits.
+// Rows come in the order of evaluation, which is not the order of the bits.
 std::span<const FeatureInfo> featureTable();
 
-// Names of the features of `mask` in order of bits.
+// Returns the names of the features of `mask`, in the order of bits.
 std::vector<std::string_view> featureNames(FeatureMask mask);
 
-// "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature, lobes and inputs numbered within their own word.
+// Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
+// their own word.
 std::string featureDefines();
 
 }  // namespace glint

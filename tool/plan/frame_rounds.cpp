@@ -26,7 +26,7 @@ double coherenceOf(package::Effect effect, const Material& material) {
     }
 }
 
-// Shares of the surfaces in the picture that primitives have: equal ones where nothing is known.
+// Returns each primitive's share of the surfaces in the picture. All shares are equal if nothing is known.
 std::vector<double> surfaceShares(std::span<const PrimitiveInputs> primitives) {
     std::vector<double> shares;
     for (const PrimitiveInputs& inputs : primitives) {
@@ -39,7 +39,7 @@ std::vector<double> surfaceShares(std::span<const PrimitiveInputs> primitives) {
     return shares;
 }
 
-// The rays of both lists in one.
+// Joins the rays of both lists into one list.
 void join(Round& all, const Round& round) {
     const double rays = all.rays + round.rays;
     if (rays > 0.0) {
@@ -65,7 +65,7 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
     std::vector<CaseHits> hits;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const Key& key = plan.keys[static_cast<std::size_t>(plan.keyOfPrimitive[first + i])];
-        // A count is of a key, which its primitives share.
+        // A count belongs to a key, so the primitives of the key share it.
         const double share = key.share / static_cast<double>(key.primitives.size());
         hits.push_back({key.shaderId, counted ? share : std::max(0.0, primitives[i].expectedHits)});
     }
@@ -102,7 +102,7 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
             continue;
         }
         Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
-        double senders = 0.0;  // of the surfaces in the picture
+        double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
             if (sendsRays(info.effect, material, shape.maxReflectionRoughness)) {
@@ -114,7 +114,7 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
             continue;
         }
         round.coherence /= senders;
-        // Where rays part, what they hit is as different as the scene has it.
+        // Rays that spread apart hit surfaces as different as the scene has.
         round.scatter = 1.0 - round.coherence;
         round.rays = shape.pixels * kSurfaceShare * std::min(senders, 1.0);
         if (shape.batchEffects && !rounds.empty()) {

@@ -4,7 +4,7 @@ namespace glint::rules {
 
 namespace {
 
-// Whether alpha can fall below the cut-off: whether testing it can change anything.
+// Returns whether alpha can fall below the cut-off, that is, whether testing it can change anything.
 bool canFailAlphaTest(const Material& material, const PrimitiveInputs& primitive) {
     if (material.alphaCutoff <= 0.0F) {
         return false;
@@ -31,7 +31,7 @@ Presence emissiveStrength(const Material& material, const PrimitiveInputs&, cons
     if (material.emissiveStrength == 1.0F) {
         return dropped("emissiveStrength is 1");
     }
-    // A strength of 0 is not neutral unless nothing was emitted in the first place.
+    // A strength of 0 is neutral only if the emissive factor is black already.
     const auto& factor = material.emissiveFactor;
     return factor[0] == 0.0F && factor[1] == 0.0F && factor[2] == 0.0F ? dropped("emissiveFactor is black")
                                                                        : present();

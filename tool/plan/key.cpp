@@ -6,7 +6,7 @@ namespace {
 
 using Drops = std::vector<std::pair<std::string, std::string>>;
 
-// These replace the base model, so that no hit can do without them.
+// These replace the base model, so no hit can do without them.
 constexpr FeatureMask kBaseModels = bit(Feature::Unlit) | bit(Feature::SpecularGlossiness);
 
 FeatureMask evaluate(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
@@ -28,7 +28,7 @@ FeatureMask evaluate(const Material& material, const PrimitiveInputs& primitive,
 
 FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
                     Drops* dropped) {
-    // What is neutral is said first, and what hits leave out of the rest after it.
+    // First drop what is neutral, and record the reasons. Then drop the lobes that hits leave out.
     const FeatureMask whole = evaluate(material, primitive, keepAllLobes(options), dropped);
     const FeatureMask kept = evaluate(material, primitive, options, nullptr);
     if (dropped != nullptr) {

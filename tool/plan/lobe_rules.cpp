@@ -13,8 +13,8 @@ bool isAll(const std::array<float, 3>& color, float value) {
     return std::ranges::all_of(color, [value](float channel) { return channel == value; });
 }
 
-// A lobe stays unless a reason holds: why there are none at all, else the first of `reasons`. Where the file
-// does not ask for the lobe, dropping it needs no mention.
+// A lobe stays unless a reason to drop it holds: `none`, or else the first of `reasons` that holds. If the
+// file does not ask for the lobe, dropping it is not reported.
 struct Reason {
     bool holds;
     const char* text;
@@ -38,7 +38,7 @@ Presence lobe(bool given, FeatureMask soFar, std::initializer_list<Reason> reaso
     return given || !neutral ? dropped(found) : absent();
 }
 
-// Nowhere a dielectric.
+// Returns whether the surface is metal everywhere, so that no part of it is a dielectric.
 bool isMetal(const Material& material, const PrimitiveInputs& primitive) {
     return material.metallicFactor == 1.0F &&
            !isReadable(material, primitive, TextureSlot::MetallicRoughness);
@@ -54,7 +54,7 @@ bool transmitsAll(const Material& material, const PrimitiveInputs& primitive) {
            !isReadable(material, primitive, TextureSlot::Transmission);
 }
 
-// Neither its own tangents nor texture coordinates to derive them from.
+// Returns whether the primitive has neither tangents nor texture coordinates to derive them from.
 bool lacksDirection(const PrimitiveInputs& primitive) {
     return !(primitive.hasTangents && primitive.hasNormals) && !primitive.hasTexCoords0 &&
            !primitive.hasTexCoords1;
@@ -110,7 +110,7 @@ Presence sheen(const Material& material, const PrimitiveInputs&, const KeyOption
 
 Presence anisotropy(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
                     FeatureMask soFar) {
-    // The extension widens alpha along the tangent from its isotropic value towards 1.
+    // The extension widens alpha along the tangent, from its isotropic value towards 1.
     return lobe(material.anisotropy.given, soFar,
                 {{material.anisotropy.strength == 0.0F, "anisotropyStrength is 0"},
                  {isFullyRough(material, primitive), "roughnessFactor is 1: it is 1 in every direction"},

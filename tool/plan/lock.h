@@ -1,4 +1,4 @@
-// What a plan changes in a lock of shader IDs.
+// The changes that a plan makes to a lock of shader IDs.
 #pragma once
 
 #include "plan/lock_ids.h"
@@ -12,25 +12,25 @@ struct MovedKey {
     FeatureMask mask = 0;
     int from = 0;
     int to = 0;
-    // Other cases have kept all IDs that the keys of its case had; `to` is a new one.
+    // Other cases have kept all IDs that this key's case had, so `to` is a new ID.
     bool lostId = false;
 };
 
-// Lists in order of masks.
+// The lists are in the order of masks.
 struct LockUpdate {
-    LockedIds ids;                   // what the lock is to hold
-    std::vector<FeatureMask> added;  // keys without an ID so far
-    std::vector<MovedKey> moved;     // keys whose ID is another now
+    LockedIds ids;                   // the new content of the lock
+    std::vector<FeatureMask> added;  // keys that had no ID so far
+    std::vector<MovedKey> moved;     // keys whose ID has changed
     std::vector<FeatureMask> stale;  // keys of the lock that the plan lacks
 
-    // Whether what is to be kept differs from what was.
+    // Returns whether the new content differs from the old one.
     bool changes(const LockedIds& locked) const {
         return ids != locked;
     }
 };
 
-// `plan`: made with these IDs. Keys that the plan lacks stay, so that they come back with their ID, unless
-// `prune`.
+// `plan` was made with these IDs. Keys that the plan lacks stay in the lock, so that they keep their ID when
+// they return, unless `prune` is set.
 LockUpdate updateLock(const LockedIds& locked, const Plan& plan, bool prune);
 
 }  // namespace glint

@@ -10,15 +10,15 @@ namespace {
 
 constexpr int kNone = -1;
 
-// A case whose keys have an ID in the lock.
+// An ID that a case can claim because some of its keys have it in the lock.
 struct Claim {
-    int keys = 0;  // of the case, that have the ID
+    int keys = 0;  // keys of the case that have this ID
     double share = 0.0;
     int id = 0;
     std::size_t shaderCase = 0;
 };
 
-// Whether `a` comes first.
+// Returns whether claim `a` wins over `b`.
 bool isStronger(const Claim& a, const Claim& b) {
     if (a.keys != b.keys) {
         return a.keys > b.keys;
@@ -61,7 +61,7 @@ std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<co
             ids[claim.shaderCase] = claim.id;
         }
     }
-    // IDs of the lock are for its keys, which may come back.
+    // IDs of the lock stay reserved for their keys, which may return.
     for (const auto& [mask, id] : locked) {
         taken.insert(id);
     }

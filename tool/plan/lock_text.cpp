@@ -25,7 +25,7 @@ constexpr int kVersion = 1;
 constexpr std::string_view kNoFeatures = "-";
 constexpr std::array<std::string_view, 4> kMarkers{"<<<<<<<", "|||||||", "=======", ">>>>>>>"};
 
-// Part of a line that may be anything, for a message.
+// Quotes at most the beginning of a word that may be anything, for a message.
 std::string quote(std::string_view word) {
     constexpr std::size_t kMaxLength = 40;
     std::string text;
@@ -35,7 +35,7 @@ std::string quote(std::string_view word) {
     return fmt::format("\"{}{}\"", text, word.size() > kMaxLength ? "..." : "");
 }
 
-// Takes the next word off the front of `rest`; empty where there is none.
+// Takes the next word off the front of `rest`. Returns an empty word if there is none.
 std::string_view takeWord(std::string_view& rest) {
     constexpr std::string_view kBlanks = " \t\r";
     rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
@@ -98,7 +98,7 @@ private:
         }
     }
 
-    // The line may stand twice: where both branches of a merge have made the file.
+    // The version line may occur twice: a merge of two branches that both created the file has it twice.
     void parseVersion(std::string_view rest) {
         const std::string_view word = takeWord(rest);
         if (word != fmt::format("{}", kVersion) || !takeWord(rest).empty()) {

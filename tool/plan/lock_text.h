@@ -1,13 +1,13 @@
-// The text of a lock file, made to be compared and merged line by line.
+// The text of a lock file, which is made to be compared and merged line by line.
 //
 //     # comment
 //     version 1
 //     4 -
 //     0 baseColorTexture texCoord0 normals
 //
-// A line a key: its shader ID and the names of its features, "-" for none, sorted by the names, so that lines
-// which two branches add seldom meet. Blank lines, the order of lines and of names, and repeated lines mean
-// nothing.
+// Each line is a key: its shader ID and the names of its features, or "-" if it has none. Lines are sorted by
+// the names, so that two branches seldom add lines in the same place. Blank lines, the order of lines and of
+// names, and repeated lines mean nothing.
 #pragma once
 
 #include "plan/lock_ids.h"
@@ -23,12 +23,12 @@ struct LockTextError {
     int line = 0;  // from 1
     std::string message;
     std::string hint;
-    std::string unknownFeature;  // the word that is none, if that is what is wrong
+    std::string unknownFeature;  // the word that names no feature, if that is the error
 };
 
-// A key that two lines give different IDs; the lower one counts.
+// A key to which two lines give different IDs; the lower ID counts.
 struct RepeatedLockKey {
-    int line = 0;  // the later one
+    int line = 0;  // the later of the two lines
     FeatureMask mask = 0;
     int kept = 0;
     int ignored = 0;
@@ -41,10 +41,10 @@ struct LockText {
 
 std::variant<LockText, LockTextError> parseLock(std::string_view text);
 
-// Reads back as the same IDs. The same IDs give the same text.
+// Formats a lock file. parseLock() gives the same IDs back, and the same IDs always give the same text.
 std::string formatLock(const LockedIds& ids);
 
-// "baseColorTexture texCoord0", or "-": a key as in the file.
+// Returns a key as the file has it: "baseColorTexture texCoord0", or "-".
 std::string lockKeyName(FeatureMask mask);
 
 }  // namespace glint

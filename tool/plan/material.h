@@ -1,4 +1,4 @@
-// The material model that planning reads: glTF 2.0 core and the extensions that Glint shades. Plain data.
+// The material model that planning reads: core glTF 2.0 and the extensions that Glint shades. Plain data.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Texture slots, in the order of MaterialRecord::textures (shaders/interop/scene.h).
-// KHR_materials_pbrSpecularGlossiness keeps its diffuse texture in BaseColor, its other one in
+// The texture slots, in the order of MaterialRecord::textures (shaders/interop/scene.h).
+// KHR_materials_pbrSpecularGlossiness keeps its diffuse texture in BaseColor and its other texture in
 // MetallicRoughness.
 enum class TextureSlot : std::uint8_t {
     BaseColor,
@@ -44,13 +44,13 @@ struct TextureTransform {
 
 struct TextureInfo {
     int texture = -1;  // index into Scene::textures; -1 where the slot is empty
-    int texCoord = 0;  // the UV set, the extension's override already applied
+    int texCoord = 0;  // the UV set; the extension's override is already applied
     TextureTransform transform;
-    bool hasTransform = false;  // the file gives KHR_texture_transform here, identity or not
+    bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
 };
 
-// The extensions that change what light does at the surface. `given`: the file has the extension, neutral or
-// not.
+// The extensions that change what light does at the surface. `given` says that the file has the extension,
+// even if its values are neutral.
 
 struct SpecularGlossiness {  // KHR_materials_pbrSpecularGlossiness; its diffuseFactor is baseColorFactor
     bool given = false;
@@ -60,7 +60,7 @@ struct SpecularGlossiness {  // KHR_materials_pbrSpecularGlossiness; its diffuse
 
 struct Ior {  // KHR_materials_ior
     bool given = false;
-    float ior = 1.5F;  // 1 or more; 0: reflects everything
+    float ior = 1.5F;  // at least 1, or 0 for a surface that reflects everything
 };
 
 struct Specular {  // KHR_materials_specular
@@ -109,8 +109,8 @@ struct DiffuseTransmission {  // KHR_materials_diffuse_transmission
 
 struct Volume {  // KHR_materials_volume
     bool given = false;
-    float thicknessFactor = 0.0F;      // metres in the space of the mesh; 0: thin-walled
-    float attenuationDistance = 0.0F;  // metres; 0 means infinite
+    float thicknessFactor = 0.0F;      // metres in the space of the mesh; 0 for thin-walled
+    float attenuationDistance = 0.0F;  // metres; 0 means infinite absorption distance
     std::array<float, 3> attenuationColor{1.0F, 1.0F, 1.0F};
 };
 
@@ -129,7 +129,8 @@ struct Material {
     float roughnessFactor = 1.0F;
     std::array<float, 3> emissiveFactor{0.0F, 0.0F, 0.0F};  // linear
     float emissiveStrength = 1.0F;                          // KHR_materials_emissive_strength
-    bool hasEmissiveStrength = false;                       // the file gives the extension, 1 or not
+    bool hasEmissiveStrength = false;                       // The file gives the extension, even if its value
+                                                            // is 1.
     float normalScale = 1.0F;
     float occlusionStrength = 1.0F;
     float alphaCutoff = 0.5F;
@@ -148,7 +149,7 @@ struct Material {
     Volume volume;
     Dispersion dispersion;
     std::array<TextureInfo, kTextureSlots> textures;
-    // Material extensions that the file uses here and that Glint does not shade.
+    // Material extensions that the file uses for this material and that Glint does not shade.
     std::vector<std::string> unsupportedExtensions;
 
     const TextureInfo& texture(TextureSlot slot) const {
@@ -161,11 +162,11 @@ struct Material {
 
 enum class ColorContent : std::uint8_t {
     None,   // no COLOR_0
-    White,  // COLOR_0 is (1, 1, 1, 1) everywhere: it changes nothing
+    White,  // COLOR_0 is (1, 1, 1, 1) everywhere, so it changes nothing.
     Varying
 };
 
-// What planning knows of a primitive: its material and which attributes it has.
+// The facts about a primitive that planning needs: its material and which attributes it has.
 struct PrimitiveInputs {
     int mesh = 0;       // index into Scene::meshes
     int primitive = 0;  // within the mesh
@@ -175,7 +176,7 @@ struct PrimitiveInputs {
     bool hasTexCoords0 = false;
     bool hasTexCoords1 = false;
     ColorContent colors = ColorContent::None;
-    double expectedHits = 0.0;  // in proportion to those of other primitives; 0 each: nothing is known
+    double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
 };
 
 }  // namespace glint

@@ -14,7 +14,7 @@ namespace {
 
 using Keys = std::span<const WeightedKey>;
 
-// Indices of the keys, those with most hits first; of equal ones the smaller mask.
+// Returns the indices of the keys, those with most hits first. Equal keys are ordered by mask, ascending.
 std::vector<int> byShare(Keys keys) {
     std::vector<int> order(keys.size());
     std::iota(order.begin(), order.end(), 0);
@@ -23,7 +23,7 @@ std::vector<int> byShare(Keys keys) {
     return order;
 }
 
-// Keys whose masks agree in the bits of `distinguishes`.
+// Groups the keys whose masks agree in the bits of `distinguishes`.
 std::vector<Cluster> groupBy(Keys keys, const std::vector<int>& indices, FeatureMask distinguishes) {
     std::map<FeatureMask, Cluster> groups;
     for (const int key : indices) {
@@ -49,7 +49,7 @@ std::vector<CaseKeys> mergeByMask(Keys keys, FeatureMask distinguishes, CaseReas
     return cases;
 }
 
-// Takes the rare keys off the end of `order`.
+// Takes the rare keys off the end of `order` and returns them.
 std::vector<int> takeRest(Keys keys, std::vector<int>& order) {
     std::vector<int> rest;
     double share = 0.0;
@@ -66,7 +66,7 @@ std::vector<int> takeRest(Keys keys, std::vector<int>& order) {
     return rest;
 }
 
-// One cluster a key, but one for all of the rest.
+// Returns one cluster for each key, but a single cluster for all rare keys.
 std::vector<Cluster> startApart(Keys keys, std::vector<int> order) {
     std::vector<int> rest = takeRest(keys, order);
     std::vector<Cluster> start;
@@ -80,8 +80,9 @@ std::vector<Cluster> startApart(Keys keys, std::vector<int> order) {
     return start;
 }
 
-// Greedy merging from keys of their own and from families, and what the other policies do where the budget
-// allows it: the cheapest of them, so that no other policy is better. Of equal ones the first.
+// Returns the cheapest of these: greedy merging that starts from single keys, greedy merging that starts from
+// families, and the results of the other policies if the budget allows them. So no other policy is better. If
+// several cost the same, the first is taken.
 std::vector<Cluster> cheapestClusters(Keys keys, int maxCases) {
     const std::vector<int> order = byShare(keys);
     std::vector<std::vector<Cluster>> candidates;
@@ -111,7 +112,7 @@ std::vector<CaseKeys> mergeByCost(Keys keys, int maxCases) {
     return cases;
 }
 
-// How many keys, the most frequent first, have kHotShare of the hits.
+// Returns how many of the most frequent keys together have kHotShare of the hits.
 std::size_t countHot(Keys keys, const std::vector<int>& order) {
     double covered = 0.0;
     std::size_t hot = 0;
@@ -127,7 +128,7 @@ std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
     const auto budget = static_cast<std::size_t>(maxCases);
     const std::vector<int> order = byShare(keys);
     std::size_t hot = countHot(keys, order);
-    // Where not all hot keys can have a case, a quarter of the cases is for those that can't.
+    // If not all hot keys can have a case of their own, a quarter of the cases is left for those that can't.
     const std::size_t others = hot < order.size() ? 1 : 0;
     if (hot + others > budget) {
         hot = budget - std::max<std::size_t>(1, budget / 4);

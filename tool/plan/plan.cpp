@@ -21,7 +21,7 @@ void appendUnique(std::vector<int>& sorted, const std::vector<int>& more) {
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
-// Gives each primitive its key; keys come out in ascending order of their masks.
+// Gives each primitive its key. The keys are in ascending order of their masks.
 void collectKeys(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
                  const KeyOptions& options, Plan& plan, DroppedMap& droppedBy) {
     std::map<FeatureMask, Key> byMask;
@@ -57,8 +57,8 @@ void collectKeys(std::span<const Material> materials, std::span<const PrimitiveI
 }
 
 struct FeatureSpread {
-    FeatureMask always = 0;     // features of every mask
-    FeatureMask sometimes = 0;  // features of some
+    FeatureMask always = 0;     // features that all masks have
+    FeatureMask sometimes = 0;  // features that only some masks have
 };
 
 FeatureSpread spreadOf(const std::vector<FeatureMask>& masks) {
@@ -71,7 +71,8 @@ FeatureSpread spreadOf(const std::vector<FeatureMask>& masks) {
     return {every, any & ~every};
 }
 
-// Makes the shares of all keys add up to 1; false, and 0 each, where there is nothing to share.
+// Scales the shares of all keys so that they add up to 1. Returns false, and sets all to 0, if their sum is
+// 0.
 bool normalizeShares(std::vector<Key>& keys) {
     double sum = 0.0;
     for (const Key& key : keys) {
@@ -103,8 +104,8 @@ void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& o
     }
 }
 
-// A case's features as an identifier: "Pbr_BaseTex_Normals", "PbrFamily" where keys differ in inputs,
-// "PbrMixed" where they differ in lobes.
+// Names a case by its features, as an identifier: "Pbr_BaseTex_Normals"; "PbrFamily" if its keys differ in
+// inputs only; "PbrMixed" if they differ in lobes.
 std::string nameCase(const Case& shaderCase, bool hasAllKeys) {
     const bool merged = shaderCase.sometimes != 0;
     if (merged && hasAllKeys) {
@@ -127,7 +128,7 @@ std::string nameCase(const Case& shaderCase, bool hasAllKeys) {
     return !merged ? base + inputs : base + (mixed ? "Mixed" : "Family");
 }
 
-// A case of those keys, which learn its ID; without a name.
+// Makes a case of the given keys, without a name, and stores its ID in those keys.
 Case makeCase(int shaderId, CaseKeys merged, std::vector<Key>& keys) {
     Case shaderCase;
     shaderCase.shaderId = shaderId;
@@ -155,7 +156,7 @@ void nameCases(Plan& plan) {
             continue;
         }
         shaderCase.name = nameCase(shaderCase, shaderCase.keys.size() == plan.keys.size());
-        // Two cases may differ in what they never have alone.
+        // Two cases may get the same name because the name does not say which features they never have.
         if (const int count = ++named[shaderCase.name]; count > 1) {
             shaderCase.name += fmt::format("_{}", count);
         }

@@ -37,7 +37,7 @@ std::vector<KeyCost> keysOf(const Case& shaderCase, Keys keys, double inVain) {
     return costs;
 }
 
-// Every key counts the same where nothing hits the case.
+// If nothing hits the case, every key counts the same.
 double averageOf(const std::vector<KeyCost>& costs, Keys keys, double share) {
     double sum = 0.0;
     for (const KeyCost& cost : costs) {

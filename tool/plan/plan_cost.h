@@ -1,5 +1,6 @@
-// What a plan costs by the model of plan/cost.h, case by case, and what other cases would cost: how a plan
-// came about, for people. Unit: as there, SPIR-V instructions that an average hit runs in vain.
+// The cost of a plan by the model of plan/cost.h, case by case, and the cost of other choices of cases. It
+// explains to people how a plan came about. The unit is that of plan/cost.h: SPIR-V instructions that an
+// average hit runs in vain.
 #pragma once
 
 #include "plan/plan.h"
@@ -14,34 +15,36 @@ namespace glint {
 // A feature that a case branches on.
 struct BranchCost {
     Feature feature{};
-    double share = 0.0;  // of the case's hits that have it; 0 where nothing hits the case
+    double share = 0.0;  // share of the case's hits that have it; 0 if nothing hits the case
     double cost = 0.0;
 };
 
 struct KeyCost {
     int key = 0;               // index into Plan::keys
-    CodeEstimate own;          // a shader of this key alone
-    double leavingAdds = 0.0;  // to the cost of the plan, were it a case of its own; less than 0: that spares
+    CodeEstimate own;          // estimate of a shader of this key alone
+    double leavingAdds = 0.0;  // what the plan's cost grows by if the key gets a case of its own; below 0 it
+                               // shrinks
 };
 
-// The case with which merging would add least.
+// The case with which merging would add the least cost.
 struct NearestCase {
     int shaderId = 0;
-    double adds = 0.0;  // in vain; kCaseCost is what it would spare
+    double adds = 0.0;  // surplus that merging would add; it would save kCaseCost
 };
 
 struct CaseCost {
     int shaderId = 0;
-    CodeEstimate code;             // of its shader
-    double ownInstructions = 0.0;  // of shaders of its keys alone, on average over its hits
+    CodeEstimate code;             // estimate of the case's shader
+    double ownInstructions = 0.0;  // average over its hits of the shaders of its keys alone
     double inVain = 0.0;
-    double saved = 0.0;                // kCaseCost for each key beyond the first
+    double saved = 0.0;                // kCaseCost for each key except the first
     std::vector<BranchCost> branches;  // the most costly first, then by bit
     std::vector<KeyCost> keys;         // as in Case::keys
     std::optional<NearestCase> nearest;
 };
 
-// The same keys under a policy, within the budget of the plan's options where the policy keeps to one.
+// The cost of the same keys under another policy. The budget is that of the plan's options, if the policy has
+// one.
 struct PolicyCost {
     MergePolicy merge{};
     std::size_t cases = 0;
@@ -54,10 +57,10 @@ struct PlanCost {
     std::vector<PolicyCost> policies;  // None, Family, All, Auto
 };
 
-// O(n^2) in the number of cases.
+// Takes O(n^2) steps in the number of cases.
 PlanCost costPlan(const Plan& plan, const PlanOptions& options);
 
-// What cases cost in all: what is in vain, and kCaseCost for each.
+// Returns the total cost: the surplus, plus kCaseCost for each case.
 double totalCost(double inVain, std::size_t cases);
 
 }  // namespace glint

@@ -1,9 +1,10 @@
-// The rules of the feature table: whether shading one (material, primitive) needs a feature, and if not, why.
+// The rules of the feature table. A rule says whether shading one (material, primitive) needs a feature, and
+// if not, why.
 //
-// A rule may ask for less, never for more, when lobes are left out (KeyOptions::keptLobes): what hits need is
-// part of what primary surfaces need. So a reason to drop may lie in the material or in a feature that is
-// absent from `soFar`, not in one that is present; the exceptions are Unlit and SpecularGlossiness, which are
-// always kept.
+// When lobes are left out (KeyOptions::keptLobes), a rule may ask for fewer features, never for more: what
+// hits need is part of what primary surfaces need. So a reason to drop a feature may depend on the material,
+// or on a feature that is absent from `soFar`, but not on one that is present. The exceptions are Unlit and
+// SpecularGlossiness, which are always kept.
 #pragma once
 
 #include "plan/features.h"
@@ -31,11 +32,12 @@ inline Presence dropped(std::string reason) {
     return {false, std::move(reason)};
 }
 
-// Whether the slot has a texture whose UV set the primitive has and Glint reads.
+// Returns whether the slot has a texture whose UV set the primitive has and Glint reads.
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, TextureSlot slot);
-// Whether the base colour (of KHR_materials_pbrSpecularGlossiness: the diffuse colour) is black everywhere.
+// Returns whether the base colour is black everywhere. (With KHR_materials_pbrSpecularGlossiness it is the
+// diffuse colour.)
 bool isBlack(const Material& material);
-// Whether hits, or the raster pass, read alpha.
+// Returns whether hits, or the raster pass, read alpha.
 bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options);
 
 // Lobes (lobe_rules.cpp)
@@ -63,7 +65,7 @@ Rule clearcoatSharesNormal;
 Rule clearcoatNormalTexture;
 Rule textureTransform;
 
-// A texture that only the lobe reads.
+// The rule of a texture that only the given lobe reads.
 Presence lobeTexture(const Material& material, const PrimitiveInputs& primitive, FeatureMask soFar,
                      TextureSlot slot, Feature lobe);
 template <TextureSlot kSlot, Feature kLobe>
@@ -79,7 +81,7 @@ Presence texCoord(const Material& material, const PrimitiveInputs& primitive, co
     return readsTexCoord(material, primitive, soFar, kSet) ? present() : absent();
 }
 
-// What else the surface is read from (input_rules.cpp)
+// Other inputs of the surface (input_rules.cpp)
 Rule emissiveStrength;
 Rule vertexColor;
 Rule normals;

@@ -14,7 +14,7 @@ double partOf(const StrategyEstimate& estimate, CostTerm term) {
     return estimate.parts[static_cast<std::size_t>(term)];
 }
 
-// Three digits, as no estimate has more.
+// Three digits are enough, because no estimate is more accurate.
 std::string milliseconds(double ms) {
     return ms < 1000.0 ? fmt::format("{:.3g} ms", ms) : fmt::format("{:.0f} ms", ms);
 }
@@ -39,7 +39,7 @@ bool ordersHits(std::string_view strategy) {
     return hasTerm(strategy, CostTerm::Buckets);
 }
 
-// What rays find, in numbers.
+// Describes in numbers what the rays find.
 std::string factsText(const FrameFacts& facts) {
     const std::string alike = facts.coherence >= 0.75  ? "mostly alike"
                               : facts.coherence > 0.25 ? "partly alike"
@@ -54,7 +54,8 @@ std::string factsText(const FrameFacts& facts) {
     return text + ".";
 }
 
-// The best of the other kind: what ordering would spare or has spared.
+// Returns the best strategy of the other kind (ordering or not), which shows what ordering saves or would
+// save.
 const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
     const StrategyEstimate* best = nullptr;
     for (const StrategyEstimate& other : choice.estimates) {
@@ -66,7 +67,7 @@ const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
     return best;
 }
 
-// How the two differ, part by part.
+// Compares the two strategies term by term.
 std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimate& rival) {
     const bool ordered = ordersHits(chosen.strategy);
     const StrategyEstimate& sorted = ordered ? chosen : rival;
@@ -135,7 +136,8 @@ std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, cons
     StrategyChoice choice;
     choice.facts = factsOf(rounds, device.subgroupSize);
     const StrategyEstimate* best = nullptr;
-    choice.estimates.reserve(std::size(kStrategyNames));  // `best` stays valid
+    choice.estimates.reserve(std::size(kStrategyNames));  // The vector must not reallocate, so that `best`
+                                                          // stays valid.
     for (const std::string_view name : kStrategyNames) {
         const StrategyCosts* const costs = findCosts(device, name);
         if (costs == nullptr) {

@@ -1,4 +1,5 @@
-// Which strategy is expected to be fastest, and why: --strategy auto and the advice of `glint explain`.
+// Chooses the strategy that is expected to be fastest, and says why. Used by --strategy auto and the advice
+// of `glint explain`.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -11,53 +12,55 @@
 
 namespace glint {
 
-// What a strategy is expected to take for all rounds of a frame, milliseconds.
+// The time that a strategy is expected to take for all rounds of a frame, in milliseconds.
 struct StrategyEstimate {
     std::string strategy;
     double ms = 0.0;
     TermValues parts{};      // by CostTerm; ms is their sum
-    bool available = false;  // among those that can be chosen
+    bool available = false;  // can be chosen
 };
 
-// What the rounds of a frame have in common, for people; averages are over hits.
+// A summary of the rounds of a frame, for people. Averages are over hits unless a member says otherwise.
 struct FrameFacts {
     double rays = 0.0;
     double hits = 0.0;
     std::size_t cases = 0;
-    double instructions = 0.0;  // that shading a hit takes, with kFetchCost for each fetch
-    double coherence = 0.0;     // over rays
-    double casesRun = 0.0;      // by a subgroup of unsorted hits, one after another
+    double instructions = 0.0;  // to shade a hit, with kFetchCost for each fetch
+    double coherence = 0.0;     // average over rays
+    double casesRun = 0.0;      // cases that a subgroup of unsorted hits runs one after another
 };
 FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize);
 
-// A strategy and what it is expected to take.
+// A strategy and its expected time.
 struct ChoiceTime {
     std::string_view strategy;
     double ms = 0.0;
 };
-// Whether a is taken rather than b: the faster one, but of one case none that orders hits, as there is
-// nothing to order; that an estimate says otherwise is its error.
+// Returns whether `a` is the better choice: it is faster. With one case a strategy that orders hits is never
+// better than one that doesn't, because there is nothing to order; an estimate that says otherwise is wrong.
 bool isBetterChoice(const ChoiceTime& a, const ChoiceTime& b, std::size_t cases);
 
 struct StrategyChoice {
     std::string strategy;
-    std::string why;  // sentences
+    std::string why;  // full sentences
     FrameFacts facts;
-    std::vector<StrategyEstimate> estimates;  // in the order of kStrategyNames; those that have constants
+    std::vector<StrategyEstimate> estimates;  // in the order of kStrategyNames; only those that have
+                                              // constants
 };
 
-// The fastest of `available` (of kStrategyNames) for the sum of `rounds`; of equals the first in
-// kStrategyNames; of one case none that orders hits, if there is another. Without rays that is the first one
-// that is available. Nothing where the device has no constants of any.
+// Chooses the fastest of `available` (a subset of kStrategyNames) for the sum of `rounds`. If several are
+// equal, it takes the first in kStrategyNames; with one case it takes none that orders hits, unless there is
+// no other. Without rays it takes the first that is available. Returns nothing if the device has no constants
+// for any of them.
 std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,
                                              std::span<const std::string> available);
 
-// A choice with what it stands on.
+// A choice and the facts that it rests on.
 struct StrategyAdvice {
     StrategyChoice choice;
-    std::string device;   // whose constants they are
-    bool builtIn = true;  // rather than of a calibration
-    double pixels = 0.0;  // of the frame that was thought of
+    std::string device;   // the device whose constants were used
+    bool builtIn = true;  // The constants are built in rather than from a calibration.
+    double pixels = 0.0;  // pixels of the assumed frame
 };
 
 }  // namespace glint

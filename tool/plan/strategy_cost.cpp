@@ -65,7 +65,7 @@ double instructionsRun(const Round& round, double lanes) {
     double sum = 0.0;
     for (const RoundCase& roundCase : round.cases) {
         const double chance = std::clamp(round.hitShare * roundCase.share, 0.0, 1.0);
-        // Near 1 - chance^1 for small chances: expm1 and log1p keep what pow would round away.
+        // expm1 and log1p keep the digits that pow would round away for small chances.
         const double some = chance < 1.0 ? -std::expm1(lanes * std::log1p(-chance)) : 1.0;
         sum += some * weightOf(roundCase);
     }
@@ -87,7 +87,7 @@ TermValues termsOf(const Round& round, double subgroupSize) {
     const double together = instructionsRun(round, 1.0);
     const double apart = instructionsRun(round, independentLanes(subgroupSize, round.coherence));
     const double waits = std::max(0.0, apart - together);
-    // In the order of CostTerm.
+    // The order is that of CostTerm.
     return {1.0,
             cases,
             round.rays,

@@ -1,25 +1,25 @@
-// What shading the hits of a list of rays takes by each strategy: the model behind --strategy auto.
+// The time that each strategy takes to shade the hits of a list of rays: the model behind --strategy auto.
 //
-// A round is one list of rays. N rays, of which the share h hits something; case i gets the share s(i) of the
-// hits, and its shader weighs c(i) = instructions + kFetchCost * fetches. A subgroup has W lanes, of which
+// A round is one list of N rays, of which the share h hits something. Case i gets the share s(i) of the hits,
+// and its shader weighs c(i) = instructions + kFetchCost * fetches. A subgroup has W lanes, of which
 //
 //     g = 1 + (W - 1) * (1 - coherence)
 //
-// are as good as drawn at random, and the others like one of them. Some lane of it hits case i with the
-// chance 1 - (1 - h s(i))^g, and then the whole subgroup runs c(i): a lane's part of what its subgroup runs
-// is
+// are as good as drawn at random; each of the others is like one of them. The chance that some lane hits case
+// i is 1 - (1 - h s(i))^g, and then the whole subgroup runs c(i). A lane's part of the work of its subgroup
+// is therefore
 //
 //     E(g) = sum over i of ( 1 - (1 - h s(i))^g ) c(i)          E(1) = h * sum over i of s(i) c(i)
 //
-// E(1) is what runs where all lanes of a subgroup have one case: what ordering hits is for. Unsorted shading
-// runs E(g); for W = 32, random rays and 64 cases alike that is 25 cases where one would do.
+// E(1) is the work if all lanes of a subgroup have one case, which is the purpose of ordering hits. Unsorted
+// shading runs E(g): for W = 32, random rays and 64 equal cases that is 25 cases instead of one.
 //
-// The time of a strategy is linear in constants of the device, none below zero, so that they can be fitted to
-// measurements (bench/strategy_fit.h) and each product can be told:
+// The time of a strategy is linear in constants of the device, none below zero. So they can be fitted to
+// measurements (bench/strategy_fit.h), and each product can be reported:
 //
 // clang-format off
 //     term          unit  times                         of
-//     launches      ms    1                             all: dispatches, barriers, what is fixed
+//     launches      ms    1                             all: dispatches, barriers, fixed costs
 //     cases         ms    number of cases               ordered: a dispatch a case, a half full workgroup
 //     rays          ns    N                             all: tracing; ordered: records, and their order
 //     incoherence   ns    N scatter                     all: rays that part, memory that is apart
@@ -30,12 +30,12 @@
 //     misses        ps    N D sqrt(D / 1000), D = E(g) - E(1)      unsorted
 // clang-format on
 //
-// The last two stand for caches of instructions, and are no more than what fits: on an H200 unsorted shading
-// of coherent hits grows as the root of the number of cases, and that of incoherent ones faster than the code
-// that subgroups run (docs/performance.md).
+// The last two terms stand for instruction caches, and are no more than a form that fits: on an H200 unsorted
+// shading of coherent hits grows with the root of the number of cases, and that of incoherent hits grows
+// faster than the code that subgroups run (docs/performance.md).
 //
-// The constants of two strategies differ for what nothing here names, such as registers: a switch has those
-// of its largest case.
+// The constants of two strategies also differ for reasons that the model does not name, such as registers: a
+// switch needs those of its largest case.
 #pragma once
 
 #include <array>
@@ -64,23 +64,23 @@ using TermValues = std::array<double, kCostTerms>;  // by CostTerm
 
 struct CostTermInfo {
     CostTerm term;
-    std::string_view name;    // in files
+    std::string_view name;    // name in files
     std::string_view unit;    // "ms", "ns", "ps"
-    double milliseconds;      // in a unit
-    std::string_view counts;  // what it is multiplied by, for people
+    double milliseconds;      // milliseconds in one unit
+    std::string_view counts;  // the factor of the constant, for people
 };
-// By term.
+// The rows are indexed by term.
 std::span<const CostTermInfo> costTerms();
 
-// In the order in which one of equals is taken: the simplest first.
+// In the order in which equally fast strategies are taken: the simplest first.
 inline constexpr std::string_view kStrategyNames[] = {"uber", "sorted-uber", "visibility", "hit-shaders"};
 
-// Whether the time of a strategy has the term. `strategy`: one of kStrategyNames.
+// Returns whether the time of a strategy has the term. `strategy` is one of kStrategyNames.
 bool hasTerm(std::string_view strategy, CostTerm term);
 
-// A case of a round.
+// A case of a round, with its share of the hits and the size of its code.
 struct RoundCase {
-    double share = 0.0;  // of the hits; 1 over all cases
+    double share = 0.0;  // share of the hits; adds up to 1 over all cases
     double instructions = 0.0;
     double fetches = 0.0;
 };
@@ -88,51 +88,51 @@ struct RoundCase {
 // One list of rays.
 struct Round {
     double rays = 0.0;
-    double hitShare = 1.0;   // of rays that hit something
-    double coherence = 0.0;  // of neighbours' hits: 0 as drawn at random, 1 all of one case
-    double scatter = 1.0;    // of neighbours' rays: 0 as of a mirror, 1 as of a diffuse surface
+    double hitShare = 1.0;   // share of rays that hit something
+    double coherence = 0.0;  // of neighbours' hits: 0 if drawn at random, 1 if all are of one case
+    double scatter = 1.0;    // of neighbours' rays: 0 as from a mirror, 1 as from a diffuse surface
     std::vector<RoundCase> cases;
 };
 
-// Constants of one strategy on a device, in the units of costTerms(); 0 for terms that it lacks.
+// The constants of one strategy on a device, in the units of costTerms(); 0 for terms that it lacks.
 struct StrategyCosts {
     std::string strategy;
     TermValues constants{};
 };
 
-// What is known of a device. Strategies that it can't run, or that were not measured, have no row.
+// The measured constants of a device. Strategies that it can't run, or that were not measured, have no row.
 struct DeviceCosts {
     std::string device;
     std::string driver;
     bool onCpu = false;
     double subgroupSize = 32.0;
-    std::string tracer;   // that strategies but hit-shaders were measured with
-    std::string shadows;  // likewise: inline or deferred
-    std::string source;   // the command that measured it
+    std::string tracer;   // used for all strategies except hit-shaders
+    std::string shadows;  // inline or deferred; used for all strategies except hit-shaders
+    std::string source;   // the command that measured them
     std::vector<StrategyCosts> strategies;
 };
 
-// Null where the device has no row of that name.
+// Returns null if the device has no row of that name.
 const StrategyCosts* findCosts(const DeviceCosts& device, std::string_view strategy);
 
-// What a case's shader weighs, in instructions.
+// Returns the weight of a case's shader in instructions, c(i) of the formula above.
 double weightOf(const RoundCase& roundCase);
 
-// Lanes of a subgroup that are as good as drawn at random.
+// Returns the number of lanes that are as good as drawn at random, g of the formula above.
 double independentLanes(double subgroupSize, double coherence);
 
-// E(lanes) of the formula above: what a lane's part of its subgroup's work is, in instructions a ray.
+// Returns E(lanes) of the formula above: a lane's part of its subgroup's work, in instructions a ray.
 double instructionsRun(const Round& round, double lanes);
 
-// Cases that a subgroup of unsorted hits runs one after another; at least 1 where there is a hit.
+// Returns how many cases a subgroup of unsorted hits runs one after another; at least 1 if there is a hit.
 double casesRun(const Round& round, double subgroupSize);
 
-// What the constants are multiplied by, before units.
+// Returns the factors of the constants, before units are applied.
 TermValues termsOf(const Round& round, double subgroupSize);
 
-// Milliseconds of each term. A round without rays takes nothing.
+// Returns the milliseconds of each term. A round without rays takes no time.
 TermValues estimate(const Round& round, const StrategyCosts& costs, double subgroupSize);
-// Milliseconds of all.
+// Returns the sum of all terms, in milliseconds.
 double estimatedMs(const Round& round, const StrategyCosts& costs, double subgroupSize);
 
 }  // namespace glint

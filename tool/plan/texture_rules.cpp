@@ -8,7 +8,7 @@ namespace glint::rules {
 
 namespace {
 
-// The slots whose textures a key reads.
+// The slots and the features of the textures that a key reads.
 constexpr struct {
     Feature feature;
     TextureSlot slot;
@@ -47,7 +47,7 @@ bool hasTexCoords(const PrimitiveInputs& primitive, int set) {
     return set == 0 ? primitive.hasTexCoords0 : set == 1 && primitive.hasTexCoords1;
 }
 
-// Whether a slot can be read at all; `neutral` is the reason why reading it changes nothing, or empty.
+// Decides whether a slot is read. `neutral` is the reason why reading it changes nothing, or empty.
 Presence textureRule(const Material& material, const PrimitiveInputs& primitive, TextureSlot slot,
                      std::string neutral) {
     const TextureInfo& info = material.texture(slot);
@@ -66,12 +66,13 @@ Presence textureRule(const Material& material, const PrimitiveInputs& primitive,
     return present();
 }
 
-// Of a lit key: `neutral` where that holds.
+// Returns the reason for a lit key: `neutral` if `holds`. An unlit key has its own reason.
 const char* reasonIf(FeatureMask soFar, bool holds, const char* neutral) {
     return has(soFar, Feature::Unlit) ? kUnlitReadsBaseColor : holds ? neutral : "";
 }
 
-// Why a lobe that is there does not need the slot's texture, or empty: other values cancel it.
+// Returns why a present lobe does not need the slot's texture because other values cancel it, or an empty
+// text.
 const char* cancelled(const Material& material, TextureSlot slot) {
     const auto reasonWhere = [](bool holds, const char* reason) { return holds ? reason : ""; };
     switch (slot) {
@@ -84,7 +85,7 @@ const char* cancelled(const Material& material, TextureSlot slot) {
         case TextureSlot::Specular:
             return reasonWhere(material.specular.factor == 0.0F, "specularFactor is 0");
         case TextureSlot::SpecularColor:
-            // At grazing angles specularFactor alone counts, so that black does not cancel the lobe.
+            // At grazing angles specularFactor alone counts, so a black colour does not cancel the lobe.
             return material.specular.factor == 0.0F
                        ? "specularFactor is 0"
                        : reasonWhere(isZero(material.specular.colorFactor), "specularColorFactor is black");
@@ -128,7 +129,7 @@ Presence baseColorTexture(const Material& material, const PrimitiveInputs& primi
 
 Presence metallicRoughnessTexture(const Material& material, const PrimitiveInputs& primitive,
                                   const KeyOptions&, FeatureMask soFar) {
-    // The slot's texture then holds specular colour and glossiness.
+    // In this model the slot's texture holds specular colour and glossiness.
     if (has(soFar, Feature::SpecularGlossiness)) {
         const bool zero = isZero(material.specularGlossiness.specularFactor) &&
                           material.specularGlossiness.glossinessFactor == 0.0F;
@@ -191,8 +192,8 @@ bool readsTexCoord(const Material& material, const PrimitiveInputs& primitive, F
     if (read) {
         return true;
     }
-    // The direction of anisotropy comes from texture coordinates where the primitive has no tangents: those
-    // of a texture that is read, else the first set that there is.
+    // If the primitive has no tangents, the direction of anisotropy comes from texture coordinates: those of
+    // a texture that is read, or else the first set that exists.
     const bool derives = has(soFar, Feature::Anisotropy) && !has(soFar, Feature::NormalTexture) &&
                          !has(soFar, Feature::AnisotropyTexture) &&
                          !(primitive.hasTangents && primitive.hasNormals);
