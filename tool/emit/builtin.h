@@ -1,4 +1,4 @@
-// The shaders and templates that are compiled into the tool, so that an installed one needs no data files.
+// The shaders and templates that are compiled into the tool, so that an installed tool needs no data files.
 #pragma once
 
 #include <span>
@@ -7,11 +7,11 @@
 namespace glint {
 
 struct BuiltinFile {
-    std::string_view name;  // below shaders/ or templates/: "interop/scene.h", "uber.comp.mustache"
+    std::string_view name;  // relative to shaders/ or templates/: "interop/scene.h", "uber.comp.mustache"
     std::string_view text;
 };
 
-// Sorted by name within shaders/, then within templates/. Static storage.
+// Returns the files of shaders/, then those of templates/, each sorted by name. They have static storage.
 std::span<const BuiltinFile> builtinFiles();
 
 }  // namespace glint

@@ -33,7 +33,7 @@ Bytes toBytes(const std::vector<std::uint32_t>& words) {
     return {first, first + words.size() * sizeof(std::uint32_t)};
 }
 
-// The modules' files; modules of equal SPIR-V share one.
+// Adds the modules' files. Modules with equal SPIR-V share one file.
 void addModuleFiles(CompiledPackage& package, const std::string& source, bool emitGlsl) {
     std::set<std::string_view> written;
     for (const CompiledModule& module : package.modules) {
@@ -84,7 +84,7 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
     return settings.positionFetch ? checkPositionFetch(settings, where) : okStatus();
 }
 
-// All that comes before SPIR-V.
+// The results of all steps before SPIR-V.
 struct Prepared {
     Plan plan;
     SourceSet sources;
@@ -128,7 +128,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     package.plan = std::move(prepared->plan);
     package.modules = std::move(*compiled);
 
-    // Files; the manifest last, as it lists the others.
+    // The manifest comes last, because it lists the other files.
     addModuleFiles(package, scenes.fileNames(), settings.emitGlsl);
     package.files.push_back(
         {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
@@ -145,7 +145,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     return package;
 }
 
-// Hit shaders have a tracer of their own; where nothing else traces, it is the only one.
+// Hit shaders have a tracer of their own. If nothing else traces, it is the only tracer.
 CompileSettings withOwnTracers(CompileSettings settings) {
     if (settings.strategies == package::kStrategyHitShaders) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
@@ -153,7 +153,7 @@ CompileSettings withOwnTracers(CompileSettings settings) {
     return settings;
 }
 
-// The result of `work` on scenes that are sound; an exception becomes an error.
+// Checks the scenes, then returns the result of `work`. An exception becomes an error.
 template <typename Value, typename Work>
 Result<Value> guarded(std::span<const Scene> scenes, const Work& work) {
     if (scenes.empty()) {

@@ -20,7 +20,7 @@ namespace glint {
 
 namespace {
 
-// Of one text, which several modules may have.
+// The compiled form of one text, which several modules may have.
 struct CompiledText {
     CachedModule module;
     bool compiled = false;
@@ -52,7 +52,7 @@ Result<CompiledText> takeText(const ModuleSource& source, const std::string& tex
 
 constexpr std::string_view kComputeSuffix = ".comp";
 
-// "uber.comp" is compiled to uber.spv; other stages keep theirs in the name: gbuffer.vert.spv.
+// "uber.comp" is compiled to uber.spv. Other stages stay in the file's name: gbuffer.vert.spv.
 std::string spirvFileName(const ModuleSource& source) {
     std::string_view stem = source.name;
     if (stem.ends_with(kComputeSuffix)) {
@@ -75,7 +75,8 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     return module;
 }
 
-// Runs work(0) … work(count - 1), handed out in order; stops handing out after a false.
+// Runs work(0) … work(count - 1). They are started in order, and none is started after one has returned
+// false.
 template <typename Work>
 void runParallel(std::size_t count, int jobs, const Work& work) {
     std::atomic<std::size_t> next{0};
@@ -91,17 +92,17 @@ void runParallel(std::size_t count, int jobs, const Work& work) {
         jobs > 0 ? static_cast<std::size_t>(jobs) : std::max(1U, std::thread::hardware_concurrency());
     std::vector<std::jthread> threads;
     try {
-        // This thread works too.
+        // This thread works too, so one thread fewer is started.
         for (std::size_t i = 1; i < std::min(wanted, count); ++i) {
             threads.emplace_back(loop);
         }
     } catch (const std::system_error&) {
-        // No more threads to be had: those that there are do the work.
+        // No more threads can be created, so the existing ones do the work.
     }
     loop();
 }
 
-// Equal hashes only hint at equal modules; equal words prove it.
+// Words are compared too, because modules with equal hashes may still differ.
 void shareFiles(std::vector<CompiledModule>& modules) {
     std::multimap<std::uint64_t, std::size_t> firsts;
     for (std::size_t i = 0; i < modules.size(); ++i) {
@@ -116,12 +117,12 @@ void shareFiles(std::vector<CompiledModule>& modules) {
     }
 }
 
-// The modules' texts, each once, in the order of the modules.
+// The distinct texts of the modules, in the order of the modules.
 struct DistinctTexts {
     std::map<std::string, std::size_t> places;
-    std::vector<std::size_t> textOf;        // by module: which text
+    std::vector<std::size_t> textOf;        // by module: index of its text
     std::vector<std::size_t> firsts;        // by text: the first module that has it
-    std::vector<const std::string*> texts;  // by text; into `places`
+    std::vector<const std::string*> texts;  // by text; they point into `places`
 };
 
 DistinctTexts findTexts(std::span<const ModuleSource> sources, bool debugInfo) {
@@ -138,8 +139,8 @@ DistinctTexts findTexts(std::span<const ModuleSource> sources, bool debugInfo) {
     return distinct;
 }
 
-// Modules of `sources`, whose names and texts move into them, from work(0) … work(texts - 1), which give a
-// Result<CompiledText> each.
+// Makes the modules of `sources` from the results of work(0) … work(texts - 1), each a Result<CompiledText>.
+// The names and texts of `sources` are moved into the modules.
 template <typename Work>
 Result<std::vector<CompiledModule>> makeModules(std::vector<ModuleSource>& sources,
                                                 const DistinctTexts& distinct, int jobs, const Work& work) {
@@ -148,7 +149,7 @@ Result<std::vector<CompiledModule>> makeModules(std::vector<ModuleSource>& sourc
         results[text] = work(text);
         return results[text]->ok();
     });
-    // Texts are handed out in order, so that every one before the first error has a result.
+    // Texts are started in order, so every text before the first error has a result.
     for (const std::optional<Result<CompiledText>>& result : results) {
         if (!result->ok()) {
             return result->error();

@@ -1,4 +1,4 @@
-// Shader modules from GLSL to SPIR-V, in parallel, or from where they were compiled before.
+// Makes SPIR-V of the GLSL of shader modules, in parallel, or takes modules that were compiled before.
 #pragma once
 
 #include "cache/module_cache.h"
@@ -12,20 +12,21 @@
 
 namespace glint {
 
-// compileShader() and measureSpirv().
+// Calls compileShader() and measureSpirv().
 Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options);
 
-// Another text for every compiler that may give other words.
+// Returns a text that differs between compilers that may give different words for the same source.
 std::string moduleCompiler();
 
-// Compiles on `jobs` threads (0: one a core), equal texts once, and nothing that `cache` has (null: there is
-// none). The result, and which error is reported, do not depend on `jobs`: of several, that of the first
-// module. Modules of equal SPIR-V get the same `file`, that of the first.
+// Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, and texts that `cache`
+// has are not compiled; `cache` may be null. Neither the result nor the reported error depends on `jobs`: if
+// there are several errors, it is that of the first module. Modules with equal SPIR-V get the same `file`,
+// that of the first of them.
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
                                                    bool debugInfo, ModuleCache* cache = nullptr);
 
-// Takes every module from `folder`, where `glint compile-module` left them; see readCompiledModule() for
-// errors, of which that of the first module is reported.
+// Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
+// readCompiledModule(); if there are several, that of the first module is reported.
 Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
                                                 const std::filesystem::path& folder);
 

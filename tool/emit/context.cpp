@@ -47,7 +47,7 @@ std::string commentText(std::string_view text) {
     std::string line;
     for (const char character : text.substr(0, kMaxNameLength)) {
         const bool printable = character >= ' ' && character <= '~';
-        // A backslash could continue the comment's line, a star or slash end or open a comment.
+        // A backslash could continue the comment's line, and a star or slash could end or open a comment.
         const bool special = character == '\\' || character == '*' || character == '/';
         line += !printable ? '?' : special ? '_' : character;
     }

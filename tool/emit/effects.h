@@ -1,4 +1,4 @@
-// The effects of a package in its sources: which there are, and the GLSL that calls them.
+// The effects of a package, and the GLSL that calls them.
 #pragma once
 
 #include "emit/compile.h"
@@ -11,15 +11,15 @@
 
 namespace glint {
 
-// By the materials that primitives use, and the lights.
+// Decides by the materials that primitives use, and by the lights.
 EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings);
 
-// Macros of generated/scene.glsl.
+// Returns the effects' macros for generated/scene.glsl.
 std::string effectDefines(std::uint32_t effects);
 
-// For effects.glsl.mustache and compose_effects.glsl.mustache.
+// Adds the fields for effects.glsl.mustache and compose_effects.glsl.mustache.
 void addEffects(kainjow::mustache::data& context, std::uint32_t effects);
-// For effect_rays.comp.mustache: one effect that sends rays.
+// Adds the fields for effect_rays.comp.mustache: one effect that sends rays.
 void addEffect(kainjow::mustache::data& context, std::uint32_t effects, package::Effect effect);
 
 }  // namespace glint

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// As an array of 64-bit words: compilers read few long numbers faster than many short ones, and every
-// compiler takes an array of them, where string literals have limits.
+// Files become arrays of 64-bit words. Compilers read few long numbers faster than many short ones, and every
+// compiler accepts such an array, while string literals have limits.
 constexpr std::size_t kWordBytes = 8;
 constexpr std::size_t kWordsPerLine = 5;
 
@@ -27,7 +27,7 @@ bool isRead(const PackageFile& file) {
     return file.name == package::kTablesFile || file.name.ends_with(".spv");
 }
 
-// Little endian, filled with zeros.
+// Reads a word in little-endian order; bytes beyond the end are 0.
 std::uint64_t wordAt(const Bytes& bytes, std::size_t offset) {
     std::uint64_t word = 0;
     for (std::size_t i = std::min(bytes.size(), offset + kWordBytes); i > offset; --i) {
@@ -111,7 +111,7 @@ Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, con
                                                     const fs::path& source) {
     const fs::path header = embeddedHeader(source);
     const EmbeddedSource made = makeEmbeddedSource(scenes, package, header.filename().string());
-    // A failure shows when the files are written.
+    // If this fails, writing the files reports it.
     std::error_code ignored;
     fs::create_directories(source.parent_path(), ignored);
     std::vector<StagedFile> staged;

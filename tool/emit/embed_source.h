@@ -1,4 +1,4 @@
-// A package as C++ source, for programs that ship no files.
+// A package as C++ source, for programs that ship without data files.
 #pragma once
 
 #include "base/staged_file.h"
@@ -13,21 +13,21 @@ namespace glint {
 
 struct EmbeddedSource {
     std::string header;  // declares glint::scene_x::embeddedPackage()
-    std::string source;  // includes it as `headerName`
+    std::string source;  // includes the header as `headerName`
 };
 
-// The files that Package::load() reads, as arrays of 64-bit words.
+// Returns the files that Package::load() reads, as arrays of 64-bit words.
 EmbeddedSource makeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
                                   const std::string& headerName);
 
-// The header beside a source: "room_package.h" for "room_package.cpp".
+// Returns the name of the header beside a source: "room_package.h" for "room_package.cpp".
 std::filesystem::path embeddedHeader(const std::filesystem::path& source);
 
-// Both, ready to be put in their place; those that killed runs left are removed, the folder is made. Error
-// "output-write".
+// Stages both files, ready to be moved to their place. It creates the folder and removes staged files that
+// killed runs left behind. Error "output-write".
 Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
                                                     const std::filesystem::path& source);
-// Writes both, each as a whole and only if it changed; makes the folder. Error "output-write".
+// Writes both files, each as a whole and only if it changed. It creates the folder. Error "output-write".
 Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
                            const std::filesystem::path& source);
 

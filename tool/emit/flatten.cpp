@@ -14,15 +14,15 @@ namespace glint {
 namespace {
 
 enum class FrameKind {
-    Side,   // on __cplusplus: decided here, its directives dropped
-    Guard,  // include guard: its directives dropped
+    Side,   // a condition on __cplusplus, decided here; its directives are dropped
+    Guard,  // an include guard; its directives are dropped
     Other   // left to the compiler
 };
 
 struct Frame {
     FrameKind kind = FrameKind::Other;
     bool taken = true;
-    int line = 0;  // where it opens
+    int line = 0;  // where the conditional opens
 };
 
 class Flattener {
@@ -44,7 +44,7 @@ private:
         std::vector<Frame> frames;
     };
 
-    // Handles the directive at `index` if it is one of flatten's own: the value says whether it was.
+    // Handles the directive at `index` if flatten() decides it itself. Returns whether it did.
     Result<bool> addDirective(File& file, std::size_t index);
     Result<bool> addConditional(File& file, std::size_t index, const Directive& directive);
     Status addInclude(const File& file, int line, std::string_view argument);
@@ -56,7 +56,7 @@ private:
     std::string out_;
     std::set<std::string, std::less<>> added_;
     std::vector<std::string> open_;  // files being flattened, outermost first
-    // The place that the compiler takes the next line of out_ for.
+    // The file and line that the compiler assumes for the next line of out_.
     std::string placeName_;
     int placeLine_ = 0;
     bool sawVersion_ = false;
@@ -113,7 +113,7 @@ Result<bool> Flattener::addDirective(File& file, std::size_t index) {
         placeLine_ = 0;
         return true;
     }
-    // The guard's own #define.
+    // This is the guard's own #define.
     const bool inGuard = !file.frames.empty() && file.frames.back().kind == FrameKind::Guard;
     if (inGuard && directive.word == "define" && file.frames.back().line == line - 1) {
         return true;
@@ -148,7 +148,7 @@ Result<bool> Flattener::addConditional(File& file, std::size_t index, const Dire
     }
     const bool isOwn = frames.back().kind != FrameKind::Other;
     if (word == "endif") {
-        // Emitted, if at all, as part of what surrounds the conditional.
+        // The frame is popped first, because an #endif belongs to the text around the conditional.
         frames.pop_back();
         return isOwn;
     }
@@ -163,7 +163,7 @@ Result<bool> Flattener::addConditional(File& file, std::size_t index, const Dire
     return isOwn;
 }
 
-// C++ keeps its guards: they let the result stand beside the headers that it was made from.
+// C++ keeps its include guards, so that the result can be included next to the headers that it was made from.
 bool Flattener::opensGuard(const File& file, std::size_t index) const {
     if (side_ == FlattenSide::Cpp || !file.frames.empty() || index + 1 >= file.lines.size()) {
         return false;

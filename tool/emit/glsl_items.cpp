@@ -19,7 +19,7 @@ bool continuesWord(char c) {
     return startsWord(c) || (c >= '0' && c <= '9');
 }
 
-// The identifier, or the number, that `text` begins with.
+// Returns the identifier, or the number, at the start of `text`.
 std::string_view wordAt(std::string_view text) {
     const auto* const end = std::ranges::find_if_not(text, continuesWord);
     return text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -29,7 +29,7 @@ std::string_view skipBlanks(std::string_view text) {
     return text.substr(std::min(text.find_first_not_of(kBlank), text.size()));
 }
 
-// Bytes of the comment that `text` begins with; 0 where it begins otherwise.
+// Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
 std::size_t commentLength(std::string_view text) {
     if (text.starts_with("//")) {
         return std::min(text.find('\n'), text.size());
@@ -41,7 +41,8 @@ std::size_t commentLength(std::string_view text) {
     return 0;
 }
 
-// Reads the identifiers and the punctuation of `text`; comments and numbers are none.
+// Calls `visit` for each identifier and each punctuation character of `text`. Comments and numbers are
+// skipped.
 template <typename Visit>
 void forEachToken(std::string_view text, const Visit& visit) {
     while (!text.empty()) {
@@ -56,12 +57,12 @@ void forEachToken(std::string_view text, const Visit& visit) {
     }
 }
 
-// Says in how many bits, not what is declared.
+// These words give the precision of a declaration, not its name or type.
 bool isPrecision(std::string_view word) {
     return word == "GLINT_RELAXED" || word == "mediump" || word == "highp";
 }
 
-// What a declaration is, told from its tokens outside of all brackets.
+// Recognises the kind of a declaration from its tokens outside of all brackets.
 class Shape {
 public:
     void add(std::string_view token) {
@@ -88,7 +89,7 @@ public:
     bool isLoneWord() const {
         return words_ == 1 && groups_ == 0 && depth_ == 0 && !assigned_;
     }
-    // Of a function or a constant that is one beyond doubt.
+    // Returns the name of a declaration that is certainly a function or a constant, else an empty text.
     std::string_view name() const {
         const bool known = !pinned_ && ended() && (isFunction_ || isConstant_) && name_ != "main";
         return known ? name_ : std::string_view();
@@ -118,7 +119,7 @@ private:
             isHead_ = false;
         } else if (token == "=" && !assigned_) {
             assigned_ = true;
-            // const, type and name; an array's length may stand between.
+            // The words are const, type and name; an array's length may stand between them.
             isConstant_ = isConst_ && words_ == 3;
             name_ = last_;
         } else if (token == ",") {
@@ -127,11 +128,11 @@ private:
     }
 
     int depth_ = 0;
-    int words_ = 0;   // before a =
+    int words_ = 0;   // before a "="
     int groups_ = 0;  // pairs of brackets
     std::string_view last_;
     std::string_view name_;
-    bool isHead_ = false;  // "type name(…)"
+    bool isHead_ = false;  // has seen "type name(…)"
     bool isConst_ = false;
     bool assigned_ = false;
     bool isFunction_ = false;
@@ -140,8 +141,8 @@ private:
     bool pinned_ = false;
 };
 
-// Identifiers beside the ## of a macro, which follows its name: a parameter may stand for any, an empty one
-// for all there are.
+// Returns the identifiers beside the ## of `macro`, the text that follows a macro's name. An empty view means
+// any identifier: parameters stand on both sides.
 std::vector<std::string_view> pastedBy(std::string_view macro) {
     std::vector<std::string_view> parameters;
     if (macro.starts_with('(')) {
@@ -191,11 +192,11 @@ public:
     }
 
 private:
-    // Without its line break.
+    // Returns the rest of the line without its line break.
     std::string_view lineAhead() const {
         return rest_.substr(0, rest_.find('\n'));
     }
-    // A directive goes on as long as its lines end in a backslash.
+    // A directive continues while its lines end in a backslash.
     std::string_view directiveAhead() const {
         std::size_t end = rest_.find('\n');
         while (end != std::string_view::npos && end > 0 && rest_[end - 1] == '\\') {
@@ -262,8 +263,8 @@ private:
         }
         take(directive);
     }
-    // Up to the end of the line that ends the declaration. A word alone on its line is a macro without an end
-    // of its own, like GLINT_INTEROP_BEGIN.
+    // Takes lines up to the end of the line that ends the declaration. A word alone on its line is a macro
+    // that needs no semicolon, like GLINT_INTEROP_BEGIN.
     void takeCode(GlslItem& item) {
         Shape shape;
         int conditionals = 0;
@@ -301,8 +302,7 @@ private:
             shape.pin();
         }
     }
-    // Takes a line, and whatever a comment that begins on it reaches; says whether the declaration ends
-    // there.
+    // Takes a line, and all lines of a comment that begins on it. Returns whether the declaration ends there.
     bool takeCodeLine(GlslItem& item, Shape& shape) {
         std::size_t length = 0;
         while (length < rest_.size() && rest_[length] != '\n') {

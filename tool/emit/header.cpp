@@ -17,7 +17,8 @@ namespace mustache = kainjow::mustache;
 
 namespace {
 
-// A string literal of ASCII. Octal escapes end after three digits, whatever follows.
+// Returns an ASCII string literal. Octal escapes end after three digits, so the next character can't extend
+// them.
 std::string quote(std::string_view text) {
     std::string literal = "\"";
     for (const char character : text) {
@@ -113,7 +114,7 @@ std::string headerNamespace(const std::string& scenePath) {
     std::string name = "scene_";
     for (const char character : std::filesystem::path(scenePath).stem().string()) {
         const bool valid = std::isalnum(static_cast<unsigned char>(character)) != 0;
-        // Never two underscores in a row, which C++ reserves.
+        // C++ reserves names with two underscores in a row.
         if (valid || name.back() != '_') {
             name += valid ? character : '_';
         }

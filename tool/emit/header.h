@@ -9,11 +9,11 @@
 
 namespace glint {
 
-// Errors of renderTemplate() and flatten().
+// Returns the header's text. Has the errors of renderTemplate() and flatten().
 Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                const PlanOptions& options);
 
-// "scene_" and the file's name, as an identifier: the namespace within glint.
+// Returns the namespace within glint: "scene_" and the file's name, as an identifier.
 std::string headerNamespace(const std::string& scenePath);
 
 }  // namespace glint

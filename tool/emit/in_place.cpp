@@ -18,8 +18,8 @@ Diagnostic placeError(const fs::path& path, const std::string& why) {
                      "check the folder, its permissions and the free space; nothing was changed");
 }
 
-// tables.bin leaves first and arrives last; the manifest, by which a later run knows the folder as a package,
-// the other way round.
+// tables.bin leaves first and arrives last. The manifest does the opposite, because a later run recognises
+// the folder as a package by it.
 int rank(const std::string& name) {
     return name == package::kTablesFile ? 0 : name == package::kManifestFile ? 2 : 1;
 }
@@ -35,7 +35,7 @@ bool isReal(const fs::path& path) {
     return fs::canonical(path, error) == path && !error;
 }
 
-// Renames that are undone, last first, unless they are kept.
+// A list of renames. They are undone in reverse order unless they are kept.
 class Moves {
 public:
     explicit Moves(fs::path folder) : folder_(std::move(folder)) {}
@@ -50,7 +50,8 @@ public:
         }
     }
 
-    // `to` must not exist; its parents are made. No way may lead over a link, out of the folder perhaps.
+    // Moves a file. `to` must not exist; its parent folders are created. The path must not contain a link,
+    // because that could lead out of the folder.
     std::error_code move(const fs::path& from, const fs::path& to) {
         std::error_code error;
         if (fs::exists(fs::symlink_status(to, error))) {
@@ -92,7 +93,7 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
     std::vector<std::string> outgoing = leaving;
     std::ranges::sort(outgoing, std::less<>{}, rank);
 
-    // All that can fail for want of space comes first.
+    // Writing the files comes first, because only that can fail for lack of space.
     const fs::path fresh = staging->path() / "new";
     for (const PackageFile* file : incoming) {
         std::error_code error;

@@ -1,4 +1,4 @@
-// Replacing files of a folder that must stay where it is: a working folder, a mount point, or one whose
+// Replaces files of a folder that must itself stay in place: a working folder, a mount point, or one whose
 // parent can't be written.
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace glint {
 
-// Takes the files `leaving` (names below `folder`) away and brings those of `arriving` in. A reader sees the
-// earlier tables.bin, none, or the new one with all that it names. On error "output-write" everything is as
-// it was; a file of somebody else's is never replaced.
+// Removes the files `leaving` (names relative to `folder`) and moves those of `arriving` in. A reader sees
+// the earlier tables.bin, none, or the new one with all files that it names. On error "output-write"
+// everything is as it was. Files that are not part of a package are never replaced.
 Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::vector<std::string>& leaving,
                       const std::filesystem::path& folder);
 

@@ -5,7 +5,7 @@
 #include <interop/frame.h>
 #include <interop/scene.h>
 
-// A row of a table of members; a member that is missing here is found by the test against SPIR-V.
+// A row of a table of members. If a member is missing here, the test against SPIR-V finds it.
 #define GLINT_MEMBER(type, name) \
     { #name, static_cast < std::uint32_t>(offsetof(gpu::type, name)) }
 #define GLINT_STRUCT(type) \

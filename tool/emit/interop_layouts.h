@@ -15,12 +15,13 @@ struct MemberLayout {
 struct StructLayout {
     std::string_view name;
     std::uint32_t bytes;
-    std::span<const MemberLayout> members;  // all of them, in order
+    std::span<const MemberLayout> members;  // all members, in order
 };
 
-// Every structure of shaders/interop but the following. Static storage.
+// Returns every structure of shaders/interop, except those of deformLayouts(). Static storage.
 std::span<const StructLayout> interopLayouts();
-// Those of interop/deform.h, which the C++ header of a package leaves out: only the runtime fills them.
+// Returns the structures of interop/deform.h. The C++ header of a package leaves them out, because only the
+// runtime fills them.
 std::span<const StructLayout> deformLayouts();
 
 }  // namespace glint

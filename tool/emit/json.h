@@ -1,4 +1,4 @@
-// What several files say alike in JSON.
+// JSON forms that several files share.
 #pragma once
 
 #include "plan/effects.h"
@@ -15,19 +15,20 @@
 
 namespace glint {
 
-// 2^n for n bits, as a whole number as long as every JSON reader takes it exactly.
+// Returns 2^n for n bits, as a whole number if every JSON reader takes it exactly.
 inline nlohmann::ordered_json countToJson(double count) {
     constexpr double kLargest = 9007199254740992.0;  // 2^53
     return count <= kLargest ? nlohmann::ordered_json(static_cast<std::uint64_t>(count))
                              : nlohmann::ordered_json(count);
 }
 
-// A share of hits to four decimals, which is more than is known of it.
+// Rounds a share of hits to four decimals, which is more than its accuracy.
 inline nlohmann::ordered_json shareToJson(double share) {
     return std::round(share * 1e4) / 1e4;
 }
 
-// An estimate to four digits, which is more than is known of it, and the same on every machine.
+// Rounds an estimate to four digits. That is more than its accuracy, and gives the same text on every
+// machine.
 inline nlohmann::ordered_json estimateToJson(double value) {
     if (value == 0.0 || !std::isfinite(value)) {
         return 0.0;
@@ -36,7 +37,7 @@ inline nlohmann::ordered_json estimateToJson(double value) {
     return scale >= 1.0 ? std::round(value * scale) / scale : std::round(value);
 }
 
-// Which strategy was chosen, or would be, and what each was expected to take.
+// Describes which strategy was or would be chosen, and the expected time of each.
 inline nlohmann::ordered_json strategyChoiceToJson(const StrategyAdvice& advice) {
     const FrameFacts& facts = advice.choice.facts;
     nlohmann::ordered_json estimates = nlohmann::ordered_json::array();
@@ -67,7 +68,7 @@ inline nlohmann::ordered_json strategyChoiceToJson(const StrategyAdvice& advice)
             {"estimates", estimates}};
 }
 
-// Which of a case's modules this is, by what it is for.
+// Names one of a case's modules by its purpose.
 constexpr std::string_view stageName(const package::ModuleKey& key) {
     if (key.role == package::ModuleRole::HitCase) {
         return "hit-shaders";
@@ -75,7 +76,7 @@ constexpr std::string_view stageName(const package::ModuleKey& key) {
     return key.tracer == package::kTracerRayPipeline ? "visibility, ray-pipeline" : "visibility";
 }
 
-// Every effect that there is, chosen or not.
+// Lists every effect, chosen or not.
 inline nlohmann::ordered_json effectsToJson(const EffectPlan& plan) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const EffectDecision& decision : plan.decisions) {

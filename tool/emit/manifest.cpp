@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// The path below the scene's folder; a package must not tell where it was built.
+// Returns the path relative to the scene's folder, because a package must not tell where it was built.
 std::string relativeName(const std::string& path, const std::string& scenePath) {
     const std::filesystem::path folder = std::filesystem::path(scenePath).parent_path().lexically_normal();
     const std::filesystem::path file = std::filesystem::path(path).lexically_normal();
@@ -63,7 +63,7 @@ Json settingsOf(const CompileSettings& settings) {
             {"positionFetch", settings.positionFetch}};
 }
 
-// The budget of cases; null: none.
+// Returns the budget of cases, or null if there is none.
 Json maxShadersOf(const PlanOptions& options) {
     const int budget = budgetOf(options);
     return budget > 0 ? Json(budget) : Json(nullptr);
@@ -80,7 +80,7 @@ Json materialList(const SceneList& scenes, const std::vector<int>& materials) {
     return list;
 }
 
-// Without names, which shaders[] has.
+// The places have no names; shaders[] has those.
 Json materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
     Json list = Json::array();
     for (const int material : materials) {
@@ -115,7 +115,8 @@ Json moduleEntry(const CompiledModule& module) {
             {"hash", hexHash(module.hash)}};
 }
 
-// A case's own modules by strategy. In the uber shader a case is a function, listed under passes.
+// Lists a case's own modules by strategy. In the uber shader a case is a function, which is listed under
+// passes.
 Json stages(const CompiledPackage& package, int shaderId) {
     Json object = Json::object();
     for (const CompiledModule& module : package.modules) {
@@ -198,7 +199,7 @@ Json files(const CompiledPackage& package) {
     return list;
 }
 
-// The manifest may come from anywhere: its names must not lead out of the package's folder.
+// The manifest may come from anywhere, so its names must not lead out of the package's folder.
 bool staysInside(const std::filesystem::path& name) {
     return !name.empty() && name.is_relative() &&
            std::ranges::all_of(name, [](const std::filesystem::path& part) {
@@ -232,7 +233,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["keys"] = keys(scenes, package);
     manifest["dropped"] = dropped(scenes, package);
     manifest["files"] = files(package);
-    // Names come from the scene: what is not UTF-8 is replaced rather than refused.
+    // Names come from the scene. Bytes that are not UTF-8 are replaced rather than refused.
     return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,4 +1,4 @@
-// manifest.json: what a package holds, for people and scripts. docs/package.md describes it.
+// manifest.json describes the contents of a package for people and scripts (docs/package.md).
 #pragma once
 
 #include "emit/compile.h"
@@ -12,12 +12,12 @@ namespace glint {
 
 inline constexpr std::string_view kManifestFormat = "glint-package";
 
-// The text of the manifest; `package` must be complete but for the manifest itself.
+// Returns the text of the manifest. `package` must be complete except for the manifest itself.
 std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings);
 
-// Names of the files that a manifest lists, itself included, as far as they stay in its folder; empty if
-// `text` is no manifest of a package.
+// Returns the names of the files that a manifest lists, itself included. Names that lead out of the folder
+// are left out. Empty if `text` is not the manifest of a package.
 std::set<std::string, std::less<>> manifestFiles(std::string_view text);
 
 }  // namespace glint

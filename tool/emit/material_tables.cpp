@@ -13,7 +13,7 @@ using package::TextureEntry;
 
 namespace {
 
-// Whether the slot's texture is sRGB; its alpha, where something reads that, is linear all the same.
+// Returns whether the slot's texture is sRGB. Alpha is linear even then.
 bool isColor(const Material& material, TextureSlot slot) {
     switch (slot) {
         case TextureSlot::BaseColor:
@@ -29,9 +29,9 @@ bool isColor(const Material& material, TextureSlot slot) {
     }
 }
 
-// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
-// points down; the extension's GLSL listing turns the other way, its text and test models this one
-// (KhronosGroup/glTF issue 1563).
+// Sets the rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image,
+// where v points down. The GLSL listing of the extension turns the other way; its text and test models turn
+// this way (KhronosGroup/glTF issue 1563).
 void setTransform(const TextureTransform& transform, gpu::TextureRecord& record) {
     const double sine = std::sin(static_cast<double>(transform.rotation));
     const double cosine = std::cos(static_cast<double>(transform.rotation));
@@ -47,18 +47,18 @@ gpu::vec3 toVec3(const std::array<float, 3>& values) {
     return {values[0], values[1], values[2]};
 }
 
-// Absorption along a path, per metre: transmittance = color^(length / distance) = exp(-absorption * length)
-// (KHR_materials_volume, Beer-Lambert law).
+// Returns the absorption along a path, per metre (KHR_materials_volume, Beer-Lambert law):
+// transmittance = color^(length / distance) = exp(-absorption * length).
 gpu::vec3 absorptionOf(const Volume& volume) {
-    // Nothing visible passes a coefficient above this (black absorbs without end), and its product with the
-    // length of any scene, below 1e18 m, is finite.
+    // A coefficient above this lets no visible light through (black absorbs without limit). Its product with
+    // the length of any scene, which is below 1e18 m, is finite.
     constexpr double kMaxAbsorption = 1e18;
     std::array<float, 3> absorption{};
     if (volume.attenuationDistance > 0.0F) {
         for (std::size_t i = 0; i < absorption.size(); ++i) {
             const double coefficient = -std::log(static_cast<double>(volume.attenuationColor[i])) /
                                        static_cast<double>(volume.attenuationDistance);
-            // Of white, -log(1) is -0.
+            // max() turns the -0 of white, -log(1), into 0.
             absorption[i] = static_cast<float>(std::min(std::max(0.0, coefficient), kMaxAbsorption));
         }
     }

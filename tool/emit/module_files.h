@@ -1,5 +1,5 @@
-// Modules that are compiled one by one, by other processes or on other machines: a file each before and
-// after.
+// Modules that are compiled one by one, by other processes or on other machines, through a file before and a
+// file after.
 #pragma once
 
 #include "cache/module_cache.h"
@@ -19,16 +19,16 @@ namespace glint {
 inline constexpr std::string_view kModuleTextSuffix = ".glsl";
 inline constexpr std::string_view kCompiledModuleSuffix = ".module";
 
-// Equal texts once, in the order of the modules; named by nameModuleTexts().
+// Returns each distinct text once, in the order of the modules. nameModuleTexts() names them.
 std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo);
 
-// What `glint compile-module` does: reads `input`, a module's text, and writes `output`; touches nothing
-// else. Errors of readFile(), readModuleText(), compileShader() and writeFile().
+// Implements `glint compile-module`: reads a module's text from `input` and writes `output`. It touches
+// nothing else. Errors are those of readFile(), readModuleText(), compileShader() and writeFile().
 Status compileModuleFile(const std::filesystem::path& input, const std::filesystem::path& output);
 
-// Reads the compiled `file` of a folder for `text`. `name`: the module, for messages. Errors:
-// "module-missing"; "module-stale" where it is of another text or another compiler; "module-format" where it
-// is damaged.
+// Reads the compiled `file` of a folder for `text`. `name` is the module's name, for messages. Errors:
+// "module-missing"; "module-stale" if it was made from another text or by another compiler; "module-format"
+// if it is damaged.
 Result<CachedModule> readCompiledModule(const std::filesystem::path& file, std::string_view text,
                                         const std::string& name);
 

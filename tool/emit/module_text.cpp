@@ -24,7 +24,7 @@ struct StageName {
     std::string_view name;
 };
 
-// As glslang's command names them.
+// The names are those that glslang's command uses.
 constexpr StageName kStages[] = {
     {ShaderStage::Vertex, "vert"},        {ShaderStage::Fragment, "frag"},    {ShaderStage::Compute, "comp"},
     {ShaderStage::RayGeneration, "rgen"}, {ShaderStage::ClosestHit, "rchit"}, {ShaderStage::AnyHit, "rahit"},

@@ -1,4 +1,5 @@
-// A module as a text of its own: all that decides about its words, so that it can be compiled anywhere.
+// A module as a self-contained text that holds everything that decides about its words, so that it can be
+// compiled anywhere.
 #pragma once
 
 #include "emit/modules.h"
@@ -13,21 +14,21 @@
 
 namespace glint {
 
-// GLSL below comments that say what else decides: the stage, the functions that are kept apart, and the name
-// where names are kept. Equal for two modules exactly where they are compiled alike: without debug
-// information the GLSL is that of essentialText().
+// Returns the GLSL below comments that hold the other inputs: the stage, the functions that are kept apart,
+// and the name if names are kept. Two modules have equal texts exactly if they are compiled alike. Without
+// debug information the GLSL is that of essentialText().
 std::string makeModuleText(const ModuleSource& source, bool debugInfo);
 
 struct ModuleText {
     ShaderSource source;
     ShaderCompileOptions options;
 };
-// Takes apart what makeModuleText() made. `name`: for messages, where the text has none. Error
+// Parses the text that makeModuleText() made. `name` is used in messages if the text has no name. Error
 // "module-format".
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name);
 
-// A name for each of `texts`, which are distinct: the hash of the text in hexadecimal digits, and a number
-// where several have that hash.
+// Returns a name for each of `texts`, which must be distinct: the text's hash in hexadecimal digits, and a
+// number if several texts have that hash.
 std::vector<std::string> nameModuleTexts(std::span<const std::string* const> texts);
 
 }  // namespace glint

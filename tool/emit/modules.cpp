@@ -18,16 +18,16 @@ using package::ModuleRole;
 
 namespace {
 
-// File systems allow 255 bytes; the shader ID alone makes a name unique.
+// File systems allow names of 255 bytes. The shader ID alone already makes a name unique.
 constexpr std::size_t kMaxCaseNameLength = 100;
 
-// Where a role's GLSL is: below shaders/, or a template.
+// The source of a role's GLSL: a file below shaders/, or a template.
 struct RoleSource {
     ModuleRole role;
     std::string_view source;
 };
 
-// Of an ordering that has passes of its own.
+// Sources for an ordering that has passes of its own.
 constexpr RoleSource kTileSortSources[] = {
     {ModuleRole::BucketCount, "passes/bucket_count_tile_sort.comp"},
     {ModuleRole::BucketCopy, "passes/bucket_copy_tile_sort.comp"},
@@ -95,8 +95,8 @@ ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
 constexpr std::string_view kTemplateSuffix = ".mustache";
 constexpr std::string_view kComputeSuffix = ".comp";
 
-// "passes/lighting.comp" gives lighting.comp, or lighting.rgen where it is a ray generation shader; what
-// there are several of says which it is.
+// "passes/lighting.comp" gives lighting.comp, or lighting.rgen if it is a ray generation shader. If a role
+// has several modules, the name says which one it is.
 std::string moduleName(std::string_view source, const package::RoleInfo& info, const package::ModuleKey& key,
                        std::string_view caseName) {
     std::string name(source.substr(source.find('/') + 1));
@@ -126,12 +126,12 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
     return name + extension;
 }
 
-// What a module knows of itself, before anything else of its text.
+// Returns the macros about the module itself, which precede the rest of its text.
 std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKey& key,
                           package::ShadingPrecision precision) {
     std::string defines;
     if (precision == package::ShadingPrecision::Half) {
-        // Or else what names no precision takes that of its neighbours, mediump included.
+        // Without these, values without a precision take that of their neighbours, even mediump.
         defines += "precision highp float;\nprecision highp int;\n";
     }
     const ShaderStage stage = stageOf(info, key.tracer);
@@ -145,7 +145,7 @@ std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKe
     return defines;
 }
 
-// After the line of #version, which has to come first.
+// Inserts the macros after the line of #version, which must come first.
 void insertDefines(std::string& text, const std::string& defines) {
     if (!defines.empty()) {
         text.insert(text.find('\n') + 1, defines + "#line 2\n");

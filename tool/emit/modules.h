@@ -1,4 +1,4 @@
-// The shader modules of a package: which there are, and their GLSL.
+// Decides which shader modules a package has, and makes their GLSL.
 #pragma once
 
 #include "emit/compile.h"
@@ -15,14 +15,14 @@ struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
     std::string name;                           // "uber.comp"
-    std::string glsl;                           // flattened, without what nothing uses
-    std::vector<std::string> functionsApart{};  // see ShaderSource
+    std::string glsl;                           // flattened, without unused functions, constants and macros
+    std::vector<std::string> functionsApart{};  // as in ShaderSource
 };
 
 package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
 
-// Those that the settings call for, in order of their keys. Errors as renderTemplate() and
-// flatten().
+// Returns the modules that the settings call for, in order of their keys. Has the errors of renderTemplate()
+// and flatten().
 Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings);

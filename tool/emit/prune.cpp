@@ -16,14 +16,14 @@ namespace {
 
 using Items = std::vector<GlslItem>;
 
-// Whether ## may make the item's name out of one of `fragments`.
+// Returns whether ## can form the item's name from one of `fragments`.
 bool mayBePasted(const GlslItem& item, const std::vector<std::string_view>& fragments) {
     return std::ranges::any_of(fragments, [&](std::string_view fragment) {
         return item.name.starts_with(fragment) || item.name.ends_with(fragment);
     });
 }
 
-// Marks what is reached from the items that can't go.
+// Marks the items that are reached from those that must stay.
 std::vector<bool> findReached(const Items& items) {
     std::unordered_multimap<std::string_view, std::size_t> byName;
     std::vector<std::string_view> fragments;
@@ -57,9 +57,9 @@ std::vector<bool> findReached(const Items& items) {
     return reached;
 }
 
-// A comment goes with what stands right below it, be it a list of macros.
+// A comment is dropped together with what stands right below it, which may be a list of macros.
 void dropComments(const Items& items, std::vector<bool>& kept) {
-    // Whether anything is kept of what stands below, up to the end of the list.
+    // Says whether anything is kept of what stands below, up to the end of the list.
     bool keptBelow = true;
     for (std::size_t i = items.size(); i-- > 0;) {
         const GlslItemKind kind = items[i].kind;
@@ -74,7 +74,7 @@ void dropComments(const Items& items, std::vector<bool>& kept) {
     }
 }
 
-// Joins items; a directive says where the lines of each are from, wherever they don't follow the last one's.
+// Joins items. Wherever an item's lines don't follow those of the last one, a directive gives their place.
 class Writer {
 public:
     void add(const GlslItem& item) {
@@ -88,7 +88,7 @@ public:
             text_ += fmt::format("#line {} \"{}\"\n", item.line, item.file);
         }
         text_ += item.text;
-        // A blank line that was moved leaves what follows it without a place.
+        // After a moved blank line, the place of the next line is unknown.
         file_ = blank && !inPlace ? std::string_view() : item.endFile;
         line_ = item.endLine;
     }
@@ -122,7 +122,7 @@ std::string essentialText(std::string_view glsl) {
     std::string text;
     text.reserve(glsl.size());
     std::string line;
-    // GLSL has no literals in which one blank is not as good as several.
+    // GLSL has no literals that contain blanks, so one blank can replace several.
     const auto addBlank = [&] {
         if (!line.empty() && line.back() != ' ') {
             line += ' ';

@@ -1,4 +1,4 @@
-// Makes a module's text depend on nothing that the module does not use.
+// Removes everything from a module's text that the module does not use.
 #pragma once
 
 #include <string>
@@ -6,14 +6,13 @@
 
 namespace glint {
 
-// The text, flattened as by flatten(), without the functions, constants and macros that nothing of the rest
-// reaches. Comments that stand right above go with them. Place directives follow, so that messages still name
-// the real lines. What can't be told apart stays: the text keeps its meaning, and dropping again changes
-// nothing.
+// Returns the text, flattened as by flatten(), without the functions, constants and macros that the rest does
+// not reach. Comments right above them are dropped too. #line directives are adjusted, so that messages still
+// name the real lines. In doubt an item stays: the text keeps its meaning, and a second call changes nothing.
 std::string dropUnused(std::string_view glsl);
 
-// The text without comments, blank lines, indentation and place directives: what decides about its SPIR-V
-// where that has no debug information.
+// Returns the text without comments, blank lines, indentation and #line directives. This alone decides about
+// its SPIR-V if that has no debug information.
 std::string essentialText(std::string_view glsl);
 
 }  // namespace glint

@@ -15,7 +15,7 @@ namespace glint {
 
 namespace {
 
-// Where the macros are that make one text of C++ and GLSL.
+// The file with the macros that let one text be both C++ and GLSL.
 constexpr std::string_view kSharedTypes = "interop/types.h";
 constexpr std::string_view kMadeBy = "// Made by glint";
 
@@ -27,7 +27,7 @@ bool isComment(const GlslLine& line) {
     return trim(line.text).starts_with("//");
 }
 
-// What flatten() made of them, for those who read that.
+// Joins the lines to one text, in the form that flatten() gives.
 std::string flattenedText(const std::vector<GlslLine>& lines) {
     std::string text;
     std::string file;
@@ -42,7 +42,7 @@ std::string flattenedText(const std::vector<GlslLine>& lines) {
     return text;
 }
 
-// Successive lines of one file.
+// Successive lines from one file.
 struct Section {
     std::string file;
     std::vector<std::string> lines;
@@ -65,8 +65,8 @@ std::vector<Section> sectionsOf(const std::vector<GlslLine>& lines) {
     return sections;
 }
 
-// A remark at the head of a file stands before its includes: it moves to the file's own code, or goes with
-// it.
+// A comment at the head of a file stands before its includes. It is moved down to the file's own code, or
+// dropped if there is none.
 std::vector<Section> placeRemarks(std::vector<Section> sections) {
     std::map<std::string, std::vector<std::string>> waiting;
     std::vector<Section> placed;
@@ -90,7 +90,7 @@ std::vector<Section> placeRemarks(std::vector<Section> sections) {
     return placed;
 }
 
-// Takes the extensions out; each once, in their order.
+// Takes the extensions out of the lines. Returns each once, in order.
 std::vector<std::string> takeExtensions(std::vector<GlslLine>& lines) {
     std::vector<std::string> extensions;
     std::erase_if(lines, [&](const GlslLine& line) {
@@ -105,7 +105,7 @@ std::vector<std::string> takeExtensions(std::vector<GlslLine>& lines) {
     return extensions;
 }
 
-// One blank line where there are several, none at either end.
+// Appends lines; several blank lines become one, and those at both ends are dropped.
 void appendLines(std::string& text, const std::vector<std::string>& lines) {
     bool blank = false;
     bool any = false;
@@ -121,11 +121,11 @@ void appendLines(std::string& text, const std::vector<std::string>& lines) {
     }
 }
 
-// The comments that the module's own file begins with, where they say what made it.
+// Takes the comments at the start of the module's own file if they say what made it.
 std::string takeHeader(std::vector<GlslLine>& lines) {
     std::string header;
     auto line = lines.begin();
-    // Module-wide #defines may come first.
+    // #defines of the module may come first.
     while (line != lines.end() && !isComment(*line) && (isBlank(*line) || line->text.starts_with('#'))) {
         ++line;
     }

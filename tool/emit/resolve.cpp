@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::string_view kOwnPrefix = "GLINT_";
 
-// Values of macros without parameters, as text.
+// The values of macros without parameters, as text.
 using Macros = std::map<std::string, std::string, std::less<>>;
 
-// The name that a #define or #undef begins with.
+// Returns the name at the start of a #define's or #undef's argument.
 std::string_view nameIn(std::string_view argument) {
     return argument.substr(0, std::min(argument.find_first_of(" \t("), argument.size()));
 }
 
-// "2u" and "0x10" as well.
+// Parses a number; "2u" and "0x10" are numbers too.
 std::optional<std::uint64_t> numberIn(std::string_view text) {
     if (text.ends_with('u')) {
         text.remove_suffix(1);
@@ -36,7 +36,7 @@ std::optional<std::uint64_t> numberIn(std::string_view text) {
     return parsed.ec == std::errc() && parsed.ptr == end ? std::optional(value) : std::nullopt;
 }
 
-// Nothing where the text alone does not decide.
+// Evaluates a condition. Returns nothing if the text alone does not decide it.
 std::optional<bool> evaluate(const Macros& macros, std::string_view word, std::string_view condition) {
     const std::string_view name = nameIn(condition);
     if (!name.starts_with(kOwnPrefix)) {
@@ -64,14 +64,14 @@ std::optional<bool> evaluate(const Macros& macros, std::string_view word, std::s
 
 // A conditional that is open.
 struct Conditional {
-    bool decided = false;  // its directives go
+    bool decided = false;  // its directives are dropped
     bool taken = true;     // this branch stays
-    bool done = false;     // a branch has stayed
+    bool done = false;     // an earlier branch has stayed
 };
 
 class Resolver {
 public:
-    // False: the line goes.
+    // Returns false if the line is to be dropped.
     bool keep(std::string_view line);
 
 private:
@@ -103,7 +103,7 @@ bool Resolver::next(const Directive& directive) {
     } else if (directive.word == "else") {
         current.taken = true;
     } else {
-        // flatten() leaves no condition of an #elif here that its #if does not decide alike.
+        // After flatten(), an #elif whose #if was decided always has a condition that can be decided too.
         current.taken = evaluate(macros_, "if", directive.argument).value_or(false);
     }
     current.done = current.done || current.taken;
@@ -136,7 +136,7 @@ bool Resolver::keep(std::string_view line) {
     return true;
 }
 
-// A macro of one line.
+// A macro whose definition is on one line.
 struct Macro {
     std::vector<std::string> parameters;
     bool takesArguments = false;
@@ -167,7 +167,7 @@ Macro parseMacro(std::string_view argument) {
     return macro;
 }
 
-// The body with its parameters replaced, and ## gone.
+// Returns the macro's body with its parameters replaced and ## removed.
 std::string substitute(const Macro& macro, const std::vector<std::string>& arguments) {
     std::string text = macro.body;
     for (std::size_t i = 0; i < macro.parameters.size() && i < arguments.size(); ++i) {

@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
-// Files of generated/ that are templates.
+// The files of generated/ that are made from templates.
 constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, FeatureMask always, FeatureMask sometimes) {
@@ -26,7 +26,7 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
     define("SOMETIMES", sometimes);
 }
 
-// What decides about the alpha of a hit.
+// The features that decide about the alpha of a hit.
 constexpr FeatureMask kAlphaFeatures = bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0) |
                                        bit(Feature::TexCoord1) | bit(Feature::TextureTransform) |
                                        bit(Feature::VertexColor);
@@ -39,7 +39,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
     text += "// The same of hits, which may keep fewer lobes.\n";
     defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
-    // Apart, so that other features of a scene do not change modules that test alpha.
+    // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
     const FeatureMask alpha = settings.plan.keys.alpha == AlphaPolicy::Tested ? kAlphaFeatures : 0;
     text += fmt::format("#define GLINT_ALPHA_ALWAYS {:#x}u\n", (plan.always & alpha) >> 32U);
@@ -51,7 +51,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
     text += fmt::format("#define GLINT_PRECISION {}\n", package::bitsOf(settings.precision));
-    // Of what keeps its meaning in 16 bits.
+    // The precision of values that keep their meaning in 16 bits.
     text += fmt::format("#define GLINT_RELAXED{}\n",
                         settings.precision == package::ShadingPrecision::Half ? " mediump" : "");
     text += fmt::format("#define GLINT_SHADOWS_DEFERRED {}\n",

@@ -1,4 +1,4 @@
-// The GLSL files that modules are flattened from: embedded ones, and those made for a scene.
+// The GLSL files that modules are flattened from: the embedded ones, and those made for a scene.
 #pragma once
 
 #include "emit/compile.h"
@@ -13,11 +13,11 @@
 
 namespace glint {
 
-// Files by the name that an #include gives.
+// A set of files. They are found by the name that an #include gives.
 class SourceSet {
 public:
     void add(std::string name, std::string text);
-    // Valid as long as the set.
+    // Returns the file's text, which is valid as long as the set.
     std::optional<std::string_view> find(std::string_view name) const;
     SourceLookup lookup() const;
 
@@ -25,14 +25,14 @@ private:
     std::map<std::string, std::string, std::less<>> files_;
 };
 
-// Embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl". Errors as
-// renderTemplate().
+// Returns the embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl".
+// Has the errors of renderTemplate().
 Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
 
-// C++ declarations of every structure that host and device share, flattened from shaders/interop.
+// Returns the C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();
 
-// Over the names and texts of shaders/interop.
+// Returns a hash of the names and texts of shaders/interop.
 std::uint64_t interopHash();
 
 }  // namespace glint

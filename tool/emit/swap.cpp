@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Beside "out": ".out.glint-new-PID-N" while staging, ".out.glint-old-PID-N" between two renames.
+// The siblings of "out" are called ".out.glint-new-PID-N" while staging, and ".out.glint-old-PID-N" between
+// two renames.
 constexpr std::string_view kNewTag = ".glint-new-";
 constexpr std::string_view kOldTag = ".glint-old-";
 
@@ -36,7 +37,7 @@ std::string siblingPrefix(const fs::path& folder, std::string_view tag) {
     return fmt::format(".{}{}", folder.filename().string(), tag);
 }
 
-// A name that does not exist yet.
+// Returns a name that does not exist yet.
 fs::path newSibling(const fs::path& folder, std::string_view tag) {
     std::error_code error;
     for (int i = 0;; ++i) {
@@ -48,7 +49,7 @@ fs::path newSibling(const fs::path& folder, std::string_view tag) {
     }
 }
 
-// Whether the process that made a sibling, by the number in its name, is gone.
+// Returns whether the process that made a sibling has ended. Its number is in the sibling's name.
 bool isAbandoned(std::string_view afterTag) {
     long process = 0;
     const auto [end, error] = std::from_chars(afterTag.data(), afterTag.data() + afterTag.size(), process);
@@ -70,7 +71,7 @@ std::vector<fs::path> abandonedSiblings(const fs::path& folder, std::string_view
     return found;
 }
 
-// Exchanges two folders in one step, where kernel and file system can.
+// Exchanges two folders in one step, if kernel and file system support it.
 bool exchange(const fs::path& first, const fs::path& second) {
 #if defined(__linux__) && defined(RENAME_EXCHANGE)
     return renameat2(AT_FDCWD, first.c_str(), AT_FDCWD, second.c_str(), RENAME_EXCHANGE) == 0;
@@ -114,7 +115,7 @@ fs::path innerStaging(const fs::path& folder) {
 
 Result<OutputLock> OutputLock::acquire(const fs::path& folder) {
     using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::seconds kPatience(30);  // writing a package takes well below one
+    constexpr std::chrono::seconds kPatience(30);  // Writing a package takes well below a second.
     constexpr std::chrono::milliseconds kPause(20);
     const int file = open(folder.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const Clock::time_point start = Clock::now();
@@ -155,7 +156,7 @@ void recoverInterrupted(const fs::path& folder) {
 }
 
 Result<StagingFolder> StagingFolder::create(const fs::path& folder) {
-    // Another thread may take the name between looking and making.
+    // Another thread may take the name between the check and the creation.
     constexpr int kAttempts = 100;
     std::error_code error;
     for (int i = 0; i < kAttempts; ++i) {
@@ -187,7 +188,7 @@ Status StagingFolder::swapInto(const fs::path& folder) {
     }
     fs::permissions(path_, fs::status(folder, error).permissions(), error);
     if (exchange(path_, folder)) {
-        return okStatus();  // path_ is the old folder now, and goes
+        return okStatus();  // The destructor removes path_, which is now the old folder.
     }
     const fs::path old = newSibling(folder, kOldTag);
     fs::rename(folder, old, error);

@@ -1,4 +1,4 @@
-// Replacing a folder as a whole: the new contents are staged beside it and put in its place by one rename.
+// Replaces a folder as a whole: the new contents are staged beside it and moved into place by one rename.
 #pragma once
 
 #include <glint/result.h>
@@ -7,19 +7,19 @@
 
 namespace glint {
 
-// `folder` with symbolic links resolved, absolute, without a trailing slash; makes its parents. Error
-// "output-write".
+// Returns `folder` as an absolute path with symbolic links resolved, without a trailing slash. It creates the
+// parent folders. Error "output-write".
 Result<std::filesystem::path> resolveOutput(const std::filesystem::path& folder);
 
-// The folder inside `folder`, never made, whose siblings lie within: for StagingFolder::create() where
-// nothing may be made beside it.
+// Returns a name inside `folder` that is never created, so that its siblings lie within `folder`. It is for
+// StagingFolder::create() if nothing may be created beside `folder`.
 std::filesystem::path innerStaging(const std::filesystem::path& folder);
 
-// Keeps other processes that write a package below the same parent waiting while it lives; where the file
-// system has no such locks, it does nothing.
+// While it lives, other processes that write a package below the same parent wait. On a file system without
+// such locks it does nothing.
 class OutputLock {
 public:
-    // Waits for others, up to a time. Error "output-busy".
+    // Waits for other processes, but not forever. Error "output-busy".
     static Result<OutputLock> acquire(const std::filesystem::path& folder);
     OutputLock(OutputLock&& other) noexcept;
     OutputLock& operator=(OutputLock&&) = delete;
@@ -27,14 +27,14 @@ public:
 
 private:
     explicit OutputLock(int file) : file_(file) {}
-    int file_;  // of the parent folder; -1: none
+    int file_;  // file of the parent folder, or -1 for none
 };
 
-// Puts right what runs that were killed left beside and in `folder`: brings back a folder that was moved
-// aside and not yet replaced, and removes staging folders. Leaves alone those of processes that still run.
+// Cleans up after killed runs in and beside `folder`: brings back a folder that was moved aside and not yet
+// replaced, and removes staging folders. It leaves alone those of processes that still run.
 void recoverInterrupted(const std::filesystem::path& folder);
 
-// A new folder beside the one that it will replace; goes, with its contents, when the object does.
+// A new folder beside the one that it will replace. The destructor removes it with its contents.
 class StagingFolder {
 public:
     // Error "output-write".
@@ -46,8 +46,8 @@ public:
     const std::filesystem::path& path() const {
         return path_;
     }
-    // Takes the place, and the permissions, of `folder`, which goes. On error "output-write" `folder` is as
-    // it was.
+    // Moves the new folder to the place of `folder`, with the permissions of `folder`, which is removed. On
+    // error "output-write" `folder` is as it was.
     Status swapInto(const std::filesystem::path& folder);
 
 private:

@@ -21,7 +21,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "tables.bin is little endian");
 
-// Strings, each once.
+// A table of distinct strings.
 class StringTable {
 public:
     StringRef add(const std::string& text) {
@@ -40,7 +40,7 @@ private:
     std::string bytes_;
 };
 
-// Collects sections; the header comes last, as it holds the hash of the rest.
+// Collects sections. The header is written last, because it holds the hash of the rest.
 class TableWriter {
 public:
     template <typename Elements>
@@ -120,7 +120,7 @@ std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
     return entries;
 }
 
-// The sections that go scene by scene.
+// The sections that each scene has its own part of.
 struct SceneTables {
     std::vector<gpu::MaterialRecord> materials;
     std::vector<PrimitiveEntry> primitives;
@@ -129,7 +129,7 @@ struct SceneTables {
     std::vector<SceneEntry> scenes;
 };
 
-// Adds a scene's elements to those of all, and says where they are.
+// Appends a scene's elements to those of all scenes, and stores where they are.
 template <typename Element>
 void append(std::vector<Element>& all, const std::vector<Element>& own, std::uint32_t& first,
             std::uint32_t& count) {

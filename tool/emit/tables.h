@@ -10,19 +10,21 @@
 
 namespace glint {
 
-// Materials as the device sees them, and the images they refer to.
+// Materials in the device's layout, and the textures that they refer to.
 struct MaterialTables {
     std::vector<gpu::MaterialRecord> materials;
     std::vector<package::TextureEntry> textures;  // in order of first use
 };
 
-// Textures of colours are sRGB, the others linear. Requires a scene that checkScene() accepts.
+// Makes the material tables. Colour textures are sRGB, the others linear. Requires a scene that checkScene()
+// accepts.
 MaterialTables makeMaterialTables(const Scene& scene);
 
-// Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
+// Returns the error "scene-index" if an index in `scene` is out of range. importScene() never makes such a
+// scene.
 Status checkScene(const Scene& scene);
 
-// The file's bytes.
+// Returns the bytes of the file.
 Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
                  const CompileSettings& settings);
 

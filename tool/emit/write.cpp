@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A manifest is small; a larger file of that name is not one of ours.
+// A manifest is small. A larger file of that name was not made by Glint.
 constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
 
 Diagnostic writeError(const fs::path& path, const std::string& why) {
@@ -29,7 +29,7 @@ Diagnostic writeError(const fs::path& path, const std::string& why) {
 
 using Names = std::set<std::string, std::less<>>;
 
-// Names of the files of the package in `folder`; empty if it holds none.
+// Returns the names of the files of the package in `folder`; empty if it holds none.
 Names packageFiles(const fs::path& folder) {
     if (const Result<Bytes> bytes = readFile(folder / package::kManifestFile, kMaxManifestBytes)) {
         return manifestFiles({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
@@ -37,14 +37,14 @@ Names packageFiles(const fs::path& folder) {
     return {};
 }
 
-// Whether tables.bin begins as one: how a package shows whose manifest is lost.
+// Returns whether tables.bin has the right beginning. This recognises a package whose manifest is lost.
 bool hasTables(const fs::path& folder) {
     const Result<Bytes> bytes = readFile(folder / package::kTablesFile);
     return bytes && bytes->size() >= sizeof package::kMagic &&
            std::memcmp(bytes->data(), package::kMagic, sizeof package::kMagic) == 0;
 }
 
-// What the new package replaces: a missing or empty folder, or a package.
+// Checks what the new package replaces: a missing or empty folder, or a package.
 Result<Names> inspectFolder(const fs::path& folder) {
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
@@ -92,7 +92,8 @@ bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::p
                                [&](const std::string& name) { return isPart(name) || isGone(name); });
 }
 
-// The same file under a second name, time stamps and all; a copy where the file system has no hard links.
+// Gives the same file a second name, so that it keeps its time stamps. If the file system has no hard links,
+// it is copied.
 std::error_code keepFile(const fs::path& from, const fs::path& to) {
     std::error_code error;
     fs::create_hard_link(from, to, error);
@@ -124,7 +125,7 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
     return okStatus();
 }
 
-// What users keep beside the package, a dependency file for instance, stays.
+// Files that users keep beside the package, a dependency file for instance, stay.
 Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path& staging) {
     std::error_code error;
     for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
@@ -159,14 +160,15 @@ Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path
     return error ? Status(writeError(folder, error.message())) : okStatus();
 }
 
-// Whether this process works in `folder` or below: a shell that does would be left in a folder that is gone.
+// Returns whether this process works in `folder` or below it. A shell would otherwise be left in a folder
+// that no longer exists.
 bool isWorkingFolder(const fs::path& folder) {
     std::error_code error;
     const fs::path current = fs::current_path(error);
     return !error && std::ranges::mismatch(folder, current).in1 == folder.end();
 }
 
-// The same as a swap, file by file.
+// Has the same effect as a swap, but file by file.
 Status updateFolder(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
     std::vector<const PackageFile*> changed;
     std::vector<std::string> leaving;
@@ -186,7 +188,7 @@ Status updateFolder(const CompiledPackage& package, const Names& earlier, const 
     return replaceInPlace(changed, leaving, folder);
 }
 
-// A mount point can't be swapped, nor a folder whose parent can't be written.
+// A mount point can't be swapped, nor can a folder whose parent can't be written.
 Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs::path& folder,
                  const Diagnostic& swapError) {
     std::error_code error;

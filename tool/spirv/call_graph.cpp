@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kHeaderWords = 5;
 
-// glslang names functions "shade(struct-Hit…;vf3;".
+// glslang names functions like this: "shade(struct-Hit…;vf3;".
 std::string withoutParameters(const std::string& name) {
     return name.substr(0, name.find('('));
 }

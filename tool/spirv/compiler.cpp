@@ -19,7 +19,7 @@ namespace glint {
 
 namespace {
 
-// glslang keeps tables for the life of the process; they are shared by all threads once made.
+// glslang keeps tables for the life of the process. Once made, all threads share them.
 bool initializeGlslang() {
     static std::once_flag once;
     static bool initialized = false;
@@ -56,8 +56,8 @@ std::string_view trim(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-// The length of a "file:line" at the start of `text`, or 0: the first colon that a number and another colon
-// follow ends the file's name.
+// Returns the length of a "file:line" at the start of `text`, or 0. The file's name ends at the first colon
+// that a number and another colon follow.
 std::size_t placeLength(std::string_view text) {
     for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
          colon = text.find(':', colon + 1)) {
@@ -71,7 +71,7 @@ std::size_t placeLength(std::string_view text) {
     return 0;
 }
 
-// The first error of glslang's log, which reads "ERROR: file:line: message".
+// Makes a diagnostic of the first error in glslang's log, which reads "ERROR: file:line: message".
 Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
     constexpr std::string_view kPrefix = "ERROR: ";
     constexpr const char* kHint = "this is a defect of Glint; please report it with the scene";
@@ -112,7 +112,7 @@ Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
         return makeGlslError(source, program.getInfoLog());
     }
     glslang::SpvOptions options;
-    options.disableOptimizer = true;  // SPIRV-Tools does that, with the passes of our choice
+    options.disableOptimizer = true;  // SPIRV-Tools optimises instead, with the passes that we choose.
     std::vector<std::uint32_t> words;
     glslang::GlslangToSpv(*program.getIntermediate(stage), words, &options);
     return words;

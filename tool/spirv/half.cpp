@@ -1,6 +1,6 @@
 #include "spirv/half.h"
 
-// For HasResultAndType().
+// This defines HasResultAndType().
 #define SPV_ENABLE_UTILITY_CODE
 #include <glslang/SPIRV/spirv.hpp>
 
@@ -14,10 +14,10 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kHeaderWords = 5;
-constexpr std::size_t kBound = 3;  // the word with the first ID that is free
+constexpr std::size_t kBound = 3;  // index of the word that holds the first free ID
 constexpr std::uint32_t kOpcodeMask = 0xFFFF;
 constexpr std::uint32_t kLengthShift = 16;
-// Type, result, structure, one literal: as an extraction by one index.
+// A hidden extraction has the layout of an extraction by one index: type, result, structure, one literal.
 constexpr spv::Op kHidden = spv::OpArrayLength;
 constexpr std::size_t kHiddenWords = 5;
 
@@ -25,7 +25,7 @@ std::uint32_t head(spv::Op opcode, std::size_t length) {
     return static_cast<std::uint32_t>(opcode) | static_cast<std::uint32_t>(length << kLengthShift);
 }
 
-// Calls visit(instruction) for each, while it returns true. Requires a valid module.
+// Calls visit(instruction) for each instruction until it returns false. Requires a valid module.
 template <typename Visit>
 void forEachInstruction(std::span<const std::uint32_t> words, const Visit& visit) {
     for (std::size_t i = kHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
@@ -35,12 +35,12 @@ void forEachInstruction(std::span<const std::uint32_t> words, const Visit& visit
     }
 }
 
-// What structures and arrays consist of, and what type each result has.
+// The member types of structures and arrays, and the type of each result.
 struct Types {
-    std::map<std::uint32_t, std::vector<std::uint32_t>> members;  // of an array: one
+    std::map<std::uint32_t, std::vector<std::uint32_t>> members;  // an array has one
     std::map<std::uint32_t, std::uint32_t> ofResult;
 
-    // 0 unless `type` is a structure or an array.
+    // Returns 0 unless `type` is a structure or an array.
     std::uint32_t member(std::uint32_t type, std::uint32_t index) const {
         const auto found = members.find(type);
         return found == members.end() ? 0 : found->second[found->second.size() == 1 ? 0 : index];
@@ -68,7 +68,7 @@ Types readTypes(std::span<const std::uint32_t> words) {
     return types;
 }
 
-// Appends the extraction step by step: hidden as long as it is one from a structure or an array.
+// Appends the extraction step by step. Each step that extracts from a structure or an array is hidden.
 void appendHidden(std::span<const std::uint32_t> extract, const Types& types, std::uint32_t& bound,
                   std::vector<std::uint32_t>& words) {
     constexpr std::size_t kFirstIndex = 4;
@@ -98,7 +98,7 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
         const std::uint32_t opcode = instruction[0] & kOpcodeMask;
         relaxes = (opcode == spv::OpDecorate && instruction[2] == spv::DecorationRelaxedPrecision) ||
                   (opcode == spv::OpMemberDecorate && instruction[3] == spv::DecorationRelaxedPrecision);
-        // Decorations come before the functions: SPIR-V 2.4.
+        // Decorations come before functions (SPIR-V 2.4).
         return !relaxes && opcode != spv::OpFunction;
     });
     return relaxes;

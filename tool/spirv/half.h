@@ -1,4 +1,4 @@
-// 16-bit float arithmetic out of what a module marks as of relaxed precision.
+// Makes 16-bit float arithmetic of what a module marks with relaxed precision.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,14 @@
 
 namespace glint {
 
-// Whether anything in the module may have less than 32 bits: GLSL's mediump.
+// Returns whether anything in the module may have fewer than 32 bits, as GLSL's mediump allows.
 bool relaxesPrecision(const std::vector<std::uint32_t>& words);
 
-// SPIRV-Tools 2023.1 takes every float that OpCompositeExtract takes out of a structure or an array for one
-// of relaxed precision, positions of lights, too (its pass asks whether all float operands are relaxed, and
-// there is none). These two hide such instructions from that pass, as one of the same layout that it does not
-// touch, and bring them back. For no other pass between them: the hidden ones mean nothing.
+// SPIRV-Tools 2023.1 treats every float that OpCompositeExtract takes out of a structure or an array as
+// relaxed, even the positions of lights: its pass asks whether all float operands are relaxed, and there is
+// none. hideExtractions() hides such instructions from that pass as instructions with the same layout that it
+// ignores, and showExtractions() brings them back. No other pass may run in between, because the hidden
+// instructions mean nothing.
 void hideExtractions(std::vector<std::uint32_t>& words);
 void showExtractions(std::vector<std::uint32_t>& words);
 

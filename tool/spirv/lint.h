@@ -1,5 +1,5 @@
-// Findings about a SPIR-V module: ray queries that fall off the fast path of mobile compilers, and ray
-// tracing shaders that cost more than they need to. docs/lint.md describes each rule.
+// Finds ray queries in a SPIR-V module that leave the fast path of mobile compilers, and ray tracing shaders
+// that cost more than they need to. docs/lint.md describes each rule.
 #pragma once
 
 #include "spirv/statistics.h"
@@ -15,19 +15,20 @@
 
 namespace glint {
 
-// Where an instruction stands in the module as it was given, whatever was inlined since.
+// The place of an instruction in the original module, before any inlining.
 struct SpirvPlace {
-    std::string function;    // its name, else the entry point's, else "%id"; empty outside of functions
-    std::string source;      // "shader.comp:12", from OpLine; empty where the module has none
-    std::uint32_t id = 0;    // of its result; 0: it has none
-    std::size_t offset = 0;  // of its first word from the start of the module; 0: the module as a whole
+    std::string function;    // the function's name, else the entry point's, else "%id"; empty outside of
+                             // functions
+    std::string source;      // "shader.comp:12", from OpLine; empty if the module has none
+    std::uint32_t id = 0;    // ID of its result; 0 if it has none
+    std::size_t offset = 0;  // index of its first word in the module; 0 for the module as a whole
 };
 
 struct LintFinding {
     Severity severity = Severity::Warning;
-    std::string rule;  // stable, for instance "query-proceeds"
+    std::string rule;  // stable name, for instance "query-proceeds"
     SpirvPlace place;
-    std::string message;  // one sentence, no final full stop
+    std::string message;  // one sentence without a full stop
     std::string hint;     // what to do
 };
 
@@ -37,11 +38,11 @@ struct SpirvLint {
     std::vector<LintFinding> findings;  // in the order of the module
 };
 
-// Inlines and folds a copy of the module, as a driver would, and judges that. Errors: "spirv-format" where
-// `words` is no SPIR-V module, "spirv-invalid" with what the validator says.
+// Inlines and folds a copy of the module, as a driver would, and applies the rules to it. Errors:
+// "spirv-format" if `words` is no SPIR-V module, "spirv-invalid" with the validator's message.
 Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words);
 
-// "in main (shader.comp:12, word 214)"; empty for the module as a whole.
+// Returns "in main (shader.comp:12, word 214)", or an empty text for the module as a whole.
 std::string toString(const SpirvPlace& place);
 
 }  // namespace glint

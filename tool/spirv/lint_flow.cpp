@@ -9,8 +9,8 @@ namespace {
 
 enum class Step { On, Stop };
 
-// Visits what happens after `start`, along all paths that `visit` does not stop; what stands behind `start`
-// in its block comes a second time where a loop leads back. Returns whether a path reached the end of the
+// Visits all events after `start`, along all paths that `visit` does not stop. If a loop leads back, the
+// events behind `start` in its block are visited a second time. Returns whether a path reached the end of the
 // function.
 bool walk(const FlowFunction& function, EventPlace start, const std::function<Step(EventPlace)>& visit) {
     std::vector<bool> entered(function.blocks.size(), false);
@@ -38,7 +38,7 @@ bool walk(const FlowFunction& function, EventPlace start, const std::function<St
     return reachedEnd;
 }
 
-// Calls `visit` for what concerns the object of `start`, up to where it is initialised again.
+// Calls `visit` for events of the object of `start`, up to where it is initialised again.
 bool walkObject(const FlowFunction& function, EventPlace start,
                 const std::function<Step(EventPlace)>& visit) {
     const std::size_t object = at(function, start).object;
@@ -62,7 +62,7 @@ std::vector<EventPlace> eventsAfter(const FlowFunction& function, EventPlace sta
         return Step::On;
     });
     std::sort(events.begin(), events.end());
-    // walk() may come by twice.
+    // walk() may visit an event twice.
     events.erase(std::unique(events.begin(), events.end()), events.end());
     return events;
 }

@@ -1,4 +1,4 @@
-// The control flow of a function, with nothing but what it does to ray query objects.
+// The control flow of a function, reduced to its events on ray query objects.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,25 @@ namespace glint {
 // A variable of type OpTypeRayQueryKHR, or an element of an array of them.
 struct QueryObject {
     std::uint32_t variable = 0;
-    std::vector<std::uint32_t> indices;  // constants
-    bool dynamic = false;                // indexed by what is not constant: any element
+    std::vector<std::uint32_t> indices;  // constant indices
+    bool dynamic = false;                // indexed by a variable: it may be any element
     bool operator==(const QueryObject&) const = default;
 };
 
 enum class QueryAct {
     Initialize,
     Proceed,
-    ReadType,  // whether there is a committed hit
-    ReadHit,   // anything else of a committed hit
-    Other,     // candidates, the ray itself, terminate
-    PassedOn,  // to a function that could not be inlined
+    ReadType,  // reads whether there is a committed hit
+    ReadHit,   // reads anything else of a committed hit
+    Other,     // candidates, the ray itself, or terminate
+    PassedOn,  // passed to a function that could not be inlined
 };
 
 struct QueryEvent {
     QueryAct act = QueryAct::Other;
-    std::size_t object = 0;   // in FlowFunction::objects
-    std::size_t origin = 0;   // offset of the instruction in the module as it was given
-    std::uint32_t flags = 0;  // Initialize only: ID of the ray flags
+    std::size_t object = 0;   // index into FlowFunction::objects
+    std::size_t origin = 0;   // offset of the instruction in the original module
+    std::uint32_t flags = 0;  // ID of the ray flags, for Initialize only
 };
 
 struct FlowBlock {
@@ -45,21 +45,22 @@ struct FlowFunction {
 };
 
 struct FlowModule {
-    std::vector<FlowFunction> functions;                             // those with ray queries
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;  // ID and first word of scalars, sorted
-    // Null if `id` is no scalar constant; of a specialisation constant, the default.
+    std::vector<FlowFunction> functions;                             // only those with ray queries
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;  // IDs and first words of scalar
+                                                                     // constants, sorted
+    // Returns null if `id` is no scalar constant. For a specialisation constant it returns the default.
     const std::uint32_t* findConstant(std::uint32_t id) const;
 };
 
 // Requires a valid module from prepareForLint().
 FlowModule readFlow(std::span<const std::uint32_t> words);
 
-// An event by its place.
+// Names an event by its place.
 struct EventPlace {
     std::size_t block = 0;
     std::size_t event = 0;
     bool operator==(const EventPlace&) const = default;
-    // In the order of the module.
+    // Sorts in the order of the module.
     bool operator<(const EventPlace& other) const {
         return std::pair(block, event) < std::pair(other.block, other.event);
     }
@@ -69,13 +70,13 @@ inline const QueryEvent& at(const FlowFunction& function, EventPlace place) {
     return function.blocks[place.block].events[place.event];
 }
 
-// What can happen to the object of the initialise at `start` until it is initialised again or the function
-// ends, in the order of the module.
+// Returns the events that can happen to the object initialised at `start`, until it is initialised again or
+// the function ends. They are in the order of the module.
 std::vector<EventPlace> eventsAfter(const FlowFunction& function, EventPlace start);
-// Whether a path from `start` reaches the end of the function, or initialises the object again, without
-// `via`.
+// Returns whether a path from `start` reaches the end of the function, or initialises the object again,
+// without passing `via`.
 bool canAvoid(const FlowFunction& function, EventPlace start, EventPlace via);
-// Whether `event` can happen again before its object is initialised again.
+// Returns whether `event` can happen again before its object is initialised again.
 bool repeats(const FlowFunction& function, EventPlace event);
 
 }  // namespace glint

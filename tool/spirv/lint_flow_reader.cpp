@@ -25,12 +25,13 @@ bool exitsFunction(std::uint32_t opcode) {
         case spv::OpTerminateRayKHR:
             return true;
         default:
-            return false;  // among them OpUnreachable, which no path takes
+            return false;  // includes OpUnreachable, which no path reaches
     }
 }
 
-// Labels of a switch stand behind literals of one word, or of two where the selector has 64 bits. Which it is
-// shows in the second literal: read with the wrong stride, the upper half of a literal stands for a label.
+// The labels of a switch stand behind literals of one word, or of two words if the selector has 64 bits. The
+// second literal tells which: if it is read with the wrong stride, the upper half of a literal stands where a
+// label should be.
 std::vector<std::uint32_t> switchTargets(Operands operands,
                                          const std::map<std::uint32_t, std::size_t>& labels) {
     for (const std::size_t stride : {2U, 3U}) {
@@ -178,7 +179,7 @@ private:
 
     QueryAct actOfRead(const SpirvInstruction& it) const {
         if (it.operands.size() < 4) {
-            return QueryAct::Other;  // of the ray, not of a hit
+            return QueryAct::Other;  // It asks about the ray, not about a hit.
         }
         const auto which = constants_.find(it.operands[3]);
         const bool candidate = which != constants_.end() &&
@@ -189,7 +190,7 @@ private:
         return it.opcode == spv::OpRayQueryGetIntersectionTypeKHR ? QueryAct::ReadType : QueryAct::ReadHit;
     }
 
-    // Follows access chains down to the variable.
+    // Follows access chains to the variable.
     std::size_t objectOf(std::uint32_t pointer) {
         QueryObject object;
         for (auto chain = chains_.find(pointer); chain != chains_.end() && !chain->second.empty();
@@ -230,8 +231,10 @@ private:
     FlowModule module_;
     FlowFunction function_;
     std::unordered_map<std::uint32_t, std::uint32_t> constants_;
-    std::unordered_set<std::uint32_t> queryTypes_;        // ray queries, arrays of them, pointers to either
-    std::unordered_map<std::uint32_t, Operands> chains_;  // pointers to ray queries; empty: a variable
+    std::unordered_set<std::uint32_t> queryTypes_;        // ray queries, arrays of ray queries, and pointers
+                                                          // to either
+    std::unordered_map<std::uint32_t, Operands> chains_;  // pointers to ray queries; a variable has no
+                                                          // operands here
     std::map<std::uint32_t, std::size_t> labels_;
     std::vector<std::pair<std::size_t, SpirvInstruction>> terminators_;
     std::size_t line_ = 0;

@@ -17,7 +17,7 @@ namespace glint {
 
 namespace {
 
-// The stages that a trace starts, so that a trace in one of them is a trace within a trace.
+// Names the stages that a trace starts: a trace in one of them is nested in another trace.
 const char* nameHitStage(std::uint32_t model) {
     switch (model) {
         case spv::ExecutionModelClosestHitKHR:
@@ -49,7 +49,7 @@ std::set<std::uint32_t> reachableFrom(std::uint32_t root, const std::vector<Spir
     return reached;
 }
 
-// Offsets of traces by function.
+// Returns the offsets of traces, by function.
 std::map<std::uint32_t, std::vector<std::size_t>> findTraces(std::span<const std::uint32_t> words) {
     std::map<std::uint32_t, std::vector<std::size_t>> traces;
     std::uint32_t function = 0;
@@ -88,7 +88,8 @@ void judgeTraces(std::span<const std::uint32_t> words, const std::map<std::size_
     }
 }
 
-// Bytes of types, as memory without padding: what the driver has to carry at least. A bool counts as a word.
+// The sizes of types in bytes, without padding: the least that the driver has to carry. A bool counts as one
+// word.
 class TypeSizes {
 public:
     void visit(const SpirvInstruction& it) {
@@ -117,7 +118,7 @@ public:
             case spv::OpTypeStruct:
                 bytes_[it.operands[0]] = 0;
                 for (const std::uint32_t member : it.operands.subspan(1)) {
-                    // Each term is below 2^48 and there are below 2^16.
+                    // The sum can't overflow: each term is below 2^48, and there are fewer than 2^16 terms.
                     bytes_[it.operands[0]] += std::min(bytes_[member], kLimit);
                 }
                 break;
@@ -159,7 +160,7 @@ void judgePayloads(std::span<const std::uint32_t> words, std::vector<LintFinding
             return;
         }
         const std::uint64_t bytes = sizes.pointeeBytes(it.operands[0]);
-        // What a hit shader receives is the payload of the shader that traces: said there, unless it is
+        // The payload of a hit shader is declared by the shader that traces, and reported there, unless it is
         // large.
         if (own || bytes > kMaxBytes) {
             findings.push_back({bytes > kMaxBytes ? Severity::Warning : Severity::Note, "payload-bytes",

@@ -1,4 +1,4 @@
-// The rules about shaders of ray tracing pipelines.
+// The lint rules about shaders of ray tracing pipelines.
 #pragma once
 
 #include "spirv/lint.h"
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Appends the findings about a valid module; `places` as findPlaces() gives them for it.
+// Appends the findings about a valid module. `places` comes from findPlaces() for the same module.
 void lintPipelines(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
                    std::vector<LintFinding>& findings);
 

@@ -11,9 +11,9 @@ namespace glint {
 
 namespace {
 
-// OpRayQueryGetIntersectionTriangleVertexPositionsKHR, which older headers lack.
+// This is OpRayQueryGetIntersectionTriangleVertexPositionsKHR, which older headers lack.
 constexpr std::uint32_t kOpTrianglePositions = 5340;
-// OpTraceNV, which took another number than OpTraceRayKHR.
+// This is OpTraceNV, whose number differs from that of OpTraceRayKHR.
 constexpr std::uint32_t kOpTraceNv = 5337;
 
 std::map<std::uint32_t, std::string> nameFunctions(std::span<const std::uint32_t> words) {
@@ -33,7 +33,7 @@ bool endsBlock(std::uint32_t opcode) {
     return opcode == spv::OpFunctionEnd || (opcode >= spv::OpBranch && opcode <= spv::OpUnreachable);
 }
 
-// Follows OpLine, which holds to the end of its block.
+// Follows OpLine, which is valid to the end of its block.
 class LineTracker {
 public:
     void visit(const SpirvInstruction& instruction) {

@@ -1,4 +1,4 @@
-// Where the instructions of a module stand: function, source line, ID.
+// Finds the place of instructions in a module: function, source line, ID.
 #pragma once
 
 #include "spirv/lint.h"
@@ -10,7 +10,7 @@
 
 namespace glint {
 
-// Offset of the first word of `instruction`, which visitSpirv() gave for `words`.
+// Returns the offset of the first word of `instruction`, which visitSpirv() gave for `words`.
 inline std::size_t offsetOf(std::span<const std::uint32_t> words, const SpirvInstruction& instruction) {
     return static_cast<std::size_t>(instruction.operands.data() - words.data()) - 1;
 }
@@ -31,7 +31,7 @@ struct SpirvEntryPoint {
 // Requires a valid module.
 std::vector<SpirvEntryPoint> findEntryPoints(std::span<const std::uint32_t> words);
 
-// Places of all ray queries and traces, by offset. Requires a valid module.
+// Returns the places of all ray queries and traces, by offset. Requires a valid module.
 std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> words);
 
 }  // namespace glint

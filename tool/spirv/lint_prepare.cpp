@@ -17,12 +17,13 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// A superset of what any Vulkan version takes: lint is about speed, not about environments.
+// This accepts everything that any Vulkan version accepts, because lint is about speed, not about
+// environments.
 constexpr spv_target_env kEnvironment = SPV_ENV_UNIVERSAL_1_6;
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kBoundWord = 3;
 
-// What stands before the debug instructions (SPIR-V specification, section 2.4).
+// Returns whether an instruction belongs before the debug instructions (SPIR-V specification, section 2.4).
 bool isPreamble(std::uint32_t opcode) {
     switch (opcode) {
         case spv::OpCapability:
@@ -43,7 +44,7 @@ void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint3
     words.insert(words.end(), operands);
 }
 
-// Replaces the lines of the module by the offsets of its ray query instructions.
+// Replaces the line numbers of the module by the offsets of its ray query instructions.
 Words markOffsets(std::span<const std::uint32_t> words) {
     Words marked(words.begin(), words.begin() + kHeaderWords);
     const std::uint32_t file = marked[kBoundWord]++;
@@ -86,12 +87,13 @@ std::map<std::uint32_t, FunctionContents> weighFunctions(std::span<const std::ui
     return functions;
 }
 
-// Large functions that neither query nor call one that does: inlining them would cost time and show nothing.
+// Finds large functions that neither use ray queries nor call a function that does. Inlining them would cost
+// time and show nothing.
 std::set<std::uint32_t> findApart(std::span<const std::uint32_t> words,
                                   const std::vector<SpirvFunction>& functions) {
     constexpr std::size_t kSmallWords = 256;
     std::map<std::uint32_t, FunctionContents> contents = weighFunctions(words);
-    // Each round reaches one caller more; no chain of calls is longer than there are functions.
+    // Each round reaches one further caller, and no chain of calls is longer than the number of functions.
     bool changed = true;
     while (changed) {
         changed = false;
@@ -114,14 +116,15 @@ std::set<std::uint32_t> findApart(std::span<const std::uint32_t> words,
     return apart;
 }
 
-// Whether inlining every call would make the module unreasonably large: where each function of a chain calls
-// the next one twice, a kilobyte outgrows any memory.
+// Returns whether inlining every call would make the module unreasonably large. If each function of a chain
+// calls the next one twice, even a module of a kilobyte would outgrow any memory.
 bool outgrows(std::span<const std::uint32_t> words, const std::vector<SpirvFunction>& functions) {
-    constexpr std::size_t kMaxWords = std::size_t{1} << 22;  // the largest shaders have a tenth of that
+    constexpr std::size_t kMaxWords = std::size_t{1} << 22;  // The largest shaders have a tenth of that.
     const std::map<std::uint32_t, FunctionContents> contents = weighFunctions(words);
     std::map<std::uint32_t, std::size_t> inlined;
-    // Callees may stand behind their callers: a round for each link of the longest chain. What still grows
-    // then calls itself, as functions that no entry point reaches may.
+    // Callees may stand behind their callers, so it takes a round for each link of the longest chain. A size
+    // that still grows after that belongs to a recursive function, which is allowed if no entry point reaches
+    // it.
     for (std::size_t round = 0; round <= functions.size(); ++round) {
         bool changed = false;
         for (const SpirvFunction& function : functions) {
@@ -143,7 +146,8 @@ bool outgrows(std::span<const std::uint32_t> words, const std::vector<SpirvFunct
 }
 
 void registerPasses(spvtools::Optimizer& optimizer) {
-    // An array has as many variables as elements, whatever the module's size. Ray queries come in small ones.
+    // An array becomes as many variables as it has elements, whatever the module's size. Arrays of ray
+    // queries are small.
     constexpr std::uint32_t kMaxScalars = 1024;
     optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
         .RegisterPass(spvtools::CreateInlineExhaustivePass())
@@ -171,7 +175,7 @@ Status checkSpirv(std::span<const std::uint32_t> words) {
     if (tools.Validate(words.data(), words.size(), options)) {
         return okStatus();
     }
-    // Some messages go on with a disassembly.
+    // Some messages continue with a disassembly, which is cut off.
     message = message.substr(0, message.find('\n'));
     return makeError("spirv-invalid", {},
                      "is not valid SPIR-V: " + (message.empty() ? "no reason given" : message),
@@ -189,10 +193,10 @@ std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) 
     optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
     registerPasses(optimizer);
     spvtools::OptimizerOptions options;
-    options.set_run_validator(false);  // checkSpirv() did
+    options.set_run_validator(false);  // checkSpirv() has already validated it.
     Words prepared;
-    // A module that SPIRV-Tools can't inline is judged function by function, as one that would outgrow memory
-    // is.
+    // If SPIRV-Tools can't inline a module, it is judged function by function, as are modules that would
+    // outgrow memory.
     return optimizer.Run(marked.data(), marked.size(), &prepared, options) ? prepared : marked;
 }
 

@@ -14,7 +14,7 @@ namespace glint {
 
 namespace {
 
-// gl_RayFlagsSkipAABBEXT of GLSL_EXT_ray_flags_primitive_culling.
+// This is gl_RayFlagsSkipAABBEXT of GLSL_EXT_ray_flags_primitive_culling.
 constexpr std::uint32_t kSkipAabbs = spv::RayFlagsSkipAABBsKHRMask;
 constexpr std::uint32_t kOpaque = spv::RayFlagsOpaqueKHRMask;
 constexpr std::uint32_t kFirstHit = spv::RayFlagsTerminateOnFirstHitKHRMask;
@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    // Of a function that is inlined at several calls, each finding is reported once.
+    // A function may be inlined at several calls, so each of its findings is reported only once.
     void report(Severity severity, const std::string& rule, const QueryEvent& event, std::string message,
                 std::string hint) {
         if (reported_.emplace(rule, event.origin, message).second) {
@@ -99,7 +99,7 @@ private:
         const bool loops = std::ranges::any_of(after, [&](EventPlace place) {
             return at(function, place).act == QueryAct::Proceed && repeats(function, place);
         });
-        // A loop over candidates wants those that are not opaque; query-proceed-loop says so already.
+        // A loop over candidates needs those that are not opaque, and query-proceed-loop reports it already.
         if ((*flags & kOpaque) == 0 && !loops) {
             report(Severity::Warning, "query-flags", initialize,
                    fmt::format("ray flags {:#x} lack Opaque (0x1)", *flags), "add gl_RayFlagsOpaqueEXT");
@@ -130,7 +130,7 @@ private:
 
     using ObjectSet = std::vector<bool>;
 
-    // Objects that may be initialised at the start of each block.
+    // Returns the objects that may be initialised at the start of each block.
     static std::vector<ObjectSet> initializedAtEntry(const FlowFunction& function) {
         std::vector<ObjectSet> sets(function.blocks.size(), ObjectSet(function.objects.size(), false));
         bool changed = true;
@@ -139,7 +139,7 @@ private:
             for (std::size_t b = 0; b < function.blocks.size(); ++b) {
                 ObjectSet set = sets[b];
                 for (const QueryEvent& event : function.blocks[b].events) {
-                    // A function that an object is passed to may initialise it.
+                    // A function that gets an object passed may initialise it.
                     set[event.object] = set[event.object] || event.act == QueryAct::Initialize ||
                                         event.act == QueryAct::PassedOn;
                 }
@@ -151,7 +151,7 @@ private:
         return sets;
     }
 
-    // Objects that may yet be used, without being initialised before, at the end of each block.
+    // Returns, for the end of each block, the objects that may still be used without being initialised again.
     static std::vector<ObjectSet> usedAfterExit(const FlowFunction& function) {
         std::vector<ObjectSet> sets(function.blocks.size(), ObjectSet(function.objects.size(), false));
         bool changed = true;
@@ -171,7 +171,7 @@ private:
         return sets;
     }
 
-    // Whether `target` grew.
+    // Returns whether `target` grew.
     static bool merge(ObjectSet& target, const ObjectSet& source) {
         bool grew = false;
         for (std::size_t i = 0; i < source.size(); ++i) {
@@ -199,7 +199,7 @@ private:
         }
     }
 
-    // Reports the other objects that are live where `start` initialises one.
+    // Reports the other objects that are live where `start` initialises its object.
     void judgeOthers(const FlowFunction& function, EventPlace start, const ObjectSet& initialized,
                      ObjectSet usedLater) {
         const std::vector<QueryEvent>& events = function.blocks[start.block].events;

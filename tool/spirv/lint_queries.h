@@ -1,4 +1,4 @@
-// The rules about ray queries.
+// The lint rules about ray queries.
 #pragma once
 
 #include "spirv/lint.h"
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Appends the findings about a valid module; `places` as findPlaces() gives them for it.
+// Appends the findings about a valid module. `places` comes from findPlaces() for the same module.
 void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
                  std::vector<LintFinding>& findings);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr spv_target_env kTarget = SPV_ENV_VULKAN_1_2;
 
-// Keeps the first error that SPIRV-Tools reports; the ones after it are mostly its consequences.
+// Keeps only the first error that SPIRV-Tools reports, because later ones are mostly its consequences.
 spvtools::MessageConsumer keepFirstError(std::string& message) {
     return [&message](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
         if (level <= SPV_MSG_ERROR && message.empty()) {
@@ -26,7 +26,7 @@ spvtools::MessageConsumer keepFirstError(std::string& message) {
     };
 }
 
-// Of a function at a time: what literals decide. Cheap, as it looks into no callee.
+// Folds what literals decide, one function at a time. This is cheap, because it does not look into callees.
 void registerFolding(spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateSimplificationPass())
@@ -34,7 +34,7 @@ void registerFolding(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateBlockMergePass());
 }
 
-// One level of calls into their callers, and what that decides.
+// Inlines one level of calls, and folds what that decides.
 void registerLevel(spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateMergeReturnPass())
@@ -50,7 +50,8 @@ void registerLevel(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
 }
 
-// Whether the module belongs to a ray tracing pipeline. Capabilities come first in a module: SPIR-V 2.4.
+// Returns whether the module belongs to a ray tracing pipeline. Capabilities come first in a module (SPIR-V
+// 2.4).
 bool tracesByPipeline(const std::vector<std::uint32_t>& words) {
     constexpr std::size_t kHeaderWords = 5;
     constexpr std::uint32_t kOpcodeMask = 0xFFFF;
@@ -67,20 +68,21 @@ void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
-    // What literals decide within a function goes before anything is inlined: inlining every lobe of the BSDF
-    // to drop it afterwards takes several times as long.
+    // Code that literals rule out within a function is removed before anything is inlined. Inlining every
+    // lobe of the BSDF and removing it afterwards takes several times as long.
     registerFolding(optimizer);
     optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
     optimizer.RegisterPerformancePasses();
 }
 
 void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
-    // What the performance passes uncover late, folded once more: features are decided through two masks.
+    // Features are decided through two masks, so the performance passes uncover more to fold. It is folded
+    // once more.
     registerFolding(optimizer);
     optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
     if (!keepMembers) {
-        // Every module declares the whole scene; what is left of it are the members that the module reads, at
-        // their offsets.
+        // Every module declares the whole scene. Only the members that the module reads are kept, at their
+        // offsets.
         optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
     }
     optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
@@ -88,7 +90,7 @@ void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
         .RegisterPass(spvtools::CreateCompactIdsPass());
 }
 
-// Runs what `registerInto` asks for over `words`.
+// Runs the passes that `registerInto` registers over `words`.
 template <typename Register>
 Status runPasses(std::vector<std::uint32_t>& words, const std::string& name, const Register& registerInto) {
     std::string message;
@@ -98,7 +100,7 @@ Status runPasses(std::vector<std::uint32_t>& words, const std::string& name, con
     spvtools::ValidatorOptions layout;
     layout.SetScalarBlockLayout(true);
     spvtools::OptimizerOptions options;
-    // The result is validated, which is where a defect of either side shows.
+    // The result is validated later, which finds defects of either side.
     options.set_run_validator(false);
     options.set_validator_options(layout);
     std::vector<std::uint32_t> optimized;
@@ -123,7 +125,7 @@ std::set<std::uint32_t> idsOf(const std::vector<SpirvFunction>& functions,
     return ids;
 }
 
-// What the functions of `roots` call and have not taken in yet.
+// Returns the functions that those of `roots` call and that are not inlined yet.
 std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
                                 const std::set<std::uint32_t>& roots) {
     std::set<std::uint32_t> calls;
@@ -135,10 +137,10 @@ std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
     return calls;
 }
 
-// Inlines into the functions named in `apart`, a level of calls at a time, until they call nothing.
+// Inlines calls into the functions named in `apart`, one level at a time, until those call nothing.
 Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
                      const std::vector<std::string>& apart) {
-    // Deeper than any chain of calls; the performance passes take in the rest.
+    // This is deeper than any chain of calls; the performance passes inline the rest.
     constexpr int kMaxLevels = 24;
     for (int level = 0; level < kMaxLevels; ++level) {
         const std::vector<SpirvFunction> functions = findFunctions(words);
@@ -162,8 +164,8 @@ Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
     return okStatus();
 }
 
-// What is of relaxed precision, or every operation on floats, in 16 bits. Between inlining, so that
-// neighbours share what is converted, and clearing away.
+// Makes operations of relaxed precision, or all operations on floats, 16-bit. It runs after inlining, so that
+// neighbours share conversions, and before dead code is removed.
 Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bool all) {
     const auto fold = [](spvtools::Optimizer& optimizer) {
         registerFolding(optimizer);
@@ -200,8 +202,8 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
             return status.error();
         }
     }
-    // Payloads have no offsets: the stages of a pipeline must agree on their members. Debuggers show them
-    // all.
+    // Payloads have no offsets, and the stages of a pipeline must agree on their members, so members stay.
+    // Debuggers show them all.
     const bool keepMembers = keepNames || tracesByPipeline(optimized);
     const auto inlineAll = [&](spvtools::Optimizer& optimizer) { registerInlining(optimizer, keepNames); };
     const auto clearUp = [&](spvtools::Optimizer& optimizer) { registerClearing(optimizer, keepMembers); };
@@ -215,7 +217,7 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
     if (!status) {
         return status.error();
     }
-    // Drivers may inline as they like.
+    // Drivers may inline as they like, so the marks are removed.
     keepApart(optimized, findFunctions(optimized), {});
     return optimized;
 }

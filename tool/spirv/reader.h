@@ -1,4 +1,4 @@
-// Walks the instructions of a SPIR-V module (SPIR-V specification 1.6, section 2.3), bounds-checked.
+// Walks the instructions of a SPIR-V module (SPIR-V specification 1.6, section 2.3) with bounds checks.
 #pragma once
 
 #include <glint/result.h>
@@ -15,13 +15,13 @@ struct SpirvInstruction {
     std::span<const std::uint32_t> operands;  // every word after the first
 };
 
-// Calls `visit` for each instruction in order. Error "spirv-format" where `words` is no SPIR-V module or an
-// instruction runs past its end; those before it have been visited.
+// Calls `visit` for each instruction in order. Error "spirv-format" if `words` is no SPIR-V module or an
+// instruction runs past its end; the instructions before it have then been visited.
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit);
 
-// A literal string (UTF-8, four bytes a word, zero-terminated) at the start of `operands`; ends with them
-// where the terminator is missing.
+// Decodes a literal string (UTF-8, four bytes a word, zero-terminated) at the start of `operands`. If the
+// terminator is missing, the string ends with `operands`.
 std::string spirvString(std::span<const std::uint32_t> operands);
 
 }  // namespace glint

@@ -1,4 +1,5 @@
-# cmake -DFOLDER=… -DOUTPUT=file.h -P source_hash.cmake: a header with one hash of the folder's C++ files.
+# Usage: cmake -DFOLDER=… -DOUTPUT=file.h -P source_hash.cmake. Writes a header with one hash of the folder's
+# C++ files.
 file(GLOB files RELATIVE "${FOLDER}" "${FOLDER}/*.h" "${FOLDER}/*.cpp")
 list(SORT files)
 set(all "")

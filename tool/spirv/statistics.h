@@ -1,4 +1,4 @@
-// Counts over a SPIR-V module.
+// Counts instructions of a SPIR-V module.
 #pragma once
 
 #include <glint/result.h>
@@ -10,7 +10,7 @@ namespace glint {
 
 struct SpirvStatistics {
     std::uint64_t bytes = 0;
-    std::uint32_t instructions = 0;    // within functions, labels and debug lines apart
+    std::uint32_t instructions = 0;    // within functions, without labels and debug lines
     std::uint32_t textureFetches = 0;  // OpImageSample*, OpImageFetch, OpImageGather
     std::uint32_t rayQueries = 0;      // OpRayQueryInitializeKHR
     std::uint32_t branches = 0;        // OpBranchConditional and OpSwitch
@@ -18,7 +18,7 @@ struct SpirvStatistics {
     std::uint32_t functions = 0;
 };
 
-// Error "spirv-format" where `words` is no SPIR-V module.
+// Error "spirv-format" if `words` is no SPIR-V module.
 Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words);
 
 }  // namespace glint
