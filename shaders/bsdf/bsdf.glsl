@@ -1,5 +1,6 @@
-// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) under its extensions, layer on layer:
-// clearcoat over sheen over a base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
+// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers:
+// clearcoat over sheen over a base that is part metal, part dielectric. A lobe that no key of the case has
+// leaves no code.
 #include "generated/scene.glsl"
 #include "hit/features.glsl"
 #include "bsdf/constants.glsl"
@@ -12,14 +13,15 @@
 #include "bsdf/transmission.glsl"
 #include "bsdf/clearcoat.glsl"
 
-// What is GLINT_RELAXED is a share of light in [0, 1] and may have 16 bits (--precision 16). Directions, alphas, and
-// losses, which vanish with alpha², keep 32.
-// Vectors are in the frame of the surface: z is the shading normal on the viewer's side, x the direction of anisotropy.
+// GLINT_RELAXED values are shares of light in [0, 1] and may have 16 bits (--precision 16). Directions,
+// alphas, and losses, which vanish with alpha², keep 32 bits. Vectors are in the frame of the surface: z is
+// the shading normal on the viewer's side, x the direction of anisotropy.
 struct Bsdf {
-    GLINT_RELAXED vec3 diffuse;   // albedo of the diffuse lobe: metal and what is transmitted taken out
+    GLINT_RELAXED vec3 diffuse;   // albedo of the diffuse lobe, without metal and without what is transmitted
     GLINT_RELAXED vec3 f0;        // reflectance at normal incidence
-    GLINT_RELAXED float f90;      // and at grazing
-    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy
+    GLINT_RELAXED float f90;      // reflectance at grazing angles
+    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has
+                    // anisotropy
     GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
@@ -28,41 +30,42 @@ struct Bsdf {
     vec3 clearcoatNormal;     // unit
     GLINT_RELAXED vec3 sheenColor;
     float sheenAlpha;  // at least kMinSheenAlpha
-    // By prepareBsdf(), of the view:
+    // prepareBsdf() sets the following members, which depend on the view:
     vec3 view;         // unit, z >= kMinViewCosine
-    float viewLoss;    // 1 - E: what single scattering of white microfacets drops
+    float viewLoss;    // 1 - E: the share that white microfacets lose by single scattering
     float viewBias;    // the part of E that (1 - v·h)⁵ weights
-    float meanLoss;    // of 2 ∫ (1 - E(μ)) μ dμ
+    float meanLoss;    // 2 ∫ (1 - E(μ)) μ dμ
     float meanBias;
-    float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, where the lobe is divided by it
+    float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, and the lobe is then divided by it
 };
 
-// Of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
+// The mean of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
 GLINT_RELAXED vec3 meanFresnel(Bsdf b) {
     return b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
 }
 
-// The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
-// Based Shading at Imageworks" (2017), with the Fresnel of the second and later bounces after Hill (2018).
+// The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting
+// Physically Based Shading at Imageworks" (2017). The Fresnel of the second and later bounces is that of Hill
+// (2018).
 GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b) {
     GLINT_RELAXED vec3 mean = meanFresnel(b);
     GLINT_RELAXED float loss = b.meanLoss;
     return mean * mean * (1.0 - loss) / (vec3(1.0) - mean * loss);
 }
 
-// What the microfacets reflect at the first bounce of a uniform white sky, by E's loss and bias.
+// The share of a uniform white sky that the microfacets reflect at the first bounce, from E's loss and bias.
 GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     return b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
 }
 
-// What they reflect in all: the later bounces, too, if energy compensation is on.
+// The share that they reflect in all. With energy compensation this includes the later bounces.
 GLINT_RELAXED vec3 specularAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 single = singleScatterAlbedo(b, loss, bias);
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
 }
 
-// 1 - specularAlbedo(), as a sum of terms that are all positive: where nearly all is reflected the difference would lose
-// its digits.
+// 1 - specularAlbedo(), as a sum of positive terms: the difference would lose its digits where nearly all
+// light is reflected.
 GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
     GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
@@ -80,14 +83,15 @@ GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
     return min(v.x, min(v.y, v.z));
 }
 
-// How much of the fitted loss counts where the lobe is anisotropic: the fits are of isotropic lobes, and an anisotropic one
-// loses less than either of its alphas along some azimuths. The thousands of lobes of the furnace test make no light so.
+// The part of the fitted loss that counts if the lobe is anisotropic. The fits are for isotropic lobes, and
+// along some azimuths an anisotropic lobe loses less than an isotropic lobe with either of its alphas. With
+// this factor the thousands of lobes of the furnace test make no light.
 float lossShare(Bsdf b) {
     return 0.75 + 0.25 * min(b.alpha.x, b.alpha.y) / max(b.alpha.x, b.alpha.y);
 }
 
-// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha but for views near grazing, where it rises: with the
-// lesser loss of either alpha, and the greater bias, no energy is made.
+// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha, except for views near grazing, where it
+// rises. So the smaller loss of the two alphas and the larger bias are taken, which makes no energy.
 vec2 lobeAlbedo(Bsdf b, Features features, float cosine) {
     vec2 albedo = ggxAlbedo(cosine, b.alpha.x);
     if (hasLobe(features, GLINT_ANISOTROPY)) {
@@ -98,7 +102,7 @@ vec2 lobeAlbedo(Bsdf b, Features features, float cosine) {
     return albedo;
 }
 
-// Takes the view, unit, in the frame of the surface.
+// Prepares the BSDF for a view, which is a unit vector in the frame of the surface.
 void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     b.view = view;
     if (view.z < kMinViewCosine) {
@@ -122,23 +126,25 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     }
 }
 
-// Whether light passes without bending: then the facets that reflect and those that let through part ways, and the view
-// alone decides between the two.
+// Returns whether light passes without bending. The facets that reflect and those that let light through then
+// differ, and the view alone decides between the two.
 bool passesStraight(Features features, float eta) {
     return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
 }
 
-// Whether the viewer is on the denser side of a volume's surface.
+// Returns whether the viewer is on the denser side of a volume's surface.
 bool seenFromWithin(Bsdf b, Features features) {
     return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
 }
 
-// What of a diffuse lobe the microfacets above it let in and out. With compensation, reciprocal and such that the whole
-// reflects what comes in at most: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model"
-// (2001). Without it, glTF 2.0, appendix B.3.5: light by the Fresnel of the half vector.
+// The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is
+// reciprocal, and the whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based
+// Coupled Specular-Matte BRDF Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF
+// 2.0, appendix B.3.5.
 GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
-        // Total reflection is no part of E: what the smooth interface lets through, both ways.
+        // E does not include total reflection, so this uses what the smooth interface lets through, in both
+        // directions.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
         vec2 light2 = exactSquare(vec2(lightCosine, 0.0));
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
@@ -149,14 +155,14 @@ GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, G
     vec2 light = lobeAlbedo(b, features, lightCosine);
     float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
     float out1 = smallest(specularPassed(b, light.x, light.y));
-    // Where all is reflected both vanish with the mean.
+    // If all light is reflected, both factors vanish together with the mean.
     float mean = max(smallest(specularPassed(b, b.meanLoss, b.meanBias)), 1e-6);
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 
-// Fresnel of the facet between view and light, and its normal.
+// Returns the Fresnel reflectance of the facet between view and light, and the facet's normal.
 GLINT_RELAXED vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
-    // |v + l| is twice the cosine of v and h, and keeps its digits where facets are seen from the side.
+    // |v + l| is twice the cosine between v and h. It keeps its digits if a facet is seen from the side.
     vec3 sum = b.view + l;
     float size = sqrt(dot(sum, sum));
     h = sum / size;
@@ -164,7 +170,7 @@ GLINT_RELAXED vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
                                        : fresnelSchlick(b.f0, b.f90, min(0.5 * size, 1.0));
 }
 
-// Reflected by the base, times n·l; l.z > 0.
+// Light that the base reflects, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     vec3 h;
     GLINT_RELAXED vec3 fresnel = facetFresnel(b, features, l, h);
@@ -177,13 +183,14 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     return (diffuse + specular) * l.z;
 }
 
-// Passed by the microfacets at the index of one channel, times |n·l|; l.z < 0.
+// Light that the microfacets pass, at the index of one channel, times |n·l|; l.z < 0.
 float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     float cosine;
     float lobe;
     GLINT_RELAXED float passed;
     if (passesStraight(features, eta)) {
-        // Nothing bends, whatever the facets: as sharp as lobes get, with the view's own Fresnel.
+        // Nothing bends, whatever the facets are: the lobe is as narrow as lobes get, with the Fresnel of the
+        // view.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
         passed = schlickPassed(b.f0, b.f90, b.view.z);
     } else if (hasLobe(features, GLINT_VOLUME)) {
@@ -196,7 +203,7 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     return lobe * passed;
 }
 
-// Passed by the base, times |n·l|; l.z < 0.
+// Light that the base passes, times |n·l|; l.z < 0.
 vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     vec3 result = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION)) {
@@ -208,26 +215,29 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
         result += b.transmitted * lobe;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        // Light leaves on the other side: the half vector tells nothing, the view's own Fresnel does.
+        // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view
+        // counts.
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, -l.z, fresnel) * -l.z);
     }
     return result;
 }
 
-// Share of the base below the sheen, for light of one cosine: KHR_materials_sheen, albedo scaling.
+// The share of light that reaches the base below the sheen, for one cosine: KHR_materials_sheen, albedo
+// scaling.
 GLINT_RELAXED float belowSheen(Bsdf b, float albedo) {
     GLINT_RELAXED float color = largest(b.sheenColor);
     GLINT_RELAXED float reflected = min(albedo, 1.0);
     return max(1.0 - color * reflected, 0.0);
 }
 
-// Cosine of the view to the coat's normal.
+// The cosine between the view and the coat's normal.
 float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
-// BSDF times |n·l|, prepared for a view. l is unit, in the frame of the surface; l.z < 0 is on the far side.
+// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z
+// < 0 it is on the far side.
 vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
     vec3 result = vec3(0.0);

@@ -1,7 +1,7 @@
-// Sums and products whose rounding errors are kept. A fused multiply-add would be shorter, but GLSL's fma() need not be
-// fused. `precise` keeps compilers from simplifying the errors away.
+// Sums and products that keep their rounding errors. A fused multiply-add would be shorter, but GLSL's fma()
+// need not be fused. `precise` keeps compilers from simplifying the errors away.
 
-// The error of fl(a * b), exactly: Dekker 1971, with Veltkamp's split at 12 bits.
+// The exact error of fl(a * b): Dekker 1971, with Veltkamp's split at 12 bits.
 float productError(float a, float b, float product) {
     const float kSplit = 4097.0;
     precise float bigA = kSplit * a;
@@ -14,32 +14,32 @@ float productError(float a, float b, float product) {
     return error;
 }
 
-// The error of fl(a + b), exactly: Knuth 1969.
+// The exact error of fl(a + b): Knuth 1969.
 float sumError(float a, float b, float sum) {
     precise float partB = sum - a;
     precise float error = (a - (sum - partB)) + (b - partB);
     return error;
 }
 
-// a + b as a float and its error.
+// Returns a + b as a float and its error.
 vec2 exactSum(float a, float b) {
     precise float sum = a + b;
     return vec2(sum, sumError(a, b, sum));
 }
 
-// a + b c as a float and its error.
+// Returns a + b c as a float and its error.
 vec2 exactAddProduct(float a, float b, float c) {
     precise float product = b * c;
     precise float sum = a + product;
     return exactSum(sum, sumError(a, product, sum) + productError(b, c, product));
 }
 
-// a + b c as if rounded once, or nearly so, where the sum cancels.
+// Returns a + b c with about one rounding, even where the sum cancels.
 float addProduct(float a, float b, float c) {
     return exactAddProduct(a, b, c).x;
 }
 
-// a b - c d with full relative precision: Kahan's difference of products.
+// Returns a b - c d with full relative precision: Kahan's difference of products.
 float differenceOfProducts(float a, float b, float c, float d) {
     precise float first = a * b;
     precise float second = c * d;
@@ -47,15 +47,16 @@ float differenceOfProducts(float a, float b, float c, float d) {
     return result;
 }
 
-// The square of x.x + x.y, the second a rounding error of the first, as a float and its error.
+// Returns the square of x.x + x.y, where x.y is the rounding error of x.x, as a float and its error.
 vec2 exactSquare(vec2 x) {
     precise float square = x.x * x.x;
     return vec2(square, productError(x.x, x.x, square) + 2.0 * x.x * x.y);
 }
 
-// Squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law; negative beyond the
-// critical angle. 1 - (1 - cosine²) / eta² would lose its digits near that angle, where reflectance is steepest: so
-// much that the squared cosine of the near side comes with its error.
+// The squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law. It is
+// negative beyond the critical angle. Near that angle, where reflectance is steepest, 1 - (1 - cosine²) /
+// eta² would lose its digits. That is so bad that the squared cosine of the near side must come with its
+// error.
 float refractedCosine2(vec2 cosine2, float eta) {
     vec2 eta2 = exactSquare(vec2(eta, 0.0));
     vec2 sum = exactSum(cosine2.x, eta2.x);
@@ -63,7 +64,7 @@ float refractedCosine2(vec2 cosine2, float eta) {
     return result;
 }
 
-// dot(a, b) as a float and its error.
+// Returns dot(a, b) as a float and its error.
 vec2 exactDot(vec3 a, vec3 b) {
     precise float x = a.x * b.x;
     precise float y = a.y * b.y;
@@ -75,12 +76,13 @@ vec2 exactDot(vec3 a, vec3 b) {
     return exactSum(sum, errors);
 }
 
-// dot(a, b), accurate where it nears 0.
+// Returns dot(a, b), accurate near 0.
 float accurateDot(vec3 a, vec3 b) {
     return exactDot(a, b).x;
 }
 
-// The squared cosine of a, or of b, and their half vector, with its error: a quarter of |a + b|². a and b are unit.
+// The squared cosine between a (or b) and their half vector, with its error: a quarter of |a + b|². a and b
+// are unit vectors.
 vec2 halfCosine2(vec3 a, vec3 b) {
     vec2 x = exactSum(a.x, b.x);
     vec2 y = exactSum(a.y, b.y);
@@ -93,7 +95,8 @@ vec2 halfCosine2(vec3 a, vec3 b) {
     return 0.25 * exactSum(sum.x, sum.y + xy.y + x2.y + y2.y + z2.y);
 }
 
-// cross(n, a + b), accurate where a + b nears n: the sine between a normal and an unnormalised half vector.
+// Returns cross(n, a + b), accurate where a + b is near n. It is the sine between a normal and an
+// unnormalised half vector.
 vec3 accurateCrossOfSum(vec3 n, vec3 a, vec3 b) {
     precise vec3 s = a + b;
     vec3 low = vec3(sumError(a.x, b.x, s.x), sumError(a.y, b.y, s.y), sumError(a.z, b.z, s.z));

@@ -1,19 +1,20 @@
-// Directions in proportion to the BSDF, one lobe of a mixture at a time, and the density of the mixture.
+// Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the
+// mixture.
 #include "bsdf/bsdf.glsl"
 #include "hit/geometry.glsl"
 
 struct BsdfSample {
-    vec3 direction;  // unit, in the frame of the surface
+    vec3 direction;  // unit vector, in the frame of the surface
     vec3 weight;     // BSDF |n·l| / pdf
-    float pdf;       // 0: the lobe sent this sample nowhere (below the horizon, or along a facet's edge)
+    float pdf;       // 0 if the lobe gave no direction (below the horizon, or along a facet's edge)
 };
 
-// Chances of the lobes; they sum to 1.
+// The probabilities of the lobes; they sum to 1.
 struct LobeChances {
     float coat;         // visible normals of the coat
-    float microfacets;  // visible normals of the base, reflected or passed
-    float diffuse;      // by the cosine: diffuse, sheen, multiple scattering
-    float passed;       // by the cosine, on the far side
+    float microfacets;  // visible normals of the base, for reflection and passage
+    float diffuse;      // cosine-weighted: diffuse, sheen, multiple scattering
+    float passed;       // cosine-weighted, on the far side
 };
 
 LobeChances lobeChances(Bsdf b, Features features) {
@@ -44,19 +45,19 @@ LobeChances lobeChances(Bsdf b, Features features) {
         diffuse *= underCoat;
         passed *= underCoat;
         if (accurateDot(b.clearcoatNormal, b.view) < kMinViewCosine) {
-            // A coat whose normal turns from the view has no visible normals.
+            // If the coat's normal turns away from the view, it has no visible normals.
             diffuse += coat;
             coat = 0.0;
         }
     }
     float total = coat + microfacets + diffuse + passed;
-    // A black surface sends samples by its microfacets; their weight is 0.
+    // A black surface samples its microfacets; the weight of these samples is 0.
     return total > 0.0 ? LobeChances(coat / total, microfacets / total, diffuse / total, passed / total)
                        : LobeChances(0.0, 1.0, 0.0, 0.0);
 }
 
-// Chances that a facet reflects (x) and that it lets through (y), by the squared cosine under which it is seen, with
-// the error of the square.
+// The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine
+// under which it is seen, with the error of the square.
 vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return vec2(1.0, 0.0);
@@ -69,12 +70,13 @@ vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
 }
 
-// The squared cosine that decides between reflection and passage: of the facet, `facet2`, unless light passes straight.
+// The squared cosine that decides between reflection and passage. It is that of the facet, `facet2`, unless
+// light passes straight.
 vec2 decidingCosine2(Bsdf b, Features features, vec2 facet2, float eta) {
     return passesStraight(features, eta) ? exactSquare(vec2(b.view.z, 0.0)) : facet2;
 }
 
-// The index of one of three colours; only dispersion tells them apart.
+// The index of one of three colours. They differ only with dispersion.
 float sampledIndex(Bsdf b, Features features, float u) {
     if (hasLobe(features, GLINT_DISPERSION)) {
         return u < 1.0 / 3.0 ? b.eta.x : u < 2.0 / 3.0 ? b.eta.y : b.eta.z;
@@ -82,12 +84,13 @@ float sampledIndex(Bsdf b, Features features, float u) {
     return b.eta.y;
 }
 
-// Density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), the cosine cancelled.
+// The density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), with the cosine
+// cancelled.
 float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
     return 0.5 * ggxDistribution(h, alpha) / (v.z + ggxProjection(v, alpha));
 }
 
-// Density of a direction beyond the microfacets, for the index of one colour.
+// The density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
         vec3 mirrored = vec3(l.x, l.y, -l.z);
@@ -125,7 +128,7 @@ float microfacetPdf(Bsdf b, Features features, vec3 l) {
     return pdf;
 }
 
-// Density of the coat's lobe: mirroredPdf() in the coat's frame.
+// The density of the coat's lobe: mirroredPdf() in the coat's frame.
 float coatPdf(Bsdf b, vec3 l) {
     if (accurateDot(b.clearcoatNormal, l) <= 0.0) {
         return 0.0;
@@ -135,7 +138,7 @@ float coatPdf(Bsdf b, vec3 l) {
            (nDotV + clearcoatProjection(nDotV, b.clearcoatAlpha));
 }
 
-// Density, by solid angle, with which sampleBsdf() chooses l.
+// The density, by solid angle, with which sampleBsdf() chooses l.
 float bsdfPdf(Bsdf b, Features features, vec3 l) {
     LobeChances chances = lobeChances(b, features);
     float pdf = chances.microfacets * microfacetPdf(b, features, l);
@@ -150,19 +153,20 @@ float bsdfPdf(Bsdf b, Features features, vec3 l) {
     return pdf;
 }
 
-// By the cosine to z: Malley's method.
+// Samples a cosine-weighted direction about z: Malley's method.
 vec3 sampleCosine(vec2 u) {
     float radius = sqrt(u.x);
     float phi = 2.0 * kPi * u.y;
     return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(1.0 - u.x, 0.0)));
 }
 
-// The mirror image of v by a facet.
+// Returns the mirror image of v about a facet's normal.
 vec3 reflectAbout(vec3 v, vec3 h) {
     return 2.0 * dot(v, h) * h - v;
 }
 
-// A facet of the base, and where it sends the view: u.z chooses the colour, then between reflection and passage.
+// Samples a facet of the base and the direction to which it sends the view. u.z first chooses the colour,
+// then reflection or passage.
 vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u.xy);
     float eta = sampledIndex(b, features, u.z);
@@ -183,7 +187,8 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-// A direction that the coat reflects the view to; 0 where it points below the base, where the coat has no density.
+// Samples a direction to which the coat reflects the view. Returns 0 if it points below the base, where the
+// coat has no density.
 vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 tangent;
     vec3 bitangent;
@@ -194,7 +199,7 @@ vec3 sampleCoat(Bsdf b, vec2 u) {
     return l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
 }
 
-// A direction for the prepared view; u is uniform in [0, 1)³.
+// Samples a direction for the prepared view; u is uniform in [0, 1)³.
 BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
     LobeChances chances = lobeChances(b, features);
     float chooser = u.z;

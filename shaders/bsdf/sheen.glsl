@@ -1,4 +1,4 @@
-// Charlie sheen: KHR_materials_sheen; Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017).
+// Charlie sheen (KHR_materials_sheen): Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017).
 // alpha = sheenRoughness², at least kMinSheenAlpha.
 
 // The NDF. sine2 = |n×h|².
@@ -22,7 +22,7 @@ float sheenLambda(float cosine, float alpha) {
                             : 2.0 * sheenLambdaFit(0.5, alpha) - sheenLambdaFit(1.0 - cosine, alpha));
 }
 
-// G / (4 (n·l) (n·v)). Both cosines in (0, 1].
+// G / (4 (n·l) (n·v)). Both cosines are in (0, 1].
 float sheenVisibility(float nDotL, float nDotV, float alpha) {
     return 1.0 / ((1.0 + sheenLambda(nDotV, alpha) + sheenLambda(nDotL, alpha)) * 4.0 * nDotL * nDotV);
 }

@@ -1,11 +1,11 @@
-// Light of the sky on a surface, as far as no ray brings it.
+// The sky's light on a surface, for the part that no rays bring.
 #include "effects/sky.glsl"
 #include "effects/sky_shares.glsl"
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
-// The mirror direction. An anisotropic lobe spreads across its grooves: the normal bends towards the view within the
-// plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
+// The mirror direction. An anisotropic lobe spreads across its grooves, so the normal bends towards the view
+// within the plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
 vec3 ambientMirror(Surface surface, Features features, vec3 view) {
     vec3 normal = surface.normal;
     if (hasLobe(features, GLINT_ANISOTROPY)) {
@@ -16,7 +16,8 @@ vec3 ambientMirror(Surface surface, Features features, vec3 view) {
     return reflect(-view, normal);
 }
 
-// The sky behind, through the microfacets. A thin wall does not bend the view, a volume does as it enters.
+// The sky behind the surface, through the microfacets. A thin wall does not bend the view; a volume bends it
+// where it enters.
 vec3 skyBehind(Surface surface, Features features, float eta) {
     vec3 direction = -surface.bsdf.view;
     if (hasLobe(features, GLINT_VOLUME) && refracts(eta) &&
@@ -33,7 +34,8 @@ vec3 ambientTransmission(Surface surface, Features features) {
         behind.x = skyBehind(surface, features, bsdf.eta.x).x;
         behind.z = skyBehind(surface, features, bsdf.eta.z).z;
     }
-    // What the microfacets do not reflect; without compensation, less what single scattering drops.
+    // The rest of what the microfacets reflect. Without compensation, the loss of single scattering is
+    // subtracted too.
     GLINT_RELAXED float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
     GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
     return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
@@ -44,7 +46,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     GLINT_RELAXED vec3 reflected = albedo - first * (1.0 - sky.mirrored);
     GLINT_RELAXED float below = diffusePassed(surface);
-    // The occlusion texture is of the outside, as are the rays of ambient occlusion.
+    // The occlusion texture describes the outside, and so do the rays of ambient occlusion.
     GLINT_RELAXED float open = surface.occlusion * sky.open;
     vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * skyIrradianceOverPi(surface.normal) +
                  reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);

@@ -7,12 +7,12 @@
 #include "hit/surface.glsl"
 #include "hit/trace.glsl"
 
-// Pair of dimensions of the sequence.
+// The pair of dimensions of the sequence.
 const uint kPairOcclusion = 2u;
 
-// The rays go by the cosine about the shading normal, so that each counts the same: with `rays` of them, the mean is
-// 1 - 1/π ∫ w(t) cos θ dω, and w(t) is 1 up to the radius, or falls to 0 there with the distance t of what is hit. Zhukov,
-// Iones and Kronin, "An Ambient Light Illumination Model" (1998).
+// The rays are cosine-weighted about the shading normal, so that each counts the same. With `rays` of them
+// the mean is 1 - 1/π ∫ w(t) cos θ dω. w(t) is 1 up to the radius, or falls to 0 there with the distance t of
+// the hit. Zhukov, Iones and Kronin, "An Ambient Light Illumination Model" (1998).
 void applyAmbientOcclusion(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     float open = 0.0;
     uint rays = 0u;
@@ -23,7 +23,7 @@ void applyAmbientOcclusion(Hit hit, Surface surface, Features features, inout Sk
         vec3 direction = normalize(
             toWorld(surface, sampleCosine(sequencePair(hit.target, number, GLINT_FRAME.seed, kPairOcclusion))));
         if (dot(direction, hit.geometricNormal) <= 0.0) {
-            // Into the surface itself.
+            // The direction points into the surface itself.
             continue;
         }
         vec3 origin = rayOrigin(hit, direction);

@@ -1,4 +1,4 @@
-// The effect reflection: which surfaces send a ray, which ray, and what it counts.
+// The effect reflection: decides which surfaces send a ray, which ray, and its weight.
 #include "bsdf/sample.glsl"
 #include "effects/sample.glsl"
 #include "effects/sky_shares.glsl"
@@ -7,8 +7,9 @@
 #include "hit/sequence.glsl"
 #include "hit/surface.glsl"
 
-// How much of a surface's reflection its ray brings; the sky stands in for the rest. Falls to 0 over the last fifth
-// below the roughness limit, so that no edge shows where a texture crosses it; at the limit a ray is worth sending.
+// The share of a surface's reflection that its ray brings; the sky stands in for the rest. It falls to 0 over
+// the last fifth below the roughness limit, so that no edge shows where a texture crosses the limit. Just
+// below the limit a ray is still sent.
 float tracedShare(float roughness) {
     float limit = GLINT_FRAME.maxReflectionRoughness;
     if (roughness > limit) {
@@ -18,10 +19,10 @@ float tracedShare(float roughness) {
     return 1.0 - fade * fade * (3.0 - 2.0 * fade);
 }
 
-// What the rays of a surface bring, on average over its samples.
+// The shares that the rays of a surface bring, on average over its samples.
 struct TracedLobes {
-    float base;  // share of the base's reflection at the first bounce; the sky stands in for the rest
-    float coat;  // likewise
+    float base;  // of the base's reflection at the first bounce; the sky stands in for the rest
+    float coat;  // of the coat's reflection
 };
 
 TracedLobes tracedLobes(Surface surface, Features features) {
@@ -33,21 +34,21 @@ bool isMirror(float roughness) {
     return roughness <= GLINT_FRAME.mirrorRoughness;
 }
 
-// The mirror direction about the shading normal. Where that points below the geometric surface it is lifted to leave
-// it, by at least 1e-3 (a tenth of a degree), so that no ray starts into its own surface.
+// The mirror direction about the shading normal. If it points below the geometric surface, it is lifted to
+// leave it by at least 1e-3 (about a twentieth of a degree), so that no ray starts into its own surface.
 vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
     vec3 direction = reflect(incoming, normal);
     float height = dot(direction, geometricNormal);
     return normalize(direction + geometricNormal * max(1e-3 - height, 0.0));
 }
 
-// Share of a uniform white sky that the base reflects at the first bounce, through coat and sheen.
+// The share of a uniform white sky that the base reflects at the first bounce, through coat and sheen.
 vec3 firstBounce(Surface surface, Features features) {
     return singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
            baseShare(surface, features);
 }
 
-// The base's lobe, l.z > 0: first bounce, times n·l, through coat and sheen.
+// The base's lobe at the first bounce, times n·l, through coat and sheen; l.z > 0.
 vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
     Bsdf b = surface.bsdf;
     vec3 h;
@@ -67,17 +68,18 @@ float coatLobe(Surface surface, Features features, vec3 l, out float pdf) {
                        : 0.0;
 }
 
-// A ray in the mirror direction about `normal`, whatever its pdf. A flat mirror continues the pixel's cone.
+// A ray in the mirror direction about `normal`, whatever its pdf is. A flat mirror continues the pixel's
+// cone.
 EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
     return sentSample(hit, mirrorDirection(-hit.view, normal, hit.geometricNormal), weight, GLINT_FRAME.pixelSpread);
 }
 
-// Pairs of dimensions of the sequence.
+// The pairs of dimensions of the sequence.
 const uint kPairDirection = 0u;
 const uint kPairLobe = 1u;
 
-// A direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997, balance heuristic).
-// chances: of base and coat; 0 for a lobe that has no density here.
+// Samples a direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997,
+// balance heuristic). chances are those of base and coat; 0 for a lobe that has no density here.
 EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, vec2 chances,
                           bool choosesCoat) {
     Bsdf b = surface.bsdf;
@@ -102,8 +104,8 @@ EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLob
     return sentSample(hit, normalize(world), pdf > 0.0 ? weight / pdf : vec3(0.0), GLINT_FRAME.pixelSpread);
 }
 
-// The ray of one sample, for some lobe within the roughness limit. Below the mirror limit a lobe reflects exactly;
-// between the limits by visible normals.
+// Samples one ray for some lobe within the roughness limit. A lobe below the mirror limit reflects exactly;
+// between the limits its visible normals are sampled.
 EffectSample sampleLobes(Hit hit, Surface surface, Features features, TracedLobes traced) {
     vec3 base = traced.base * firstBounce(surface, features);
     float coat = traced.coat * coatReflectance(surface, features);
@@ -117,7 +119,7 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, TracedLobe
     bool choosesCoat = false;
     if (hasLobe(features, GLINT_CLEARCOAT) && coat > 0.0) {
         if (baseMirror && coatMirror && surface.bsdf.clearcoatNormal.z > 0.99999) {
-            // Within a quarter of a degree: one ray brings both.
+            // The two directions differ by less than a quarter of a degree, so one ray serves both.
             return mirrorSample(hit, surface.normal, base + vec3(coat));
         }
         chance = coat / brought;
@@ -129,7 +131,7 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, TracedLobe
     if (!choosesCoat && baseMirror) {
         return mirrorSample(hit, surface.normal, base / (1.0 - chance));
     }
-    // A mirror has no density that a glossy direction could share.
+    // A mirror has no density that could be combined with that of a glossy direction.
     vec2 chances = vec2(baseMirror ? 0.0 : 1.0 - chance, coatMirror ? 0.0 : chance);
     return glossySample(hit, surface, features, traced, chances, choosesCoat);
 }

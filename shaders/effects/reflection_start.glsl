@@ -1,7 +1,7 @@
-// How a reflection ray begins: in screen space, where that is asked for.
+// The start of a reflection ray: in screen space, if the settings ask for that.
 #include "effects/screen_trace.glsl"
 
-// Whether the ray's end is found; otherwise it begins behind what it is known to pass.
+// Returns whether the ray's end is found. Otherwise the ray begins behind the part that is known to be free.
 bool endsEarly(inout EffectSample drawn, ivec2 place, uint target) {
     if (GLINT_FRAME.screenSteps == 0u) {
         return false;

@@ -1,4 +1,4 @@
-// The effect refraction: which surfaces let light through. Where their rays go the walk finds out
+// The effect refraction: decides which surfaces let light through. The walk finds where their rays go
 // (passes/refraction_walk.comp).
 #include "effects/sample.glsl"
 #include "effects/sky_shares.glsl"
@@ -11,7 +11,7 @@ EffectSample sampleRefraction(Hit hit, Surface surface, Features features, inout
     float share = baseShare(surface, features);
     vec3 weight = surface.bsdf.transmitted * (diffusePassed(surface) * share);
     sky.transmitted = 0.0;
-    // The walk begins at the surface again, without its coat and sheen: what they let through goes with the sample, in
-    // the place of the cone, which the walk makes anew.
+    // The walk begins again at the surface, without its coat and sheen. The share that these let through is
+    // stored in the place of the cone, which the walk computes anew.
     return sentSample(hit, -hit.view, weight, share);
 }

@@ -1,8 +1,8 @@
 // The walk of a refracted ray from interface to interface.
 #include "generated/features.glsl"
 
-// What of a material an interface reads. Coats and sheen of inner surfaces are left out, and absorption counts over real
-// distances.
+// The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and
+// absorption counts over real distances.
 const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
                           GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME |
                           GLINT_DISPERSION;
@@ -17,18 +17,19 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "hit/sequence.glsl"
 #include "hit/trace.glsl"
 
-// Pairs of dimensions of the sequence: two an interface.
+// The pairs of dimensions of the sequence: each interface has two.
 const uint kPairInterface = 512u;
 
-// Media around a ray, the innermost last.
+// The media around a ray, the innermost last.
 const uint kMaxMedia = 4u;
 struct Media {
     uint count;
     uint material[kMaxMedia];
-    vec3 ior[kMaxMedia];  // of red, green, blue
+    vec3 ior[kMaxMedia];  // indices of red, green, blue
 };
 
-// Place of a material's medium above the ground, the innermost of several; 0: the ray is in none of that material.
+// Returns the place of a material's medium counted from 1, the innermost of several; 0 if the ray is not in
+// that material.
 uint placeOf(Media media, uint material) {
     uint place = 0u;
     for (uint i = 0u; i < min(media.count, kMaxMedia); ++i) {
@@ -53,7 +54,7 @@ void leaveMedium(inout Media media, uint place) {
     media.count -= 1u;
 }
 
-// The ray so far.
+// The state of the ray.
 struct Walker {
     vec3 origin;
     vec3 direction;
@@ -63,14 +64,14 @@ struct Walker {
     Media media;
 };
 
-// Features of a surface met from either side.
+// The features of a surface that is met from either side.
 Features walkFeatures(GeometryRecord geometry) {
     return Features(GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
                     (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
                     geometry.featureInputs | GLINT_DOUBLE_SIDED);
 }
 
-// Index of the surface's own medium.
+// The index of the surface's own medium.
 vec3 mediumIor(Hit hit, Features features) {
     float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL(hit).ior : 1.5;
     if (hasLobe(features, GLINT_DISPERSION)) {
@@ -83,19 +84,19 @@ float channelOf(vec3 color, uint channel) {
     return channel == 0u ? color.x : channel == 2u ? color.z : color.y;
 }
 
-// What an interface does to the ray.
+// The possible results of an interface.
 const uint kPasses = 0u;
 const uint kReflects = 1u;
-const uint kStops = 2u;     // the surface is shaded as any other
+const uint kStops = 2u;     // the surface is shaded like any other
 const uint kAbsorbs = 3u;
 
-// Passes, reflects or stops a ray at a surface, by chance. `first`: the primary surface, whose other light is shaded
-// already, so that the ray passes in any case.
+// Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface,
+// whose other light is already shaded, so that the ray always passes.
 uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
     Bsdf b = surface.bsdf;
     vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth);
     vec2 choice = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth + 1u);
-    // What is not clear is shaded where it is met, in proportion.
+    // The part of a surface that is not clear is shaded where it is met, in proportion.
     float clear = luminance(b.transmitted);
     float rest = luminance(b.diffuse) + luminance(b.diffuseTransmitted);
     bool pure = rest <= 0.0;
@@ -161,12 +162,12 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     return kPasses;
 }
 
-// The indices on both sides of a volume's surface, for the media that the ray is in; returns the place of the medium
-// that passing leaves, 0 where one is entered.
+// Sets the indices on both sides of a volume's surface, for the media that the ray is in. Returns the place
+// of the medium that the ray leaves if it passes, or 0 if it enters one.
 uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
     vec3 own = mediumIor(hit, features);
     uint place = hit.frontFace ? 0u : placeOf(media, hit.material);
-    // Of the medium on the outside of the surface.
+    // The index of the medium outside of the surface.
     uint around = media.count;
     if (place > 0u && place == media.count) {
         around = place - 1u;
@@ -174,7 +175,7 @@ uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
     vec3 outside = around > 0u ? media.ior[around - 1u] : vec3(1.0);
     b.eta = hit.frontFace ? own / outside : outside / own;
     if (around > 0u) {
-        // Of the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
+        // f0 follows from the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
         b.f0 = vec3(dielectricF0(b.eta.y) * b.f90);
     }
     return place;
@@ -189,7 +190,7 @@ void passInterface(Hit hit, Features features, uint place, inout Media media) {
     }
 }
 
-// Ends the walk with light, for which no ray joins the list.
+// Ends the walk with a known radiance, so that no ray joins the list.
 void endWith(uint target, vec3 weight, vec3 radiance) {
     GLINT_FRAME.samples.data[target].weight = weight;
     GLINT_FRAME.samples.data[target].outcome = kRayEnded;
@@ -209,10 +210,11 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media.count = 0u;
-    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see effects/refraction.glsl
+    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in
+                                                                        // effects/refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
-    bool meets = true;  // a surface that does something to the ray
+    bool meets = true;  // the ray meets a surface that affects it
     for (uint depth = 0u;; ++depth) {
         if (meets) {
             Surface surface = evaluateSurface(hit, features);
@@ -235,11 +237,11 @@ uint walk(uvec2 pixel, uint target) {
         walker.origin = rayOrigin(hit, walker.direction);
         walker.coneWidth += GLINT_FRAME.pixelSpread * travelled;
         if (depth + 1u >= GLINT_FRAME.maxInterfaces) {
-            // The sky stands in for what further interfaces would show.
+            // The sky stands in for further interfaces.
             endWith(target, walker.weight, skyRadiance(walker.direction));
             return segments;
         }
-        // On to the next surface; from within a medium its back is seen, too.
+        // Continues to the next surface. Within a medium, its back is seen too.
         RayRecord ray = RayRecord(walker.origin, target, walker.direction, walker.coneWidth, GLINT_FRAME.pixelSpread);
         bool within = walker.media.count > 0u;
         HitRecord record = traceRay(ray, 0u, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
@@ -258,7 +260,7 @@ uint walk(uvec2 pixel, uint target) {
             uint medium = walker.media.material[walker.media.count - 1u];
             walker.weight *= volumeTransmittance(GLINT_FRAME.materials.data[medium].absorption, travelled);
         }
-        // The back of a single-sided surface is no surface, unless it is the end of a volume.
+        // The back of a single-sided surface is ignored, unless it is the end of a volume.
         bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;
         bool clear = hasLobe(features, GLINT_TRANSMISSION);
         meets = !back || (clear && hasLobe(features, GLINT_VOLUME));

@@ -1,4 +1,4 @@
-// The march of a reflection ray over the screen, against the depth of the primary surfaces.
+// Marches a reflection ray over the screen, against the depth of the primary surfaces.
 #include "effects/screen_ray.glsl"
 #include "effects/sky.glsl"
 #include "hit/constants.glsl"
@@ -8,11 +8,11 @@
 
 struct ScreenMarch {
     bool found;
-    ivec2 place;     // the pixel whose surface the ray meets
-    float distance;  // otherwise: how far the ray is known to meet nothing, metres
+    ivec2 place;     // if the ray hits: the pixel whose surface it meets
+    float distance;  // otherwise: the distance in which the ray certainly meets nothing, metres
 };
 
-// A point of the ray over a pixel.
+// A point of the ray, over a pixel.
 struct ScreenPoint {
     ivec2 place;
     vec3 position;
@@ -42,8 +42,9 @@ vec3 normalOf(vec4 position) {
     return octahedralDecode(unpackSnorm2x16(floatBitsToUint(position.w)));
 }
 
-// Whether the surface of a pixel hides the point: it is nearer, and the point is behind its plane, too. The depth is of
-// the pixel's centre, the point anywhere in it: by depth alone a ray would meet the floor that it leaves.
+// Returns whether the surface of a pixel hides the point: the surface is nearer, and the point is behind its
+// plane too. The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth
+// alone a ray would hit the floor that it leaves.
 bool isHidden(ScreenPoint point, ivec2 place) {
     float seen = imageLoad(radianceImage, place).w;
     if (seen == 0.0 || point.depth < seen) {
@@ -53,8 +54,8 @@ bool isHidden(ScreenPoint point, ivec2 place) {
     return dot(point.position - surface.xyz, normalOf(surface)) <= 0.0;
 }
 
-// Whether no surface of the pixels around hides the point, either: then what is as large as a pixel is not between it
-// and its neighbours on the line, even where a silhouette passes between their centres.
+// Returns whether no surface of the surrounding pixels hides the point either. Then nothing as large as a
+// pixel lies between it and its neighbours on the line, even where a silhouette passes between their centres.
 bool isClear(ScreenPoint point) {
     bool clear = true;
     for (int i = 0; clear && i < 9; ++i) {
@@ -65,10 +66,11 @@ bool isClear(ScreenPoint point) {
     return clear;
 }
 
-// Halves the part of the line from `free`, where nothing hides the ray, to `hidden` until it is below 1/64 pixel, as
-// depths may change much within one, and takes the surface there for a hit if the ray is at most its thickness behind
-// it, was in front of its plane a pixel earlier, so that it meets the side that the camera sees, and if it is not the
-// one that the ray leaves. `pixel`: share of the line.
+// Bisects the part of the line from `free`, where nothing hides the ray, to `hidden`, until it is shorter
+// than 1/64 pixel, because depths may change much within one pixel. The surface there is a hit if three
+// conditions hold: the ray is at most the surface's thickness behind it; a pixel earlier the ray was in front
+// of its plane, so that it meets the side that the camera sees; and it is not the surface that the ray
+// leaves. `pixel` is the share of the line that one pixel takes.
 ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, float hidden, float pixel) {
     while (hidden - free > 0.015625 * pixel) {
         float middle = 0.5 * (free + hidden);
@@ -88,9 +90,9 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
     return ScreenMarch(thick && crossed && point.place != insideImage(ray.begin), point.place, 0.0);
 }
 
-// Ends at the first surface that hides the ray, whether that is a hit or not: behind it anything may be. Where the
-// steps look at every pixel of the line the distance is that of the last point but one that is clear, a pixel from
-// whatever the line may meet next; otherwise 0.
+// Ends at the first surface that hides the ray, whether it is a hit or not, because anything may be behind
+// it. If the steps look at every pixel of the line, the returned distance is that of the last clear point but
+// one, which is a pixel before anything that the line may meet next. Otherwise it is 0.
 ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     ScreenRay ray = screenRay(toClip(vec4(origin, 1.0)), toClip(vec4(direction, 0.0)),
                               vec2(GLINT_FRAME.width, GLINT_FRAME.height), kFarDistance);
@@ -98,7 +100,7 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     bool steep = abs(span.y) > abs(span.x);
     float pixels = steep ? abs(span.y) : abs(span.x);
     float stride = max(pixels / float(GLINT_FRAME.screenSteps), 1.0);
-    // Steps of one pixel go from centre to centre.
+    // Steps of one pixel go from pixel centre to pixel centre.
     bool clear = stride == 1.0;
     float along = steep ? fract(ray.begin.y) - 0.5 : fract(ray.begin.x) - 0.5;
     bool forwards = steep ? span.y >= 0.0 : span.x >= 0.0;
@@ -127,8 +129,8 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     return result;
 }
 
-// What the surface of a pixel sends to the ray: its light as the camera sees it, with the sky for what it reflects, as
-// hits of rays have it.
+// The light that the surface of a pixel sends to the ray: its light as the camera sees it, with the sky for
+// what it reflects, as in hits of rays.
 vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
     uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);

@@ -1,23 +1,24 @@
-// The effect shadow: how much of a light reaches a primary surface. Hits of rays send one ray each (hit/shade.glsl).
+// The effect shadow: how much of a light reaches a primary surface. Hits of rays send one shadow ray each
+// (hit/shade.glsl).
 #include "hit/count.glsl"
 #include "hit/hit.glsl"
 #include "hit/punctual.glsl"
 #include "hit/sequence.glsl"
 #include "hit/trace.glsl"
 
-// Pair of dimensions of the sequence of the first light; each further one has the next.
+// The pair of dimensions of the sequence for the first light. Each further light has the next pair.
 const uint kPairShadow = 64u;
 
-// Of the rays of one surface.
+// The counts of one surface's rays.
 struct ShadowCounts {
     uint rays;
-    uint misses;  // that reached the light
-    uint facing;  // lights that the surface turns away from, or does not scatter
+    uint misses;  // rays that reached the light
+    uint facing;  // lights that the surface faces away from or does not scatter
     uint range;
     uint cone;
 };
 
-// What keeps a light from a surface before any ray is sent.
+// Counts the reason why a light needs no ray.
 void countGate(LightSample centre, bool reaches, inout ShadowCounts counts) {
     counts.range += centre.gate == kRayRange ? 1u : 0u;
     counts.cone += centre.gate == kRayCone ? 1u : 0u;
@@ -33,7 +34,7 @@ void reportShadows(ShadowCounts counts) {
     }
 }
 
-// Share of the solid angle of a light that is visible. A hard one is, or is not.
+// The visible share of a light's solid angle. A light without a size is visible or not.
 float visibleShare(Hit hit, LightRecord light, LightSample centre, uint index, inout ShadowCounts counts) {
     if (light.size <= 0.0) {
         bool visible = isVisible(rayOrigin(hit, centre.direction), centre.direction, centre.distance);
@@ -47,7 +48,7 @@ float visibleShare(Hit hit, LightRecord light, LightSample centre, uint index, i
         uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + i;
         vec2 u = sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index);
         LightSample point = sampleLightArea(light, centre, u);
-        // What of the light is below the surface is hidden by the surface itself.
+        // The surface itself hides the part of the light that is below it.
         if (point.distance <= 0.0) {
             seen += 1u;
         } else if (side * dot(hit.geometricNormal, point.direction) > 0.0) {

@@ -1,23 +1,24 @@
-// The sky: an environment map, or a gradient that is linear in the cosine from horizon to zenith above, and to the
-// ground below.
+// The sky: an environment map, or a gradient. The gradient is linear in the cosine, from horizon to zenith
+// above, and from horizon to ground below.
 #include "bsdf/constants.glsl"
 #include "hit/bindings.glsl"
 
 #if GLINT_ENVIRONMENT_MAP
 
-// Equirectangular; a level holds the means over the lobes of one roughness.
+// An equirectangular map. Each level holds the means over the lobes of one roughness.
 layout(set = kSetFrame, binding = kBindingEnvironment) uniform sampler2D environmentMap;
 
-// v is the polar angle from +Y, u the azimuth from +X towards +Z, the middle of the map at +X. Both by atan, which
-// keeps its digits at the poles.
+// v is the polar angle from +Y; u is the azimuth from +X towards +Z, with +X at the middle of the map. Both
+// come from atan, which keeps its digits at the poles.
 vec2 environmentCoordinates(vec3 direction) {
-    // At a pole any azimuth will do, and atan(0, 0) is undefined.
+    // At a pole any azimuth is right, and atan(0, 0) is undefined.
     float across = length(direction.xz);
     float azimuth = across > 0.0 ? atan(direction.z, direction.x) : 0.0;
     return vec2(azimuth / (2.0 * kPi) + 0.5 + GLINT_FRAME.environmentTurn, atan(across, direction.y) / kPi);
 }
 
-// What a lobe of this roughness about the direction sees. An explicit level leaves no seam where u jumps.
+// The light that a lobe of this roughness about the direction sees. An explicit level avoids a seam where u
+// jumps.
 vec3 skyAround(vec3 direction, float roughness) {
     float level = roughness * (GLINT_FRAME.environmentLevels - 1.0);
     return textureLod(environmentMap, environmentCoordinates(direction), level).rgb * GLINT_FRAME.environmentScale;
@@ -27,7 +28,8 @@ vec3 skyRadiance(vec3 direction) {
     return skyAround(direction, 0.0);
 }
 
-// Irradiance over π by nine spherical harmonics; a small bright sun makes them negative where there is hardly light.
+// Irradiance over π from nine spherical harmonics. With a small bright sun they are negative where there is
+// hardly any light.
 vec3 skyIrradianceOverPi(vec3 n) {
     vec3 sum = GLINT_FRAME.skyHarmonics[0] + GLINT_FRAME.skyHarmonics[1] * n.x + GLINT_FRAME.skyHarmonics[2] * n.y +
                GLINT_FRAME.skyHarmonics[3] * n.z + GLINT_FRAME.skyHarmonics[4] * (3.0 * n.y * n.y - 1.0) +
@@ -43,15 +45,15 @@ vec3 skyRadiance(vec3 direction) {
     return mix(GLINT_FRAME.skyHorizon, pole, min(abs(direction.y), 1.0));
 }
 
-// Irradiance over π, by the first two orders of spherical harmonics (Ramamoorthi and Hanrahan 2001): the mean of the
-// radiance and 2/3 of its first moment, both exact for this sky.
+// Irradiance over π from the first two orders of spherical harmonics (Ramamoorthi and Hanrahan 2001): the
+// mean of the radiance plus 2/3 of its first moment. Both are exact for this sky.
 vec3 skyIrradianceOverPi(vec3 normal) {
     vec3 mean = 0.25 * (2.0 * GLINT_FRAME.skyHorizon + GLINT_FRAME.skyZenith + GLINT_FRAME.skyGround);
     vec3 slope = 0.5 * (GLINT_FRAME.skyZenith - GLINT_FRAME.skyGround);
     return mean + (2.0 / 3.0) * slope * normal.y;
 }
 
-// The sky in one direction; a rough lobe sees the sky's mean around it.
+// The sky in one direction. A rough lobe sees the sky's mean around it.
 vec3 skyAround(vec3 direction, float roughness) {
     return mix(skyRadiance(direction), skyIrradianceOverPi(direction), roughness);
 }

@@ -1,12 +1,13 @@
 #include "generated/scene.glsl"
 
-// How much of the sky's light on a surface its effects leave: what an effect traces, the sky no longer brings.
+// The shares of the sky's light on a surface that remain. Light that an effect traces no longer comes from
+// the sky.
 struct SkyShares {
-    GLINT_RELAXED float mirrored;     // of what the base reflects at the first bounce
-    GLINT_RELAXED float coated;       // of what the coat reflects
-    GLINT_RELAXED float transmitted;  // of what passes the microfacets
-    GLINT_RELAXED float diffuse;      // of what diffuse lobes scatter, on either side
-    GLINT_RELAXED float open;         // of all that comes from outside: what nothing occludes
+    GLINT_RELAXED float mirrored;     // of the base's reflection at the first bounce
+    GLINT_RELAXED float coated;       // of the coat's reflection
+    GLINT_RELAXED float transmitted;  // of the light that passes the microfacets
+    GLINT_RELAXED float diffuse;      // of the light that diffuse lobes scatter, on either side
+    GLINT_RELAXED float open;         // of all light from outside: the part that nothing occludes
 };
 
 SkyShares wholeSky() {

@@ -1,9 +1,10 @@
-// Alpha of a candidate, for ray traversal over masked geometry.
+// The alpha of a candidate, for ray traversal over masked geometry.
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"
 
-// Whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. Reads mip 0: traversal knows no
-// footprint. What the module has of its cases says nothing here: a ray of any case meets masks of all.
+// Returns whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. It reads mip 0,
+// because traversal knows no footprint. The module's own cases do not matter here: a ray of any case meets
+// masks of all cases.
 bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
     Features features = Features(0u, GLINT_ALPHA_ALWAYS, 0u, GLINT_ALPHA_SOMETIMES, 0u, geometry.featureInputs);
     MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];

@@ -1,14 +1,15 @@
-// Appends the rays of a workgroup to the list side by side, so that what traces the list finds neighbours on the screen
-// together, with one atomic on its length. In compute shaders.
+// Appends the rays of a workgroup to the list side by side, with one atomic on the list's length. So the pass
+// that traces the list finds neighbours on the screen together. For compute shaders.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
 #include "hit/bindings.glsl"
 
-shared uint appendedRays;   // of the workgroup
-shared uint appendedBegin;  // of them in the list
+shared uint appendedRays;   // number of rays of the workgroup
+shared uint appendedBegin;  // their begin in the list
 
-// Slot of a thread's ray, counted in kCounterRays; undefined for a thread without one. All threads of the workgroup call.
+// Returns the slot of a thread's ray, and counts it in kCounterRays. The slot is undefined for a thread
+// without a ray. All threads of the workgroup must call this.
 uint appendedSlot(bool hasRay) {
     if (gl_LocalInvocationIndex == 0u) {
         appendedRays = 0u;

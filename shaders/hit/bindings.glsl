@@ -1,4 +1,4 @@
-// Resources of every pass: descriptor sets, push constants, extensions.
+// The resources of every pass: descriptor sets, push constants, extensions.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require

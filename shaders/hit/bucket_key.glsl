@@ -1,4 +1,4 @@
-// Keys: the bucket of each hit, in as few bytes as hold it, so that the ordering reads little.
+// Keys hold the bucket of each hit in as few bytes as possible, so that the ordering reads little memory.
 #include "hit/bindings.glsl"
 
 const uint kBuckets = GLINT_CASE_COUNT + 1u;
@@ -31,13 +31,13 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer KeyPairArray
 const uint kKeysOfWord = 4u / kKeyBytes;
 const uint kKeysOfVector = 16u / kKeyBytes;
 
-// Key `index` of those in a word.
+// Returns key `index` of those in a word.
 uint keyOfWord(uint word, uint index) {
     const int bits = int(8u * kKeyBytes);
     return bitfieldExtract(word, int(index) * bits, bits);
 }
 
-// Key `index` of those in a vector.
+// Returns key `index` of those in a vector.
 uint keyOf(uvec4 keys, uint index) {
     return keyOfWord(keys[index / kKeysOfWord], index % kKeysOfWord);
 }

@@ -1,8 +1,8 @@
-// What follows from the counts of the buckets: where each begins, so that the order of buckets does not depend on timing,
-// and the indirect arguments of its shading.
+// Derives from the counts of the buckets where each begins, so that the order of buckets does not depend on
+// timing, and the indirect arguments for shading it.
 #include "hit/list.glsl"
 
-// Slots that a bucket takes up: the next one begins behind them.
+// The slots that a bucket takes up; the next bucket begins behind them.
 uint roomOf(uint count) {
     uint alignment = GLINT_FRAME.bucketAlignment;
     return (count + alignment - 1u) / alignment * alignment;
@@ -13,7 +13,7 @@ void storeBucket(uint bucket, uint begin, uint count) {
     GLINT_FRAME.bucketDispatch.data[bucket] = listDispatch(count, kRayGroupSize);
 }
 
-// Slots between the end of a bucket and the next begin hold no hit.
+// Marks the slots between the end of a bucket and the next begin as empty.
 void clearGap(uint begin, uint count) {
     uint end = begin + roomOf(count);
     for (uint slot = begin + count; slot < end; ++slot) {
@@ -21,7 +21,7 @@ void clearGap(uint begin, uint count) {
     }
 }
 
-// Behind the arguments of the buckets are those over all slots.
+// The arguments for all slots stand behind those of the buckets.
 void storeSlotCount(uint slots) {
     GLINT_FRAME.bucketDispatch.data[GLINT_FRAME.bucketCount] = listDispatch(slots, kRayGroupSize);
 }

@@ -1,9 +1,9 @@
-// Rays of the camera, consistent with FrameConstants::worldToClip.
+// The camera's rays, consistent with FrameConstants::worldToClip.
 #include "hit/bindings.glsl"
 
 struct CameraRay {
     vec3 origin;
-    vec3 direction;  // unit
+    vec3 direction;  // unit vector
 };
 
 CameraRay cameraRay(uvec2 pixel) {
@@ -16,8 +16,8 @@ CameraRay cameraRay(uvec2 pixel) {
     return CameraRay(GLINT_FRAME.cameraPosition, normalize(GLINT_FRAME.cameraForward + across));
 }
 
-// Barycentrics of the point where a ray meets a triangle's plane, kept within the triangle: the rasteriser, which says
-// that the pixel is covered, rounds in another place. Möller and Trumbore (1997).
+// The barycentrics of the point where a ray meets a triangle's plane, clamped to the triangle: the rasteriser
+// decides that the pixel is covered, and rounds differently. Möller and Trumbore (1997).
 vec2 rayTriangleBarycentrics(CameraRay ray, vec3 p0, vec3 edge1, vec3 edge2) {
     vec3 p = cross(ray.direction, edge2);
     float determinant = dot(edge1, p);

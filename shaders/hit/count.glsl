@@ -1,8 +1,7 @@
-// Counts of what effects do. Each has kCounterCopies counters, and workgroups next to each other add to different ones:
-// a GPU adds to one address by one atomic after the other. The host sums them up.
-//
-// In compute shaders one atomic a subgroup, and all threads of it call; ray generation shaders, which may lack subgroup
-// operations, add one by one.
+// Counts what effects do. Each count has kCounterCopies counters, and adjacent workgroups add to different
+// ones, because a GPU executes atomics on one address one after the other. The host sums them up.
+// Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders,
+// which may lack subgroup operations, add one by one.
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
@@ -12,7 +11,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
 
-// Which of the copies this thread adds to: equal in all threads of a subgroup.
+// The copy that this thread adds to. It is equal in all threads of a subgroup.
 uint counterCopy() {
 #if GLINT_RAY_GENERATION
     return (gl_LaunchIDEXT.x / kRayGroupSize + gl_LaunchIDEXT.y) % kCounterCopies;
@@ -21,7 +20,7 @@ uint counterCopy() {
 #endif
 }
 
-// Place of a count (kRay*, kCount*) of an effect.
+// The index of a count (kRay*, kCount*) of an effect.
 uint counterOf(uint effect, uint kind) {
     uint number = kEffectCount * counterCopy() + uint(findLSB(effect));
     return kCounterEffects + kCountsOfEffect * number + kind;
@@ -42,7 +41,7 @@ void addToCounter(uint counter, uint amount) {
 
 #if !GLINT_RAY_GENERATION
 
-// Adds the number of threads that say so.
+// Adds the number of threads whose `counted` is true.
 void countThreads(uint counter, bool counted) {
     uint total = subgroupBallotBitCount(subgroupBallot(counted));
     if (subgroupElect() && total > 0u) {
@@ -50,7 +49,8 @@ void countThreads(uint counter, bool counted) {
     }
 }
 
-// Adds one to the count `kind` of each thread that says so, with an atomic for each that the subgroup has.
+// Adds one to the count `kind` of each thread whose `counted` is true, with one atomic for each kind in the
+// subgroup.
 void countKinds(uint effect, bool counted, uint kind) {
     const uint kNone = 0xFFFFFFFFu;
     uint waiting = counted ? kind : kNone;
@@ -64,8 +64,8 @@ void countKinds(uint effect, bool counted, uint kind) {
 
 #endif
 
-// Rays of an effect that are traced on the spot, and those of them that met nothing. All threads of a subgroup that are
-// here call.
+// Counts the rays of an effect that are traced at once, and those of them that hit nothing. All active
+// threads of a subgroup must call.
 void countRays(uint effect, uint rays, uint misses) {
     if (GLINT_FRAME.countsLight != 0u) {
         addToCounter(counterOf(effect, kRaySent), rays);

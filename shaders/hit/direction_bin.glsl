@@ -2,7 +2,7 @@
 #include "hit/geometry.glsl"
 #include "interop/frame.h"
 
-// Bin of a unit vector by kBinning*, below kMaxDirectionBins whatever the numbers.
+// Returns the bin of a unit vector by kBinning*. It is below kMaxDirectionBins, even for invalid numbers.
 uint directionBin(vec3 direction, uint binning) {
     if (binning == kBinningNone) {
         return 0u;
@@ -10,7 +10,7 @@ uint directionBin(vec3 direction, uint binning) {
     if (binning == kBinningSign) {
         return (direction.x < 0.0 ? 1u : 0u) | (direction.y < 0.0 ? 2u : 0u) | (direction.z < 0.0 ? 4u : 0u);
     }
-    // 8 x 8 cells; the far edges of the map belong to the last ones.
+    // There are 8 x 8 cells. The far edges of the map belong to the last cells.
     vec2 cell = clamp(octahedralEncode(direction) * 4.0 + 4.0, vec2(0.0), vec2(7.0));
     return min(uint(cell.x) + 8u * uint(cell.y), kMaxDirectionBins - 1u);
 }

@@ -1,8 +1,9 @@
 #include "generated/features.glsl"
 
-// What a case knows of its keys. `always` and `sometimes` are literals of the case; `lobes` and `inputs` are the key
-// of the geometry at hand. Written so that SPIRV-Tools folds every decided bit: a feature that no key of the case has
-// leaves no code, one that every key has leaves no branch.
+// The features that a case knows about its keys. `always` and `sometimes` are literals of the case; `lobes`
+// and `inputs` are the key of the geometry at hand. The functions are written so that SPIRV-Tools folds every
+// decided bit: a feature that no key of the case has leaves no code, and one that every key has leaves no
+// branch.
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
@@ -22,8 +23,9 @@ bool inputOfKey(Features features, uint bit) {
            ((features.sometimesInputs & bit) != 0u && (features.inputs & bit) != 0u);
 }
 
-// What all cases of the module have, and what any has. A module that says so before it includes this file is compiled
-// several times faster: what is decided for the module as a whole goes before functions are inlined.
+// The features that all cases of the module have, and those that any has. A module that defines them before
+// it includes this file compiles several times faster, because what is decided for the whole module is
+// removed before functions are inlined.
 #ifndef GLINT_MODULE_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_LOBES 0u
 #define GLINT_MODULE_ALWAYS_INPUTS 0u
@@ -38,7 +40,7 @@ bool inputOfKey(Features features, uint bit) {
     ((GLINT_MODULE_ALWAYS_INPUTS & (bit)) != 0u ||                                                              \
      ((GLINT_MODULE_ANY_INPUTS & (bit)) != 0u && inputOfKey(features, bit)))
 
-// The features of any key of the scene, all lobes: for primary surfaces.
+// The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry)                                                                        \
     Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \
              (geometry).featureLobes, (geometry).featureInputs)

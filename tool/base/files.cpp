@@ -79,10 +79,10 @@ Result<FileDigest> digestFile(const fs::path& path) {
     };
     const std::unique_ptr<XXH3_state_t, StateDeleter> state(XXH3_createState());
     XXH3_64bits_reset(state.get());
-    // Stays in the cache of a core.
+    // A piece of this size stays in the cache of a core.
     constexpr std::size_t kPiece = 1U << 17;
     const auto piece = std::make_unique_for_overwrite<std::uint8_t[]>(kPiece);
-    // Its own buffer would only copy once more.
+    // The file's own buffer would only add a copy.
     std::setvbuf(file.get(), nullptr, _IONBF, 0);
     FileDigest digest;
     std::size_t count = kPiece;

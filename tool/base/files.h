@@ -1,4 +1,4 @@
-// Files and hashes: whole-file reads with limits, writes that never leave a half-written file.
+// Reads whole files with size limits, writes files so that none is ever left half-written, and hashes bytes.
 #pragma once
 
 #include <glint/result.h>
@@ -14,10 +14,10 @@ namespace glint {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// XXH3, 64 bits.
+// Returns the 64-bit XXH3 hash.
 std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed = 0);
 std::uint64_t hashBytes(std::string_view text);
-// 16 lower-case hexadecimal digits.
+// Returns the hash as 16 lower-case hexadecimal digits.
 std::string hexHash(std::uint64_t hash);
 
 // Reads a whole file. Errors: "file-open", "file-size" (above maxBytes), "file-read".
@@ -25,13 +25,13 @@ Result<Bytes> readFile(const std::filesystem::path& path, std::uint64_t maxBytes
 
 struct FileDigest {
     std::uint64_t bytes = 0;
-    std::uint64_t hash = 0;  // as hashBytes()
+    std::uint64_t hash = 0;  // as from hashBytes()
 };
-// Of a file of any size, a piece at a time. Errors "file-open", "file-read".
+// Hashes a file of any size, one piece at a time. Errors "file-open", "file-read".
 Result<FileDigest> digestFile(const std::filesystem::path& path);
 
-// Writes through a temporary file beside `path` and a rename; keeps the old file, with its time stamp, where
-// the contents are the same already. Errors: "file-write".
+// Writes a temporary file beside `path` and renames it. If the file has the same contents already, it is kept
+// with its time stamp. Errors: "file-write".
 Status writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Status writeFile(const std::filesystem::path& path, std::string_view text);
 

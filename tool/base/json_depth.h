@@ -1,4 +1,4 @@
-// How deeply JSON nests: libraries copy, write and walk it by recursion, and a stack is small.
+// Limits how deeply JSON nests, because libraries copy, write and walk it by recursion, and a stack is small.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,12 @@
 
 namespace glint {
 
-// What Glint reads and writes itself needs less than a dozen levels, `extras` of glTF seldom more.
+// The files that Glint reads and writes need fewer than a dozen levels, and `extras` of glTF seldom need
+// more.
 inline constexpr int kMaxJsonDepth = 128;
 
-// Whether arrays and objects are nested more than kMaxJsonDepth levels deep. The text need not be JSON.
+// Returns whether arrays and objects are nested more than kMaxJsonDepth levels deep. The text need not be
+// JSON.
 bool nestsTooDeep(std::span<const std::uint8_t> json);
 
 }  // namespace glint

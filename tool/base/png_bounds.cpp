@@ -7,7 +7,7 @@ namespace glint {
 
 namespace {
 
-// Deflate reaches 1032 : 1 at best, and a pixel has one bit at least.
+// Deflate reaches 1032 : 1 at best, and a pixel has at least one bit.
 constexpr std::uint64_t kMaxPixelsPerByte = 1032ULL * 8;
 
 }  // namespace

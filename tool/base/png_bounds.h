@@ -1,4 +1,5 @@
-// What a PNG file says of itself, against what it can hold: decoders allocate by the former.
+// Compares the size that a PNG file claims with the size that it can hold, because decoders allocate by the
+// claim.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 
 namespace glint {
 
-// Why the file can't be what it says, with its size in pixels as a decoder read it from the header; empty if
-// it can.
+// Returns why the file can't hold as many pixels as it claims; `width` and `height` are those that a decoder
+// read from the header. Returns an empty text if it can.
 std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t width, std::int64_t height);
 
 }  // namespace glint

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// "scene.lock.glint-tmp-1234", by the number of the process.
+// Temporary files are called "scene.lock.glint-tmp-1234", with the number of the process.
 constexpr std::string_view kTag = ".glint-tmp-";
 
 struct FileCloser {
@@ -45,7 +45,7 @@ bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
     return present && std::memcmp(present->data(), bytes.data(), bytes.size()) == 0;
 }
 
-// 0, or errno.
+// Returns 0, or errno.
 int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
     File file(std::fopen(path.c_str(), "wb"));
     if (!file) {
@@ -54,7 +54,7 @@ int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
     if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
         return errno;
     }
-    // Close by hand: a full disk may show only when the buffers are flushed.
+    // The file is closed here because a full disk may show only when the buffers are flushed.
     return std::fclose(file.release()) != 0 ? errno : 0;
 }
 

@@ -27,14 +27,14 @@ int editDistance(std::string_view a, std::string_view b) {
 
 namespace {
 
-// ASCII only, as identifiers and options are.
+// Handles ASCII only, because identifiers and options are ASCII.
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// The first candidate that has `word` within it, in whatever case; empty if there is none.
+// Returns the first candidate that contains `word`, ignoring case; empty if there is none.
 std::string containing(std::string_view word, std::span<const std::string> candidates) {
-    // Fewer characters are within too much to be a hint.
+    // Shorter words are contained in too many candidates to be a hint.
     constexpr std::size_t kShortestPart = 3;
     if (word.size() < kShortestPart) {
         return {};
@@ -49,7 +49,7 @@ std::string containing(std::string_view word, std::span<const std::string> candi
 }  // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    // Nobody mistypes a name this long by three edits; bounds the table of editDistance().
+    // Nobody mistypes a name this long by three edits. It bounds the table of editDistance().
     constexpr std::size_t kLongestWord = 64;
     if (word.size() > kLongestWord) {
         return {};

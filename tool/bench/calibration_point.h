@@ -1,4 +1,4 @@
-// What a calibration measures at one generated scene: the input of the fit behind --strategy auto.
+// The measurements of a calibration at one generated scene: the input of the fit behind --strategy auto.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace glint::bench {
 
-// A case of the scene: its share of all hits (1 over all cases), and what its shader holds.
+// A case of the scene: its share of all hits (1 over all cases), and the size of its shader's code.
 struct CaseWork {
     double share = 0.0;
-    double instructions = 0.0;  // of SPIR-V, in the module that `visibility` shades the case with
-    double fetches = 0.0;       // of textures, likewise
+    double instructions = 0.0;  // SPIR-V instructions in the module with which `visibility` shades the case
+    double fetches = 0.0;       // texture fetches in the same module
 };
 
-// Milliseconds of the device for one sample, from the list of rays to their shaded hits: the median of the
-// first strategy, times the median of this one's ratio to it in the same round, which a clock that changes
-// between rounds leaves alone.
+// The device's time in milliseconds for one sample, from the list of rays to their shaded hits. It is the
+// median of the first strategy, times the median of this strategy's ratio to it in the same round. A clock
+// that changes between rounds does not affect that ratio.
 struct StrategyTime {
-    std::string strategy;  // as --strategy has it
+    std::string strategy;  // as in --strategy
     double ms = 0.0;
 };
 
@@ -26,9 +26,9 @@ struct CalibrationPoint {
     std::uint32_t cases = 0;
     std::string cost;            // "cheap" or "expensive"
     std::string coherence;       // "coherent" or "incoherent"
-    double rays = 0.0;           // of the list, a sample
-    double hitShare = 0.0;       // of rays that hit something
-    double coherentShare = 0.0;  // of hits whose neighbours are alike: see coherentShareOf()
+    double rays = 0.0;           // in the list, for one sample
+    double hitShare = 0.0;       // share of rays that hit something
+    double coherentShare = 0.0;  // share of hits whose neighbours are alike: see coherentShareOf()
     std::vector<CaseWork> work;  // by shader ID
     std::vector<StrategyTime> times;
 };

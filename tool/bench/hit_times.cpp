@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view kFirst = "ray dispatch";
 
-// Of primary surfaces, or of the picture.
+// Returns whether a pass belongs to the primary surfaces or to the whole picture, so that it ends a round.
 bool endsRound(std::string_view name) {
     return name == "compose" || name.ends_with(" rays") || name.ends_with(" walk");
 }

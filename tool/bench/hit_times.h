@@ -1,4 +1,4 @@
-// Where the time of a frame's hits goes: the passes in which strategies differ.
+// Splits the time of a frame's hits by the passes in which strategies differ.
 #pragma once
 
 #include <span>
@@ -14,11 +14,11 @@ struct PassTime {
 
 // Milliseconds, from the list of rays to their shaded hits.
 struct HitTimes {
-    double dispatch = 0.0;  // indirect arguments of the list
-    double trace = 0.0;     // to hit records, where a pass of its own does that
-    double order = 0.0;     // of those records by bucket: whatever is neither of the others
-    double shade = 0.0;     // of uber and hit-shaders with their tracing
-    double shadow = 0.0;    // deferred shadow rays, with their dispatch
+    double dispatch = 0.0;  // for the indirect arguments of the list
+    double trace = 0.0;     // to hit records, if that is a pass of its own
+    double order = 0.0;     // to order those records by bucket: all passes that are none of the others
+    double shade = 0.0;     // for uber and hit-shaders this includes their tracing
+    double shadow = 0.0;    // for deferred shadow rays, including their dispatch
 
     double sum() const {
         return dispatch + trace + order + shade + shadow;
@@ -27,8 +27,8 @@ struct HitTimes {
     HitTimes& operator/=(double count);
 };
 
-// Of all passes of a sample in their order, each round of effects from its "ray dispatch" on. The check of
-// the order is left out, which no one asks for who measures.
+// Adds up the passes of a sample, given in their order; each round of effects starts with its "ray dispatch".
+// The check of the order is not counted, because nobody who measures asks for it.
 HitTimes hitTimesOf(std::span<const PassTime> passes);
 
 }  // namespace glint::bench

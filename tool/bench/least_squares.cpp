@@ -9,13 +9,13 @@ namespace glint::bench {
 
 namespace {
 
-// Normal equations of columns that have unit length, so that a small pivot means that a column is nearly a
-// sum of others, whatever its unit.
+// The normal equations of columns that are scaled to unit length. A small pivot then means that a column is
+// nearly a sum of others, whatever its unit.
 struct Normal {
     std::size_t size = 0;
-    std::vector<double> lengths;   // of the columns; 0: brings nothing
-    std::vector<double> products;  // size * size: of unit columns
-    std::vector<double> right;     // of unit columns with the values
+    std::vector<double> lengths;   // of the columns; 0 if a column has no effect
+    std::vector<double> products;  // size * size, of the unit columns
+    std::vector<double> right;     // products of the unit columns with the values
 };
 
 Normal makeNormal(std::span<const std::vector<double>> rows, std::span<const double> values,
@@ -42,10 +42,11 @@ Normal makeNormal(std::span<const std::vector<double>> rows, std::span<const dou
     return normal;
 }
 
-// Cholesky of the subset's equations; nothing where they have no one solution, or where it has a negative
-// unknown. Unknowns of unit columns, in the order of `subset`.
+// Solves the subset's equations by Cholesky decomposition, for unknowns of unit columns in the order of
+// `subset`. Returns nothing if there is no unique solution, or if an unknown is negative.
 std::optional<std::vector<double>> solveSubset(const Normal& normal, std::span<const std::size_t> subset) {
-    // What is left of a column beside those before it, squared. Below, rounding decides about its unknown.
+    // Bounds the squared length that is left of a column beside those before it. Below this, rounding would
+    // decide about its unknown.
     constexpr double kLeastPivot = 1e-9;
     const std::size_t n = subset.size();
     std::vector<double> lower(n * n);
@@ -92,7 +93,7 @@ std::optional<std::vector<double>> nonNegativeLeastSquares(std::span<const std::
     }
     const Normal normal = makeNormal(rows, values, unknowns);
     std::vector<double> best(unknowns);
-    // Of a solved subset |A x - b|^2 is |b|^2 less the product of its solution with the right side.
+    // For a solved subset, |A x - b|^2 is |b|^2 minus the product of its solution with the right side.
     double most = 0.0;
     for (std::uint32_t mask = 1; mask < std::uint32_t{1} << unknowns; ++mask) {
         std::vector<std::size_t> subset;

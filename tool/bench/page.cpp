@@ -32,8 +32,8 @@ std::string toBase64(const Bytes& bytes) {
     return text;
 }
 
-// JSON for the inside of a <script>: nothing in it can end that element or start a comment in it. In JSON
-// these characters stand in strings only, where they may be escaped.
+// Returns JSON that can stand inside a <script>: nothing in it can end that element or start a comment in it.
+// In JSON these characters occur only in strings, where they may be escaped.
 std::string toScriptData(const Json& json) {
     std::string text;
     for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace)) {

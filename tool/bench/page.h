@@ -1,4 +1,4 @@
-// The page that shows what `glint bench` measured.
+// The page that shows the measurements of `glint bench`.
 #pragma once
 
 #include "base/files.h"
@@ -11,13 +11,13 @@
 namespace glint {
 
 struct PageImage {
-    std::string name;  // as the report refers to it: "images/000.png"
+    std::string name;  // as the report names it: "images/000.png"
     Bytes png;
 };
 
-// One HTML file that needs no other and opens without a network: the report, the images that it refers to,
-// the styles and the scripts are all in it. No text of the report is ever read as markup; bytes of it that
-// are not UTF-8 become U+FFFD. The same input gives the same bytes.
+// Returns one HTML file that needs no other file and no network: it contains the report, the images that it
+// refers to, the styles and the scripts. No text of the report is ever read as markup; bytes that are not
+// UTF-8 become U+FFFD. The same input gives the same bytes.
 std::string makePage(const nlohmann::ordered_json& report, std::span<const PageImage> images);
 
 }  // namespace glint

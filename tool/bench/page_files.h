@@ -1,11 +1,11 @@
-// The sources of the page, which are compiled into the tool: tool/bench/page/.
+// The sources of the page (tool/bench/page/), which are compiled into the tool.
 #pragma once
 
 #include "emit/builtin.h"
 
 namespace glint {
 
-// Sorted by name. Static storage.
+// Returns the files, sorted by name. They have static storage.
 std::span<const BuiltinFile> pageFiles();
 
 }  // namespace glint

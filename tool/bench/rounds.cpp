@@ -5,7 +5,7 @@
 
 namespace glint::bench {
 
-// Fisher and Yates, as std::shuffle differs between libraries.
+// The shuffle of Fisher and Yates, because std::shuffle differs between libraries.
 std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});

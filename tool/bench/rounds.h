@@ -1,4 +1,4 @@
-// How a bench goes through what it compares, round by round.
+// The order in which a bench measures what it compares, round by round.
 #pragma once
 
 #include <chrono>
@@ -8,13 +8,13 @@
 
 namespace glint::bench {
 
-// How long a GPU renders before a round, and before each time that counts: its clocks fall while the host
-// works between rounds, and take a while to come up.
+// How long a GPU renders before a round, and before each time that counts. Its clocks fall while the host
+// works between rounds, and take a while to rise again.
 inline constexpr std::chrono::milliseconds kRoundWarmUp{250};
 inline constexpr std::chrono::milliseconds kWarmUp{10};
 
-// A permutation of [0, count): the order of a round, in which nothing is always measured behind the same
-// other thing. The same for the same state of `random` with every standard library.
+// Returns a permutation of [0, count), the order of a round, so that nothing is always measured after the
+// same other thing. The result depends only on the state of `random`, with every standard library.
 std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random);
 
 }  // namespace glint::bench

@@ -47,14 +47,14 @@ struct Row {
     std::string_view name;
     std::string_view what;
     Stage stage;
-    // Its value in the reference; empty: that of the default, as it is part of what is asked for, or as all
-    // values converge to the same; nothing: it changes time alone.
+    // The value in the reference. It is empty for the default's value, because the user asks for that value
+    // or all values converge to the same picture. It is absent if the setting changes time alone.
     std::optional<std::string_view> exact;
     Values values;
-    Values few;  // with quick
+    Values few;  // the values with `quick`
 };
 
-// Values of `clamp` and `effects` depend on the scene.
+// The values of `clamp` and `effects` depend on the scene.
 constexpr Row kRows[] = {
     {"spp", "samples a pixel", Stage::Render, "", kSamples, kFewSamples},
     {"shadow-spp", "shadow rays a sample to each light that has a size", Stage::Render, "", kShadowSamples,
@@ -91,7 +91,7 @@ bool ordersHits(std::string_view strategy) {
     return strategy == "visibility" || strategy == "sorted-uber";
 }
 
-// Where each effect of the default is left out in turn.
+// Returns the default's effects, and further values that leave out one effect each.
 std::vector<std::string> effectValues(const Facts& facts, const std::string& base) {
     std::vector<std::string> values{base};
     for (const std::string& without : facts.effects) {
@@ -106,7 +106,7 @@ std::vector<std::string> effectValues(const Facts& facts, const std::string& bas
     return values;
 }
 
-// Multiples of white, to three digits.
+// Returns multiples of white, rounded to three digits.
 std::vector<std::string> clampValues(const Facts& facts, bool quick) {
     std::vector<std::string> values{"0"};
     for (const double times : {16.0, 4.0, 1.0}) {
@@ -117,7 +117,8 @@ std::vector<std::string> clampValues(const Facts& facts, bool quick) {
     return values;
 }
 
-// Why a value, or where `value` is empty the whole setting, is not worth trying; empty where it is.
+// Returns why a value is not worth trying, or the whole setting if `value` is empty. Returns an empty text if
+// it is worth trying.
 std::string reasonAgainst(std::string_view name, std::string_view value, const Facts& facts,
                           const Configuration& base) {
     const auto has = [&facts](std::string_view effect) { return facts.effects.contains(effect); };
@@ -176,7 +177,7 @@ std::string reasonAgainst(std::string_view name, std::string_view value, const F
     return "";
 }
 
-// Numbers by size, words as they stand.
+// Inserts `base` if it is missing: a number by its size, a word at the front.
 void insertBase(std::vector<std::string>& values, const std::string& base) {
     if (std::ranges::find(values, base) != values.end()) {
         return;

@@ -8,7 +8,7 @@ namespace glint::bench {
 
 namespace {
 
-// Of sorted values, `share` of the way from the least to the greatest.
+// Returns the sorted value that lies `share` of the way from the least to the greatest.
 double quantile(std::span<const double> sorted, double share) {
     const double at = share * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(at);
@@ -16,10 +16,11 @@ double quantile(std::span<const double> sorted, double share) {
     return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
 }
 
-// How many values to leave out at each end of `count` sorted ones so that the rest still holds the median
-// with kConfidence: the most for which P(Binomial(count, 1/2) < left out + 1) <= (1 - kConfidence) / 2.
+// Returns how many of `count` sorted values to leave out at each end, so that the rest still holds the median
+// with kConfidence. It is the largest number for which P(Binomial(count, 1/2) < left out + 1) <= (1 -
+// kConfidence) / 2.
 std::size_t leftOut(std::size_t count) {
-    double term = std::pow(0.5, static_cast<double>(count));  // of Binomial = 0
+    double term = std::pow(0.5, static_cast<double>(count));  // probability that Binomial is 0
     double below = term;
     std::size_t left = 0;
     while (below <= 0.5 * (1.0 - kConfidence)) {
@@ -30,8 +31,9 @@ std::size_t leftOut(std::size_t count) {
     return left == 0 ? 0 : left - 1;
 }
 
-// The quantile 1 - (1 - kConfidence) / 2 of Student's t: the expansion by powers of 1 / degrees of
-// Abramowitz and Stegun 26.7.5, within 1 % from three degrees on; below that its exact values.
+// Returns the quantile 1 - (1 - kConfidence) / 2 of Student's t. From three degrees on it uses the expansion
+// by powers of 1 / degrees of Abramowitz and Stegun 26.7.5, which is accurate to 1 %; below that it has the
+// exact values.
 double studentQuantile(std::size_t degrees) {
     constexpr double kOneDegree = 12.706205;
     constexpr double kTwoDegrees = 4.302653;

@@ -16,10 +16,10 @@ namespace glint::bench {
 
 namespace {
 
-// A point with what the model needs of it.
+// A point, with the values that the model needs.
 struct Sample {
     std::string name;
-    std::string group;  // of the points that differ in their rays alone
+    std::string group;  // the same for points that differ in their rays alone
     TermValues terms{};
     std::map<std::string, double, std::less<>> ms;  // by strategy
 };
@@ -30,15 +30,15 @@ std::string nameOf(const CalibrationPoint& point) {
 }
 
 bool isShare(double value) {
-    return value >= 0.0 && value <= 1.0;  // no number is neither
+    return value >= 0.0 && value <= 1.0;  // a value that is not a number fails both tests
 }
 
-// What keeps a point from being used; empty if nothing does.
+// Returns why a point can't be used, or an empty text if it can.
 std::string whyUnusable(const CalibrationPoint& point) {
     if (!std::isfinite(point.rays) || point.rays <= 0.0) {
         return "has no rays";
     }
-    // Draws can be less alike than random ones are on average.
+    // Measured hits can be less alike than random ones are on average.
     if (!isShare(point.hitShare) || !(std::abs(point.coherentShare) <= 1.0)) {
         return "has a share that is not from 0 to 1";
     }
@@ -80,7 +80,7 @@ std::vector<Sample> samplesOf(std::span<const CalibrationPoint> points, double s
 
 using Samples = std::vector<const Sample*>;
 
-// Terms that the strategy has.
+// Returns the terms that the strategy has.
 std::vector<CostTermInfo> termsOf(std::string_view strategy) {
     std::vector<CostTermInfo> terms;
     std::ranges::copy_if(costTerms(), std::back_inserter(terms),
@@ -88,8 +88,8 @@ std::vector<CostTermInfo> termsOf(std::string_view strategy) {
     return terms;
 }
 
-// A row is divided by what was measured, so that the error of a quick point counts as much as that of a slow
-// one.
+// Each row is divided by the measured time, so that the error of a quick point counts as much as that of a
+// slow one.
 std::optional<StrategyCosts> fitOne(std::string_view strategy, const Samples& samples) {
     const std::vector<CostTermInfo> terms = termsOf(strategy);
     std::vector<std::vector<double>> rows;
@@ -129,7 +129,8 @@ double estimateOf(const Sample& sample, const StrategyCosts& costs) {
     return ms;
 }
 
-// Estimates of every point by strategy, of constants that do not know its group if there are others.
+// Estimates of every point, by strategy. The constants are fitted without the point's group, if there are
+// other groups.
 using Estimates = std::map<const Sample*, std::map<std::string, double, std::less<>>>;
 
 Estimates estimateHeldOut(const std::vector<Sample>& samples, bool& held) {
@@ -190,7 +191,7 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
         if (own == estimates.end() || own->second.size() < 2) {
             continue;
         }
-        // In the order in which a choice takes the first of equals.
+        // The loop follows the order in which a choice takes the first of equals.
         std::string_view taken;
         std::string_view fastest;
         for (const std::string_view strategy : kStrategyNames) {
@@ -226,7 +227,7 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
 }  // namespace
 
 Round roundOf(const CalibrationPoint& point) {
-    // Hits of one case are alike, wherever rays go.
+    // If there is one case, all hits are alike, wherever rays go.
     Round round{point.rays,
                 point.hitShare,
                 std::max(0.0, point.coherentShare),

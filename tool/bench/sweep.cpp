@@ -20,7 +20,7 @@ struct Pair {
 };
 
 constexpr Pair kPairs[] = {
-    // Noise and bias trade places: what is saved by the second buys samples.
+    // These trade noise against bias: the second setting saves time that buys samples.
     {"spp", "max-roughness", true},
     {"spp", "hit-lobes", false},
     {"spp", "texture-lod", false},
@@ -29,7 +29,7 @@ constexpr Pair kPairs[] = {
     {"spp", "mirror-roughness", false},
     {"spp", "shadow-spp", true},
     {"spp", "skip-below", false},
-    // How many shaders there are decides what each strategy costs.
+    // The number of shaders decides what each strategy costs.
     {"strategy", "merge", true},
     {"strategy", "hit-lobes", false},
     {"strategy", "binning", false},
@@ -37,7 +37,7 @@ constexpr Pair kPairs[] = {
     {"strategy", "position-fetch", true},
     {"strategy", "shadows", false},
     {"strategy", "batch-effects", false},
-    // Both leave out rays.
+    // Both settings leave out rays.
     {"max-roughness", "skip-below", false},
     {"max-roughness", "ssr", false},
 };
@@ -47,11 +47,12 @@ const Setting* find(std::span<const Setting> settings, std::string_view name) {
     return found == settings.end() ? nullptr : &*found;
 }
 
-// A pair of every value is too many where both have several: of samples the neighbours of the default.
+// Every pair of values is too many if both settings have several, so of samples only the neighbours of the
+// default are taken.
 std::vector<std::string> pairValues(const Setting& setting, bool quick) {
     std::vector<std::string> values;
     if (quick && setting.name == "merge") {
-        return {"all"};  // the one that is farthest from the others
+        return {"all"};  // the value that differs most from the others
     }
     const auto own = std::ranges::find(setting.values, setting.base);
     const auto at = std::distance(setting.values.begin(), own);
@@ -64,11 +65,11 @@ std::vector<std::string> pairValues(const Setting& setting, bool quick) {
     return values;
 }
 
-// What a value does by itself, against the default.
+// The effect of one value alone, compared with the default.
 struct Step {
     std::string value;
-    double ratio = 1.0;       // of time
-    double difference = 0.0;  // of error
+    double ratio = 1.0;       // ratio of the times
+    double difference = 0.0;  // difference of the errors
 };
 
 using Steps = std::map<std::string, std::vector<Step>, std::less<>>;  // by setting
@@ -88,7 +89,7 @@ Steps stepsOf(std::span<const Setting> settings, std::span<const Rated> measured
     return steps;
 }
 
-// The best of the configurations that change nothing but time.
+// Returns the best of the configurations that change only time.
 std::vector<Rated> fastestWays(std::span<const Setting> settings, std::span<const Rated> measured) {
     constexpr std::size_t kWays = 3;
     std::vector<Rated> ways;
@@ -114,7 +115,8 @@ std::vector<Rated> frontOf(std::vector<Rated> points) {
     return front;
 }
 
-// The separable model's front over all combinations of what approximates, from one way of running them.
+// Returns the front that the separable model predicts over all combinations of approximations, for one way of
+// running them.
 std::vector<Rated> predictedFront(std::span<const Setting> settings, const Steps& steps, const Rated& way) {
     std::vector<Rated> front{way};
     for (const Setting& setting : settings) {
@@ -140,7 +142,7 @@ std::vector<Rated> predictedFront(std::span<const Setting> settings, const Steps
     return front;
 }
 
-// Points of the measured front with one setting moved to the value before or after.
+// Returns points of the measured front with one setting moved to the previous or next value.
 std::vector<Rated> neighbours(std::span<const Setting> settings, const Configuration& base,
                               const Steps& steps, std::span<const Rated> measured) {
     std::vector<Rated> found;
@@ -173,7 +175,7 @@ std::vector<Rated> neighbours(std::span<const Setting> settings, const Configura
     return found;
 }
 
-// `count` of the sorted candidates, evenly spread, the ends among them.
+// Returns `count` of the sorted candidates, evenly spread, including both ends.
 std::vector<Configuration> spread(const std::vector<Rated>& candidates, std::size_t count) {
     std::vector<Configuration> chosen;
     const std::size_t taken = std::min(count, candidates.size());
@@ -221,7 +223,7 @@ std::vector<Configuration> pairs(std::span<const Setting> settings, const Config
 }
 
 std::vector<Rated> withTiesSettled(std::span<const Rated> points) {
-    // What is certain may still be nothing that anybody would choose by.
+    // A difference can be certain and still too small for anybody to care.
     constexpr double kNegligible = 0.01;
     const Rated& base = points.front();
     const auto isSame = [](double a, double b) { return std::abs(a - b) <= kNegligible * std::abs(b); };

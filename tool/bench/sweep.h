@@ -1,5 +1,5 @@
-// Which configurations a bench measures: each setting alone, the pairs that matter, and then those that may
-// be better than all before.
+// Decides which configurations a bench measures: each setting alone, then the pairs that matter, and then
+// those that may be better than all before.
 #pragma once
 
 #include "bench/settings.h"
@@ -11,36 +11,38 @@
 
 namespace glint::bench {
 
-// Each value of each setting that is not that of the default, alone.
+// Returns one configuration for each value of each setting that differs from the default.
 std::vector<Configuration> singles(std::span<const Setting> settings, const Configuration& base);
 
-// Of two settings whose effects are no sum: what saves time beside fewer or more samples, what shares
-// shaders beside how they are run, and so on. With `quick` fewer.
+// Returns configurations that change two settings whose effects do not simply add up: for instance one that
+// saves time beside the number of samples, or one that shares shaders beside how they are run. With `quick`
+// there are fewer.
 std::vector<Configuration> pairs(std::span<const Setting> settings, const Configuration& base, bool quick);
 
-// A configuration with what it takes and how far off it is.
+// A configuration with its time and its error.
 struct Rated {
     Configuration configuration;
     double time = 0.0;   // any unit
-    double error = 0.0;  // of a kind that adds up: relMSE, squared RMSE
-    // Whether it can't be told from the default's.
+    double error = 0.0;  // of a kind that adds up: relMSE, or squared RMSE
+    // Set if the value can't be told from that of the default.
     bool timeTie = false;
     bool errorTie = false;
 };
 
-// With the time and the error of the first, the default, where a point is tied with it or within 1 %: else
-// noise would decide which of the same things is better.
+// Returns the points with ties settled: a point that is tied with the first one, the default, or within 1 %
+// of it, gets its time or error. Otherwise noise would decide which of two equal things is better.
 std::vector<Rated> withTiesSettled(std::span<const Rated> points);
 
-// The Pareto front: indices of those to which no other is as good or better in both and better in one, from
-// the fastest; of equal ones the first.
+// Returns the Pareto front: the indices of points to which no other point is at least as good in both
+// respects and better in one. They are sorted by time, the fastest first; of equal points the first is taken.
 std::vector<std::size_t> paretoFront(std::span<const Rated> points);
 
-// At most `count` configurations that were not measured yet and may reach beyond the front of `measured`,
-// whose first is the default and which has every single. Two models say where to look. From the default,
-// times multiply and errors add over settings: the front of all combinations under that model, which a sweep
-// over settings finds exactly, as both are separable. From each point of the measured front, one setting is
-// changed to a neighbouring value, with the ratio and the difference that it had alone.
+// Returns at most `count` configurations that were not measured yet and may lie beyond the front of
+// `measured`. The first of `measured` is the default, and all singles are among them. Two models predict
+// where to look. In the first, times multiply and errors add over settings, starting from the default; as
+// both are separable, a sweep over settings finds the front of all combinations exactly. In the second, one
+// setting of each point of the measured front is changed to a neighbouring value, with the ratio and the
+// difference that this value had alone.
 std::vector<Configuration> proposals(std::span<const Setting> settings, const Configuration& base,
                                      std::span<const Rated> measured, std::size_t count);
 

@@ -1,4 +1,4 @@
-// What a run read, said and wrote, so that the next one can tell that it would do the same.
+// A record of what a run read, printed and wrote, so that the next run can tell that it would do the same.
 #pragma once
 
 #include <glint/result.h>
@@ -12,31 +12,31 @@
 
 namespace glint {
 
-// A file as it was.
+// The state of a file at the time of the run.
 struct FileState {
     std::string path;
     std::uint64_t bytes = 0;
-    std::uint64_t hash = 0;  // XXH3, 64 bits
-    std::string real;        // with links followed; empty: does not matter
+    std::uint64_t hash = 0;  // 64-bit XXH3
+    std::string real;        // path with links followed; empty if it does not matter
 };
 
 struct ActionRecord {
     std::vector<FileState> inputs;
     std::vector<FileState> outputs;
     std::vector<Diagnostic> diagnostics;
-    std::string summary;  // the caller's
+    std::string summary;  // the caller's own text
 };
 
-// Reads the file. Nothing where that fails.
+// Reads the file. Returns nothing if that fails.
 std::optional<FileState> stateOf(const std::filesystem::path& path);
-// `path` with links followed; empty where there is no such file.
+// Returns `path` with links followed, or an empty text if there is no such file.
 std::string realPath(const std::filesystem::path& path);
 
-// Whether every input and output is as it was.
+// Returns whether every input and output still has its recorded state.
 bool isCurrent(const ActionRecord& record);
 
 std::string pack(const ActionRecord& record);
-// Nothing where `bytes` is no record.
+// Returns nothing if `bytes` is not a record.
 std::optional<ActionRecord> unpackAction(std::string_view bytes);
 
 }  // namespace glint

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kKind = "module";
 
-// Whoever adds a count packs it, too.
+// This fails if a count is added to the statistics, because it must then be packed here too.
 static_assert(sizeof(SpirvStatistics) == sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t));
 
 }  // namespace

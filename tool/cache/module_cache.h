@@ -1,4 +1,4 @@
-// Compiled modules by everything that decides about their words.
+// Stores compiled modules by everything that decides about their words.
 #pragma once
 
 #include "cache/store.h"
@@ -18,17 +18,17 @@ struct CachedModule {
 };
 
 std::string packModule(const CachedModule& module);
-// Nothing where `bytes` is no module.
+// Returns nothing if `bytes` is not a module.
 std::optional<CachedModule> unpackModule(std::string_view bytes);
 
-// Thread-safe, as the store is.
+// Thread-safe, because the store is.
 class ModuleCache {
 public:
-    // `compiler`: a text that is another for every compiler that may give other words. The store must outlive
-    // the cache.
+    // `compiler` must differ between compilers that may give different words for the same source. The store
+    // must outlive the cache.
     ModuleCache(CacheStore& store, std::string compiler);
 
-    // `source`: all of what is compiled, options included.
+    // `source` must hold everything that is compiled, including the options.
     std::optional<CachedModule> find(std::string_view source) const;
     void put(std::string_view source, const CachedModule& module) const;
 

@@ -1,4 +1,4 @@
-// Numbers and texts in one string of bytes, and back with every length checked.
+// Packs numbers and texts into one string of bytes, and unpacks them with every length checked.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,16 @@ private:
     std::string bytes_;
 };
 
-// Takes apart what a Packer made, in the same order. Nothing from the first mismatch on.
+// Unpacks what a Packer packed, in the same order. From the first mismatch on it returns nothing.
 class Unpacker {
 public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     std::optional<std::uint64_t> number();
-    // A number that does not exceed what is left of the bytes, as a count of things that take at least one
-    // each.
+    // Reads a count of things that take at least one byte each, so it can't exceed the number of remaining
+    // bytes.
     std::optional<std::uint64_t> count();
-    // Valid as long as the bytes.
+    // The view is valid as long as the bytes are.
     std::optional<std::string_view> text();
     bool atEnd() const {
         return !failed_ && rest_.empty();

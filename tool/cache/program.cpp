@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The build ID among the notes of a segment; empty if there is none. Layout: elf(5), "Notes (Nhdr)".
+// Returns the build ID among the notes of a segment, or an empty text. Layout: elf(5), "Notes (Nhdr)".
 std::string_view findBuildId(std::string_view notes, std::size_t alignment) {
     const auto aligned = [&](std::size_t size) { return (size + alignment - 1) / alignment * alignment; };
     while (notes.size() >= sizeof(ElfW(Nhdr))) {

@@ -1,12 +1,12 @@
-// Which program this is, to the byte.
+// Identifies this program exactly.
 #pragma once
 
 #include <string>
 
 namespace glint {
 
-// Another text for every build of the program, and of the shared libraries that it runs with: their build
-// IDs, or where one has none the path, size and time stamp of its file.
+// Returns a text that differs between builds of the program and of the shared libraries that it runs with. It
+// consists of their build IDs; for a file without one, of its path, size and time stamp.
 std::string programIdentity();
 
 }  // namespace glint

@@ -22,14 +22,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Grows with the layout of entries, so that versions of glint share a folder without reading each other's.
+// This number grows when the layout of entries changes, so that versions of glint can share a folder without
+// reading each other's entries.
 constexpr std::string_view kLayout = "v1";
 constexpr std::string_view kMagic = "glint cache entry 1\n";
 constexpr std::uint64_t kMaxEntryBytes = 1ULL << 30;
 constexpr std::string_view kTemporary = ".tmp";
-// A writer that has taken longer is dead.
+// A writer that has taken longer than this is assumed dead.
 constexpr auto kAbandoned = std::chrono::hours(1);
-// Backup tools and `du` know the folder by this file: https://bford.info/cachedir/
+// Backup tools and `du` recognise the folder as a cache by this file: https://bford.info/cachedir/
 constexpr const char* kTagFile = "CACHEDIR.TAG";
 constexpr std::string_view kTag =
     "Signature: 8a477f597d28d172789f06886806bc55\n"
@@ -43,9 +44,9 @@ std::uint64_t checksum(std::string_view key, std::string_view value) {
     return hashBytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()}, hashBytes(key));
 }
 
-// Writes all of `bytes` to a file that must not be there. 0, or errno.
+// Writes all of `bytes` to a file that must not exist yet. Returns 0, or errno.
 int writeNew(const fs::path& path, std::string_view bytes) {
-    constexpr int kMode = 0666;  // less what the user's mask takes away
+    constexpr int kMode = 0666;  // the user's mask removes some of these bits
     const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     if (file < 0) {
         return errno;
@@ -71,7 +72,7 @@ struct Entry {
     fs::file_time_type used;
 };
 
-// Whatever other processes remove meanwhile is left out.
+// Entries that other processes remove meanwhile are left out.
 std::vector<Entry> listEntries(const fs::path& folder) {
     std::vector<Entry> entries;
     const auto now = fs::file_time_type::clock::now();
@@ -123,7 +124,7 @@ std::optional<std::string> CacheStore::find(std::string_view kind, std::string_v
     if (!sum || !held || !value || !entry.atEnd() || *held != key || *sum != checksum(*held, *value)) {
         return std::nullopt;
     }
-    // A time stamp that can't be set only makes the entry go sooner.
+    // If the time stamp can't be set, the entry is only removed sooner.
     std::error_code ignored;
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
     return std::string(*value);
@@ -160,7 +161,7 @@ void CacheStore::trim() {
     }
     std::error_code error;
     if (!fs::exists(options_.folder / kTagFile, error)) {
-        // Only a courtesy to others.
+        // An error is ignored, because nothing depends on this file.
         (void)writeFile(options_.folder / kTagFile, kTag);
     }
     std::vector<Entry> entries = listEntries(options_.folder / kLayout);

@@ -1,4 +1,5 @@
-// A folder of results by key: bounded, shared by processes, and never trusted more than its checks allow.
+// A folder of results by key. Its size is bounded, processes share it, and its contents are checked before
+// use.
 #pragma once
 
 #include <glint/result.h>
@@ -17,25 +18,26 @@ namespace glint {
 struct StoreOptions {
     std::filesystem::path folder;
     std::uint64_t maxBytes = 512ULL << 20;
-    // Names the file of a key; tests put in one that collides.
+    // Names the file of a key. Tests replace it by a function with collisions.
     std::function<std::uint64_t(std::string_view key)> hash;
 };
 
-// One file an entry, which holds the whole key: an entry counts only if its key has the same bytes and its
-// checksum is right. Files appear by a rename, so that readers and writers of other processes need no lock;
-// what vanishes or is torn is no entry. Thread-safe. Nothing here fails the caller: see trouble().
+// Each entry is one file, which holds the whole key. An entry is valid only if its key has the same bytes and
+// its checksum is right. Files appear by a rename, so readers and writers of other processes need no lock;
+// files that vanish or are torn count as no entry. Thread-safe. No failure reaches the caller: see trouble().
 class CacheStore {
 public:
     explicit CacheStore(StoreOptions options);
 
-    // The value of `key` among the entries of `kind`, which is part of the file's name. Marks it as used.
+    // Returns the value of `key` among the entries of `kind`, which is part of the file's name, and marks it
+    // as used.
     std::optional<std::string> find(std::string_view kind, std::string_view key);
-    // Replaces what is there. The value can be lost at any time.
+    // Replaces an existing value. The value can be lost at any time.
     void put(std::string_view kind, std::string_view key, std::string_view value);
-    // If anything was put: removes the entries that were not used for longest, until at most maxBytes are
-    // left, and what writers that were killed left behind.
+    // If anything was put, removes the entries that were unused for longest until at most maxBytes are left.
+    // It also removes what killed writers left behind.
     void trim();
-    // The first reason why something could not be stored.
+    // Returns the first reason why something could not be stored.
     std::optional<Diagnostic> trouble() const;
     const std::filesystem::path& folder() const {
         return options_.folder;

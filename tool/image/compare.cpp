@@ -28,7 +28,8 @@ void raise(LargestError& largest, double error, std::size_t pixel, std::uint32_t
     }
 }
 
-// Sums over the compared pixels, in the image's order, so that results do not depend on the machine.
+// Sums over the compared pixels. They are added in the image's order, so that results do not depend on the
+// machine.
 struct Sums {
     double absolute = 0.0;
     double squared = 0.0;
@@ -56,7 +57,7 @@ void addPixel(const Pixel& pixel, const Pixel& reference, std::size_t index, std
     difference.differing += differs ? 1 : 0;
 }
 
-// Stops of the map, equally spaced over the scale.
+// The colours of the map, equally spaced over the scale.
 constexpr std::array<std::array<float, 3>, 5> kHeat{
     {{0, 0, 4}, {87, 16, 110}, {188, 55, 84}, {249, 142, 9}, {252, 255, 164}}};
 constexpr std::array<std::uint8_t, 3> kNonFiniteColor{0, 255, 0};

@@ -14,14 +14,14 @@ namespace glint {
 
 namespace {
 
-// Bounds the weight of dark pixels: that of compareImages().
+// Bounds the weight of dark pixels, as in compareImages().
 constexpr double kEpsilon = 0.01;
 
-// Pixels above this share count as outliers.
+// The share of pixels that are inliers; the pixels with larger errors are outliers.
 constexpr double kInliers = 0.999;
 
 struct Tail {
-    double percentile = 0.0;  // the greatest inlier
+    double percentile = 0.0;  // the largest error of the inliers
     double mean = 0.0;        // of the inliers
 };
 
@@ -36,7 +36,7 @@ Tail tailOf(std::vector<double> values) {
     return {values[static_cast<std::size_t>(inliers) - 1], sum / static_cast<double>(inliers)};
 }
 
-// Of the errors that `difference` gives for a pixel and channel.
+// Summarises the errors that `difference` returns for a pixel and channel.
 template <typename Difference>
 ImageErrors summarize(const LinearImage& reference, double scale, const Difference& difference) {
     double relative = 0.0;

@@ -23,11 +23,11 @@ namespace {
 
 constexpr std::array<const char*, 4> kChannelNames{"R", "G", "B", "A"};
 constexpr std::size_t kPixelBytes = sizeof(std::array<float, 4>);
-// As in checkImageSize(): while it reads the header, OpenEXR allocates for all lines, and for a block of
+// As in checkImageSize(). While OpenEXR reads the header, it allocates for all lines, and for a block of
 // them.
 constexpr int kMaxHeaderSize = 16384;
-// Deflate at its best makes 516 pixels of 2 bytes out of one; compression with losses more of a single
-// colour, but nothing sensible comes near this.
+// At its best, Deflate makes 516 pixels of 2 bytes out of one byte. Lossy compression makes more of a single
+// colour, but no sensible file comes near this limit.
 constexpr std::int64_t kMaxPixelsPerByte = 1LL << 14;
 
 class MemoryOutput : public Imf::OStream {
@@ -60,7 +60,7 @@ public:
     MemoryInput(std::span<const std::uint8_t> bytes, const std::string& name)
         : IStream(name.c_str()), bytes_(bytes) {}
 
-    // Throws past the end, as OpenEXR's contract for streams demands; decodeExr() catches it.
+    // Throws beyond the end, as OpenEXR's contract for streams demands. decodeExr() catches it.
     bool read(char c[], int n) override {
         const auto count = static_cast<std::size_t>(std::max(n, 0));
         if (position_ > bytes_.size() || count > bytes_.size() - position_) {
@@ -86,7 +86,7 @@ private:
     std::size_t position_ = 0;
 };
 
-// The four channels of `pixels`, whose first pixel is at (left, top).
+// Returns the four channels of `pixels`, whose first pixel is at (left, top).
 Imf::FrameBuffer frameBuffer(std::array<float, 4>* pixels, std::size_t width, int left, int top) {
     Imf::FrameBuffer buffer;
     const std::int64_t toOrigin = (left + static_cast<std::int64_t>(top) * static_cast<std::int64_t>(width)) *
@@ -144,7 +144,7 @@ Result<Bytes> encodeExr(const LinearImage& image, const std::string& where) {
         }
         MemoryOutput stream(where);
         {
-            // OpenEXR's frame buffer is not const for files that are written, but only read from.
+            // OpenEXR's frame buffer is not const even for writing, although it is then only read.
             std::vector<std::array<float, 4>> pixels = image.pixels;
             Imf::OutputFile file(stream, header, 0);
             file.setFrameBuffer(frameBuffer(pixels.data(), image.width, 0, 0));
@@ -162,7 +162,7 @@ Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::st
         return formatError(where, "is no OpenEXR file that can be read: " + excess);
     }
     try {
-        // Holds for the whole process; always the same.
+        // This limit applies to the whole process; it is always set to the same value.
         Imf::Header::setMaxImageSize(kMaxHeaderSize, kMaxHeaderSize);
         MemoryInput stream(bytes, where);
         return decode(stream, where);

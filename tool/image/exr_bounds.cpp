@@ -10,7 +10,7 @@ namespace glint {
 
 namespace {
 
-// Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
+// The layout is described in "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
 constexpr std::size_t kHeaderStart = 8;
 constexpr std::uint32_t kMultipart = 0x1000;
 
@@ -18,7 +18,7 @@ class Reader {
 public:
     Reader(std::string_view bytes, std::size_t start) : rest_(bytes.substr(std::min(start, bytes.size()))) {}
 
-    // A text that ends in zero; nothing at the end of the file.
+    // Reads a zero-terminated text. Returns nothing if the file ends first.
     std::optional<std::string_view> text() {
         const std::size_t end = rest_.find('\0');
         if (end == std::string_view::npos) {
@@ -56,8 +56,8 @@ private:
     std::string_view rest_;
 };
 
-// Types of attributes that the library reads by what they are, whatever size the file gives them: another one
-// would let all that follows be taken for something else.
+// For these attribute types the library ignores the size that the file gives. A wrong size would make it read
+// everything that follows as something else.
 struct FixedType {
     std::string_view name;
     std::size_t size;
@@ -101,13 +101,13 @@ bool isPreview(std::string_view value) {
     return value.size() >= kSizeBytes && width * height == (value.size() - kSizeBytes) / 4;
 }
 
-// Whether the library reads all of the value, and no more.
+// Returns whether the library reads the whole value and nothing beyond it.
 bool fits(std::string_view type, std::string_view value) {
     const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
     if (fixed != kFixedTypes.end()) {
         return value.size() == fixed->size;
     }
-    // An ID manifest is compressed; only deep pictures have one.
+    // An ID manifest is compressed, and only deep pictures have one.
     return type == "chlist"         ? isChannelList(value)
            : type == "stringvector" ? isStringVector(value)
            : type == "preview"      ? isPreview(value)
@@ -127,7 +127,7 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
             return "its header ends early";
         }
         if (name->empty()) {
-            // The end of a header; of several, an empty one is the last.
+            // This is the end of a header. If there are several headers, an empty one is the last.
             if ((*version & kMultipart) == 0 || isEmpty) {
                 break;
             }

@@ -1,4 +1,5 @@
-// Whether what the headers of an OpenEXR file say lies in it: the library allocates by them before it reads.
+// Checks that everything the headers of an OpenEXR file announce lies in the file, because the library
+// allocates by the headers before it reads.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,8 @@
 
 namespace glint {
 
-// Why not; empty where all is well, or where the file is none that the library would read further.
+// Returns what does not fit. Returns an empty text if everything fits, or if the library would not read the
+// file any further.
 std::string findExrExcess(std::span<const std::uint8_t> bytes);
 
 }  // namespace glint

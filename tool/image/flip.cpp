@@ -19,7 +19,7 @@ using Row = std::vector<double>;
 struct Filters {
     flip::SensitivityFilters sensitivity;
     flip::FeatureFilters feature;
-    std::size_t radius;  // of the widest
+    std::size_t radius;  // the largest radius of the filters
 };
 
 Filters makeFilters(double pixelsPerDegree) {
@@ -29,7 +29,8 @@ Filters makeFilters(double pixelsPerDegree) {
     return filters;
 }
 
-// out[x] = sum of kernel weights times the values around x; `padded` starts `margin` values left of the row.
+// Computes out[x] = sum of kernel weights times the values around x. `padded` starts `margin` values left of
+// the row.
 void filterAlong(const Row& padded, std::size_t margin, const Kernel& kernel, Row& out) {
     std::fill(out.begin(), out.end(), 0.0);
     const std::size_t first = margin - flip::radiusOf(kernel);
@@ -42,20 +43,20 @@ void filterAlong(const Row& padded, std::size_t margin, const Kernel& kernel, Ro
     }
 }
 
-// What one row gives before it is filtered down the columns: the planes of a row filtered along it.
+// A row after filtering along it, before it is filtered down the columns.
 struct FilteredRow {
-    Row achromatic, redGreen, wide, narrow;  // YCxCz by contrast sensitivity
-    Row smooth, edge, point;                 // Y in [0, 1] by the filters of features
+    Row achromatic, redGreen, wide, narrow;  // YCxCz after the filters of contrast sensitivity
+    Row smooth, edge, point;                 // Y in [0, 1] after the filters of features
 };
 
-// One picture, read row by row from the top: keeps the filtered rows that the filters of one row of the map
-// need.
+// Reads one picture row by row from the top. It keeps the filtered rows that the filters need for one row of
+// the map.
 class FilteredPicture {
 public:
     FilteredPicture(const LinearImage& image, const Filters& filters);
 
-    // The colours of row y after contrast sensitivity, as toHuntLab(), and how strong edges and points are.
-    // y must not go back.
+    // Returns the colours of row y after contrast sensitivity, as from toHuntLab(), and the strength of edges
+    // and points. y must not decrease.
     void readRow(std::uint32_t y, std::vector<Color>& colors, Row& edges, Row& points);
 
 private:
@@ -66,8 +67,8 @@ private:
 
     const LinearImage& image_;
     const Filters& filters_;
-    std::vector<FilteredRow> ring_;  // row y is at y modulo its size
-    std::uint32_t filtered_ = 0;     // rows so far
+    std::vector<FilteredRow> ring_;  // row y is at index y modulo the ring's size
+    std::uint32_t filtered_ = 0;     // number of rows filtered so far
     std::array<Row, 4> padded_;      // Y, Cx, Cz, and Y in [0, 1]
     std::array<Row, 4> down_;
 };
@@ -89,7 +90,7 @@ FilteredPicture::FilteredPicture(const LinearImage& image, const Filters& filter
     }
 }
 
-// NaN has no order, so that it needs a place of its own.
+// NaN has no order, so it is handled separately.
 double clampToDisplay(float value) {
     return std::isnan(value) ? 0.0 : std::clamp(static_cast<double>(value), 0.0, 1.0);
 }
@@ -164,7 +165,7 @@ void FilteredPicture::readRow(std::uint32_t y, std::vector<Color>& colors, Row& 
     strength(&FilteredRow::point, filters_.feature.point, points);
 }
 
-// What a picture shows in one row.
+// The colours and features of one row of a picture.
 struct Seen {
     explicit Seen(std::size_t width) : colors(width), edges(width), points(width) {}
     std::vector<Color> colors;
@@ -172,8 +173,8 @@ struct Seen {
     Row points;
 };
 
-// The paper's final difference: features that one picture has and the other lacks make a difference of
-// colours larger. The exponent of features is 1/2.
+// The paper's final difference: a difference of features makes a difference of colours larger. The exponent
+// of features is 1/2.
 double pixelDifference(const Seen& a, const Seen& b, std::size_t x) {
     const double feature = std::max(std::abs(a.edges[x] - b.edges[x]), std::abs(a.points[x] - b.points[x]));
     const double featureDifference = std::min(1.0, std::sqrt(feature / std::numbers::sqrt2));

@@ -9,8 +9,8 @@ namespace {
 
 using Matrix = std::array<Color, 3>;
 
-// From linear RGB to CIE XYZ and back, derived from the chromaticities of ITU-R BT.709's primaries and of D65
-// (0.3127, 0.3290).
+// Matrices from linear RGB to CIE XYZ and back, derived from the chromaticities of ITU-R BT.709's primaries
+// and of D65 (0.3127, 0.3290).
 constexpr Matrix kToXyz{{{506752.0 / 1228815.0, 87881.0 / 245763.0, 12673.0 / 70218.0},
                          {87098.0 / 409605.0, 175762.0 / 245763.0, 12673.0 / 175545.0},
                          {7918.0 / 409605.0, 87881.0 / 737289.0, 1001167.0 / 1053270.0}}};
@@ -18,12 +18,12 @@ constexpr Matrix kFromXyz{{{12831.0 / 3959.0, -329.0 / 214.0, -1974.0 / 3959.0},
                            {-851781.0 / 878810.0, 1648619.0 / 878810.0, 36519.0 / 878810.0},
                            {705.0 / 12673.0, -2585.0 / 12673.0, 705.0 / 667.0}}};
 
-// What white maps to: the reference illuminant.
+// White in XYZ, which is the reference illuminant.
 constexpr Color kWhite{kToXyz[0][0] + kToXyz[0][1] + kToXyz[0][2], kToXyz[1][0] + kToXyz[1][1] + kToXyz[1][2],
                        kToXyz[2][0] + kToXyz[2][1] + kToXyz[2][2]};
 
-// q_c, p_c and p_t of the paper: exponent of the difference, and where its range is bent: differences up to
-// kBend of the largest take kBendTo of the output.
+// q_c, p_c and p_t of the paper: the exponent of the difference, and the bend of its range. Differences up to
+// kBend of the largest one take kBendTo of the output.
 constexpr double kExponent = 0.7;
 constexpr double kBend = 0.4;
 constexpr double kBendTo = 0.95;
@@ -40,14 +40,15 @@ double labCurve(double t) {
     return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
 }
 
-// HyAB: Abasi, Amani Tehran and Fairchild 2019, "Distance metrics for very large color differences".
+// The HyAB distance: Abasi, Amani Tehran and Fairchild 2019, "Distance metrics for very large color
+// differences".
 double hyab(const Color& a, const Color& b) {
     return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
 }  // namespace
 
-// Flohr, Kolpatzik, Balasubramanian, Carrara, Bouman and Allebach 1993, "Model-based color image
+// Source: Flohr, Kolpatzik, Balasubramanian, Carrara, Bouman and Allebach 1993, "Model-based color image
 // quantization".
 Color toOpponent(const Color& rgb) {
     const Color xyz = multiply(kToXyz, rgb);
@@ -64,8 +65,8 @@ Color fromOpponent(const Color& opponent) {
     return multiply(kFromXyz, {x * kWhite[0], y * kWhite[1], z * kWhite[2]});
 }
 
-// CIE 1976 L*a*b* (CIE 15:2004); Hunt 1952, "Light and Dark Adaptation and the Perception of Color", as the
-// paper has it.
+// Sources: CIE 1976 L*a*b* (CIE 15:2004), and Hunt 1952, "Light and Dark Adaptation and the Perception of
+// Color", in the form of the paper.
 Color toHuntLab(const Color& rgb) {
     const Color xyz = multiply(kToXyz, rgb);
     const double x = labCurve(xyz[0] / kWhite[0]);
@@ -76,7 +77,7 @@ Color toHuntLab(const Color& rgb) {
 }
 
 double colorDifference(const Color& a, const Color& b) {
-    // The largest difference within Rec. 709 is that of green and blue.
+    // The largest difference within Rec. 709 is that between green and blue.
     static const double kLargest =
         std::pow(hyab(toHuntLab({0.0, 1.0, 0.0}), toHuntLab({0.0, 0.0, 1.0})), kExponent);
     const double difference = std::pow(hyab(a, b), kExponent);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// A term a sqrt(π / b) exp(-π² d² / b) over the distance d in degrees: the paper's spatial filters, with
-// the parameters of its table 1.
+// A term a sqrt(π / b) exp(-π² d² / b) over the distance d in degrees. These are the paper's spatial filters,
+// with the parameters of its table 1.
 struct Term {
     double a;
     double b;
@@ -21,10 +21,10 @@ constexpr Term kRedGreen{1.0, 0.0053};
 constexpr Term kBlueYellowWide{34.1, 0.04};
 constexpr Term kBlueYellowNarrow{13.5, 0.025};
 
-// Standard deviations that a filter reaches from its middle, as in the paper.
+// The number of standard deviations that a filter reaches from its middle, as in the paper.
 constexpr double kReach = 3.0;
-// From the highest to the lowest weight of the edge filter, in degrees: w of the paper's
-// feature detection.
+// The distance from the highest to the lowest weight of the edge filter, in degrees: w of the paper's feature
+// detection.
 constexpr double kEdgeWidth = 0.082;
 
 template <typename Function>
@@ -36,7 +36,8 @@ Kernel sample(std::size_t radius, Function function) {
     return kernel;
 }
 
-// Makes the weights above 0 sum to 1, those below to -1. Returns the sum of those above.
+// Scales the weights above 0 so that they sum to 1, and those below to -1. Returns the sum of those above
+// before scaling.
 double normalizeLobes(Kernel& kernel) {
     double above = 0.0;
     double below = 0.0;
@@ -72,7 +73,7 @@ SensitivityFilters sensitivityFilters(double pixelsPerDegree) {
                                gaussian(kBlueYellowNarrow, pixelsPerDegree)};
     normalizeLobes(filters.achromatic);
     normalizeLobes(filters.redGreen);
-    // The paper normalises the sum of both terms over x and y, so each keeps its share of that sum.
+    // The paper normalises the sum of both terms over x and y, so each term keeps its share of that sum.
     const auto weight = [](const Term& term, Kernel& kernel) {
         const double sum = normalizeLobes(kernel);
         return term.a * std::sqrt(kPi / term.b) * sum * sum;

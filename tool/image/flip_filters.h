@@ -1,4 +1,4 @@
-// The filters of FLIP, each a product of a function of x and one of y.
+// The filters of FLIP. Each is a product of a function of x and a function of y.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace glint::flip {
 
-// Weights from -radius to radius.
+// The weights from -radius to radius.
 using Kernel = std::vector<double>;
 
-// Contrast sensitivity of the eye: a sum of Gaussians for each channel of YCxCz. That of the blue-yellow
-// channel has two terms, of these shares of the sum.
+// The contrast sensitivity of the eye: a sum of Gaussians for each channel of YCxCz. The blue-yellow channel
+// has two terms, with these shares of the sum.
 struct SensitivityFilters {
     Kernel achromatic;
     Kernel redGreen;
@@ -19,16 +19,16 @@ struct SensitivityFilters {
     double wideShare = 1.0;
     double narrowShare = 0.0;
 };
-// All of one radius, each of sum 1.
+// Returns filters that have one radius and sum to 1 each.
 SensitivityFilters sensitivityFilters(double pixelsPerDegree);
 
-// Edges and points: derivatives of a Gaussian in one direction, the Gaussian in the other.
+// The filters of edges and points: derivatives of a Gaussian in one direction, and the Gaussian in the other.
 struct FeatureFilters {
-    Kernel smooth;  // of sum 1
+    Kernel smooth;  // sums to 1
     Kernel edge;    // first derivative: weights above 0 sum to 1, those below to -1
-    Kernel point;   // second derivative, likewise
+    Kernel point;   // second derivative, normalised like the edge filter
 };
-// All of one radius.
+// Returns filters that have one radius.
 FeatureFilters featureFilters(double pixelsPerDegree);
 
 inline std::size_t radiusOf(const Kernel& kernel) {

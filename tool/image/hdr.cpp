@@ -6,7 +6,7 @@
 #include <cstring>
 #include <memory>
 
-#ifndef __clang_analyzer__  // not ours to lint
+#ifndef __clang_analyzer__  // third-party code is not linted
 #define STB_IMAGE_IMPLEMENTATION
 #endif
 #define STB_IMAGE_STATIC
@@ -20,13 +20,13 @@ namespace {
 
 // A run of 127 pixels takes 2 bytes in each of 4 channels.
 constexpr std::int64_t kMaxPixelsPerByte = 16;
-// stb_image asks for at most 4 bytes of a flat pixel, and otherwise for its whole buffer.
+// stb_image asks for at most 4 bytes of a flat pixel; otherwise it asks for its whole buffer.
 constexpr int kPixelBytes = 4;
-// What it finds behind the end of the file: a run of 127 pixels. It would take nothing for runs of no pixels,
-// for ever.
+// The byte that stb_image reads beyond the end of the file: a run of 127 pixels. With runs of no pixels it
+// would read forever.
 constexpr char kPastEnd = '\xFF';
 
-// Hands stb_image the file, and notes when it asks for what is not there.
+// Gives stb_image the file, and notes if it asks for bytes that are not there.
 class Reader {
 public:
     Reader(std::span<const std::uint8_t> bytes, bool padded) : bytes_(bytes), padded_(padded) {}
@@ -87,7 +87,7 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
     int width = 0;
     int height = 0;
     int channels = 0;
-    // A header ends where the file does.
+    // The header must end within the file.
     Reader header(bytes, false);
     if (stbi_info_from_callbacks(&Reader::callbacks(), &header, &width, &height, &channels) == 0) {
         return formatError(where, "is no Radiance picture (.hdr) that can be read");

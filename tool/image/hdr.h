@@ -1,4 +1,4 @@
-// Radiance RGBE pictures (.hdr) in memory.
+// Decodes Radiance RGBE pictures (.hdr) in memory.
 #pragma once
 
 #include "base/files.h"
@@ -11,8 +11,8 @@
 
 namespace glint {
 
-// Linear RGB, alpha 1, first row on top; run-length encoded or flat, 32-bit_rle_rgbe, -Y +X. EXPOSURE is not
-// applied. Errors "image-format", "image-size".
+// Returns linear RGB with alpha 1, first row on top. Files may be run-length encoded or flat, in the format
+// 32-bit_rle_rgbe with the orientation -Y +X. EXPOSURE is not applied. Errors "image-format", "image-size".
 Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::string& where);
 
 }  // namespace glint

@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr std::int64_t kMaxImageSize = 16384;
-// 1 GiB as LinearImage: a small file can't claim more than that.
+// This is 1 GiB as LinearImage, and limits what a small file can claim.
 constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
 
 std::string lowerCase(std::string text) {

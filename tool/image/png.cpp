@@ -9,9 +9,9 @@
 #include <memory>
 #include <vector>
 
-// Internal linkage: another part of the program may carry its own copy of stb.
+// Functions of stb get internal linkage, because another part of the program may carry its own copy.
 #define STB_IMAGE_STATIC
-#ifndef __clang_analyzer__  // not ours to lint
+#ifndef __clang_analyzer__  // third-party code is not linted
 #define STB_IMAGE_IMPLEMENTATION
 #endif
 #define STBI_ONLY_PNG
@@ -45,7 +45,8 @@ void append(void* target, void* data, int size) {
     bytes->insert(bytes->end(), begin, begin + size);
 }
 
-// Samples of T with four channels; 256 or 65536 levels, so that a table does for the transfer function.
+// Converts samples of T with four channels. They have 256 or 65536 levels, so a table can hold the transfer
+// function.
 template <typename T>
 void linearize(const T* samples, LinearImage& image) {
     constexpr std::size_t kLevels = std::size_t{std::numeric_limits<T>::max()} + 1;

@@ -1,4 +1,4 @@
-// PNG in memory.
+// Encodes and decodes PNG in memory.
 #pragma once
 
 #include "base/files.h"
@@ -12,18 +12,18 @@
 
 namespace glint {
 
-// 8-bit RGB, first row on top.
+// 8-bit RGB, with the first row on top.
 struct DisplayImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<std::array<std::uint8_t, 3>> pixels;
 };
 
-// Deterministic. Error "png-encode"; `where` names the file in the message.
+// The result is deterministic. Error "png-encode"; `where` names the file in the message.
 Result<Bytes> encodePng(const DisplayImage& image, const std::string& where);
 
-// 8 or 16 bits a channel, grey or colour, taken as sRGB and made linear; alpha is as stored. Errors
-// "image-format", "image-size".
+// Decodes 8 or 16 bits a channel, grey or colour. Colours are taken as sRGB and made linear; alpha is as
+// stored. Errors "image-format", "image-size".
 Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where);
 
 }  // namespace glint

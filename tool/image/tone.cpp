@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kMiddleGrey = 0.18;
 constexpr double kMaxStops = 16.0;
-// Below this, a pixel is black for any sensible light; bounds the logarithm at about -14.
+// A pixel below this is black in any sensible light. It bounds the logarithm at about -14.
 constexpr double kLitLuminance = 1e-6;
 
-// F90, Ks and Kd of the specification.
+// These are F90, Ks and Kd of the specification.
 constexpr float kFresnel = 0.04F;
 constexpr float kCompressionStart = 0.8F - kFresnel;
 constexpr float kDesaturation = 0.15F;
@@ -39,7 +39,7 @@ Rgb toneMapNeutral(const Rgb& color) {
     // The specification asks for non-negative input.
     Rgb mapped{std::max(color[0], 0.0F), std::max(color[1], 0.0F), std::max(color[2], 0.0F)};
 
-    // Take away what a dielectric reflects at normal incidence, less of it in the dark.
+    // Subtracts what a dielectric reflects at normal incidence, and less of it in the dark.
     const float smallest = std::min({mapped[0], mapped[1], mapped[2]});
     const float offset =
         smallest <= 2.0F * kFresnel ? smallest - smallest * smallest / (4.0F * kFresnel) : kFresnel;
@@ -51,7 +51,7 @@ Rgb toneMapNeutral(const Rgb& color) {
         return mapped;
     }
 
-    // Compress what is above the start, and move it towards white.
+    // Compresses what is above the start, and moves it towards white.
     constexpr float kRange = 1.0F - kCompressionStart;
     const float compressed = 1.0F - kRange * kRange / (peak + kRange - kCompressionStart);
     const float saturation = 1.0F / (kDesaturation * (peak - compressed) + 1.0F);
@@ -81,7 +81,7 @@ Rgb displayed(const Rgb& color, double exposure) {
     if (!isFinite(color)) {
         return {1.0F, 0.0F, 1.0F};
     }
-    // Bounded so that a large exposure can't make an infinity of a finite colour.
+    // This bound keeps a large exposure from turning a finite colour into infinity.
     constexpr double kBrightest = 1e30;
     const double scale = std::exp2(exposure);
     Rgb exposed{};

@@ -1,4 +1,4 @@
-// From linear radiance to display: exposure, tone mapping, the sRGB transfer function.
+// Converts linear radiance for a display: exposure, tone mapping, the sRGB transfer function.
 #pragma once
 
 #include <glint/renderer.h>
@@ -7,32 +7,32 @@
 
 namespace glint {
 
-// Linear Rec. 709 colour.
+// A linear Rec. 709 colour.
 using Rgb = std::array<float, 3>;
 
-// Relative luminance of a linear Rec. 709 colour (ITU-R BT.709).
+// Returns the relative luminance of a linear Rec. 709 colour (ITU-R BT.709).
 double luminance(const Rgb& color);
 
 // The sRGB transfer function (IEC 61966-2-1) and its inverse, [0, 1] to [0, 1].
 float linearToSrgb(float value);
 float srgbToLinear(float value);
 
-// Khronos PBR Neutral tone mapper: KhronosGroup/ToneMapping, PBR_Neutral, "PBR Neutral Specification".
-// Keeps base colours as they are up to 0.8 and compresses highlights; the result is within [0, 1].
+// Applies the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral, "PBR Neutral
+// Specification"). It keeps base colours up to 0.8 and compresses highlights; the result is within [0, 1].
 Rgb toneMapNeutral(const Rgb& color);
 
-// Exposure in stops that brings the log-average luminance of the lit pixels to a mid-grey of 0.18
-// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped
-// to ±16 stops. A pixel is lit if its luminance is finite and above 1e-6; 0 stops if none is.
+// Returns the exposure in stops that brings the log-average luminance of the lit pixels to a mid-grey of 0.18
+// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to
+// ±16 stops. A pixel is lit if its luminance is finite and above 1e-6. Returns 0 if no pixel is lit.
 double automaticExposure(const LinearImage& image);
 
-// What a display shows of a linear colour, in linear light within [0, 1]: times 2^exposure, tone mapped. NaN
-// and infinity become magenta, so that they are seen.
+// Returns what a display shows for a linear colour, in linear light within [0, 1]: the colour times
+// 2^exposure, tone mapped. NaN and infinity become magenta, so that they are visible.
 Rgb displayed(const Rgb& color, double exposure);
-// Of every pixel; alpha stays.
+// Applies displayed() to every pixel; alpha stays.
 LinearImage displayedImage(const LinearImage& image, double exposure);
 
-// 8-bit sRGB of a linear colour: displayed(), encoded, rounded.
+// Returns the 8-bit sRGB value of a linear colour: displayed(), encoded and rounded.
 std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure);
 
 }  // namespace glint

@@ -57,12 +57,12 @@ constexpr Switch kExpensive[] = {
 static_assert(std::size(kCheap) == 8 && std::size(kExpensive) == 8);
 static_assert(kMaxCases == 256);
 
-// All sets of eight switches in the order of makeCaseMaterials().
+// Returns all sets of eight switches, in the order of makeCaseMaterials().
 std::vector<std::uint32_t> makeSets() {
     constexpr std::uint32_t kAll = kMaxCases - 1;
-    // An odd factor permutes the numbers below 256: neighbours in the list are then unlike.
+    // Multiplying by an odd factor permutes the numbers below 256, so that neighbours in the list differ.
     constexpr std::uint32_t kSpread = 167;
-    std::vector<std::uint32_t> firsts;  // of each pair, that which has the last switch
+    std::vector<std::uint32_t> firsts;  // of each pair, the set that has the last switch
     for (std::uint32_t i = 0; i < kMaxCases; ++i) {
         const std::uint32_t set = i * kSpread & kAll;
         if ((set & 1U) != 0) {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> makeSets() {
     return sets;
 }
 
-// A colour of its own, by the golden angle: so that a picture shows which case is where.
+// Each case has its own colour, by the golden angle, so that a picture shows which case is where.
 std::array<float, 4> colorOf(int index) {
     constexpr double kGoldenTurn = 0.6180339887498949;
     std::array<float, 4> color{0.0F, 0.0F, 0.0F, 1.0F};
@@ -99,7 +99,7 @@ CaseMaterial makePlain(int index) {
     return made;
 }
 
-// What every expensive case has.
+// Adds the lobes that every expensive case has.
 void addLobes(CaseMaterial& made) {
     Material& material = made.material;
     made.normals = true;
@@ -123,7 +123,7 @@ std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count) {
         if (cost == Cost::Expensive) {
             addLobes(made);
         } else {
-            // Without it EmissiveStrength and the texture would change nothing.
+            // Without emission, EmissiveStrength and the texture would change nothing.
             made.material.emissiveFactor = {0.05F, 0.05F, 0.05F};
         }
         for (std::size_t bit = 0; bit < switches.size(); ++bit) {
@@ -143,7 +143,8 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     material.name = "floor";
     material.baseColorFactor = {0.9F, 0.9F, 0.9F, 1.0F};
     const bool mirror = coherence == Coherence::Coherent;
-    // Not wholly a metal, which has no dielectric lobes, nor wholly rough, which has no direction.
+    // The floor is not fully metallic, because metals have no dielectric lobes. It is not fully rough,
+    // because anisotropy would then have no effect.
     material.metallicFactor = mirror ? 1.0F - kFaint : 0.0F;
     material.roughnessFactor = mirror ? 0.0F : 1.0F - kFaint;
     const auto fade = [](bool given, auto& value) { value = given ? kFaint : value; };
@@ -158,7 +159,7 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     if (material.emissiveFactor[0] > 0.0F) {
         material.emissiveFactor.fill(kFaint);
     }
-    // 8 bits have no middle: it would lean by a quarter of a degree.
+    // 8 bits have no exact middle, so the normal would lean by a quarter of a degree.
     material.normalScale = kFaint;
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
         TextureInfo& info = material.textures[slot];

@@ -1,4 +1,4 @@
-// The materials of the cases: as many sets of features as wanted, of nearly the same work on average.
+// The materials of the cases: as many sets of features as wanted, with nearly the same work on average.
 #pragma once
 
 #include "plan/material.h"
@@ -10,18 +10,18 @@ namespace glint::synthetic {
 
 struct CaseMaterial {
     Material material;
-    // Attributes of its primitives, besides positions and texture coordinates.
+    // The attributes of its primitives, besides positions and texture coordinates.
     bool normals = false;
     bool tangents = false;
     bool colors = false;
 };
 
-// Eight switches make 256 sets; those with half of them come first, and each set is followed by the one that
-// has what it lacks. So any even number of cases has each switch in half of them, and work does not grow
-// with cases.
+// Returns `count` materials. Eight switches make 256 sets. Sets with half of the switches come first, and
+// each set is followed by the set that has exactly the other switches. So any even number of cases has each
+// switch in half of them, and the average work does not grow with the number of cases.
 std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count);
 
-// One of the same key whose lobes and textures are there and change next to nothing: a mirror, or a white
+// Returns a material with the same key whose lobes and textures change next to nothing: a mirror, or a white
 // surface that scatters.
 CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence);
 

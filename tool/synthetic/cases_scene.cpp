@@ -14,7 +14,7 @@ namespace glint::synthetic {
 
 namespace {
 
-// A rectangle at a height; the front is its upper side, or its lower one.
+// A rectangle at a height. Its front is its upper or its lower side.
 struct Square {
     double x0 = 0.0;
     double z0 = 0.0;
@@ -44,7 +44,8 @@ void addSquare(Primitive& primitive, const CaseMaterial& attributes, const Squar
             primitive.normals.push_back({0.0F, square.facesUp ? 1.0F : -1.0F, 0.0F});
         }
         if (attributes.tangents) {
-            // V grows along z, which is cross(n, t) w of the lower side, and the opposite of the upper's.
+            // V grows along z. That is cross(n, t) w for a square that faces down; a square that faces up
+            // needs the opposite sign.
             primitive.tangents.push_back({1.0F, 0.0F, 0.0F, square.facesUp ? -1.0F : 1.0F});
         }
         if (attributes.colors) {
@@ -52,7 +53,7 @@ void addSquare(Primitive& primitive, const CaseMaterial& attributes, const Squar
             primitive.colors.push_back({shade, shade, shade, 1.0F});
         }
     }
-    // Counter-clockwise as seen from the front.
+    // The order is counter-clockwise as seen from the front.
     constexpr std::uint32_t kUp[] = {0, 2, 1, 0, 3, 2};
     constexpr std::uint32_t kDown[] = {0, 1, 2, 0, 2, 3};
     for (const std::uint32_t corner : square.facesUp ? kUp : kDown) {
@@ -61,7 +62,7 @@ void addSquare(Primitive& primitive, const CaseMaterial& attributes, const Squar
 }
 
 Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
-    constexpr double kMargin = 1.01;  // beyond the picture's edge
+    constexpr double kMargin = 1.01;  // how far beyond the picture's edge
     const Extent extent = viewExtent(kCameraHeight, aspect);
     Mesh mesh{"floor", {makePrimitive(attributes, material, "/meshes/0/primitives/0")}};
     addSquare(mesh.primitives[0], attributes,
@@ -69,7 +70,7 @@ Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
     return mesh;
 }
 
-// A primitive a case, of all its tiles.
+// Makes one primitive for each case, from all of its tiles.
 Mesh makeTiles(const Ceiling& ceiling, const std::vector<CaseMaterial>& cases) {
     Mesh mesh{"ceiling", {}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -94,7 +95,7 @@ Matrix4 identity() {
     return {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
 }
 
-// Straight down: its -Z is the world's -Y, its +Y the world's -Z.
+// The camera looks straight down: its -Z is the world's -Y, its +Y is the world's -Z.
 Camera makeCamera() {
     Camera camera;
     camera.name = "above";
@@ -104,7 +105,7 @@ Camera makeCamera() {
     return camera;
 }
 
-// On a circle half way up, all of the same flux together.
+// Places the lights on a circle half way up. Their total flux does not depend on `count`.
 void addLights(Scene& scene, int count) {
     for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / count;

@@ -1,8 +1,9 @@
-// Scenes whose rays hit as many cases as wanted: what strategies are compared on.
+// Scenes whose rays hit as many cases as wanted, on which strategies are compared.
 //
-// A camera looks straight down on a floor that fills the picture; above it hangs a ceiling of square tiles,
-// each of one of the cases. Every pixel sends one ray from the floor, and hits a tile: of a mirror, as
-// neighbours do in a picture; of a white floor, which scatters them, wherever chance sends them.
+// A camera looks straight down on a floor that fills the picture. Above it hangs a ceiling of square tiles,
+// each of which belongs to one case. Every pixel sends one ray from the floor, and it hits a tile. From a
+// mirror, neighbouring rays hit neighbouring tiles, as in a picture; from a white floor, which scatters rays,
+// each hits a random tile.
 #pragma once
 
 #include "gltf/scene.h"
@@ -14,7 +15,7 @@ namespace glint::synthetic {
 
 inline constexpr int kMaxCases = 256;
 
-// What shading a hit takes.
+// The work of shading a hit.
 enum class Cost : std::uint8_t {
     Cheap,     // metal and roughness, with some of their textures
     Expensive  // clearcoat, anisotropy, iridescence, specular and about half of four further lobes
@@ -22,11 +23,11 @@ enum class Cost : std::uint8_t {
 
 // Whether neighbouring rays hit the same case.
 enum class Coherence : std::uint8_t {
-    Coherent,   // rays of a mirror (the effect reflection); tiles of a case lie together
-    Incoherent  // rays by the cosine (the effect indirect-diffuse); tiles in random order, many in reach
+    Coherent,   // rays from a mirror (the effect reflection); tiles of a case lie together
+    Incoherent  // cosine-weighted rays (the effect indirect-diffuse); tiles in random order, many in reach
 };
 
-// How the ceiling is divided among the cases; each has a tile at least.
+// How the ceiling is divided among the cases. Each case has at least one tile.
 enum class Shares : std::uint8_t {
     Uniform,
     Zipf  // in proportion to 1, 1/2, 1/3, …
@@ -37,16 +38,16 @@ struct CasesOptions {
     Cost cost = Cost::Cheap;
     Coherence coherence = Coherence::Coherent;
     Shares shares = Shares::Uniform;
-    int lights = 0;       // point lights between floor and ceiling; 0: the sky alone
-    double aspect = 2.0;  // of the picture, width by height: the coherent ceiling fills it
+    int lights = 0;       // point lights between floor and ceiling; with 0 there is only the sky
+    double aspect = 2.0;  // of the picture, width by height; the coherent ceiling fills it
 };
 
 std::string_view nameOf(Cost cost);            // "cheap"
 std::string_view nameOf(Coherence coherence);  // "coherent"
 std::string_view nameOf(Shares shares);        // "uniform"
 
-// As importScene() would read it with its images. With MergePolicy::None it has exactly `cases` keys, hence
-// cases; the floor shares the key of one of them. Sources: none.
+// Returns the scene as importScene() would read it, with its images and without sources. With
+// MergePolicy::None it has exactly `cases` keys and so as many cases; the floor has the key of one of them.
 Scene makeCasesScene(const CasesOptions& options);
 
 }  // namespace glint::synthetic

@@ -17,7 +17,7 @@ constexpr std::uint32_t kBlockWidth = 8;
 constexpr std::uint32_t kBlockHeight = 4;
 constexpr std::uint32_t kMaxBlocks = 4096;
 
-// In [0, 1), by the 53 bits of a double.
+// Returns a number in [0, 1) with the 53 bits of a double.
 double unit(std::mt19937_64& random) {
     return static_cast<double>(random() >> 11) * 0x1p-53;
 }
@@ -26,7 +26,7 @@ double pairs(double count) {
     return count * (count - 1.0) / 2.0;
 }
 
-// The cases that the rays of a picture hit.
+// Finds the cases that the rays of a picture hit.
 class Rays {
 public:
     Rays(const CasesOptions& options, std::uint32_t width, std::uint32_t height)
@@ -36,16 +36,16 @@ public:
           width_(width),
           height_(height) {}
 
-    // -1: none.
+    // Returns -1 if the ray hits no tile.
     int caseOf(std::uint32_t x, std::uint32_t y) {
         const double fromX = floor_.x * (2.0 * (x + 0.5) / width_ - 1.0);
         const double fromZ = floor_.z * (2.0 * (y + 0.5) / height_ - 1.0);
         if (mirror_) {
-            // On with the same slope.
+            // The reflected ray continues with the same slope.
             const double growth = 1.0 + kCeilingHeight / kCameraHeight;
             return ceiling_.caseAt(growth * fromX, growth * fromZ);
         }
-        // By the cosine: a point of the unit disk, lifted onto the hemisphere (Malley).
+        // The direction is cosine-weighted: a point of the unit disk is lifted onto the hemisphere (Malley).
         const double squared = unit(random_);
         const double angle = 2.0 * std::numbers::pi * unit(random_);
         const double reach = kCeilingHeight * std::sqrt(squared / std::max(1.0 - squared, 1e-12));

@@ -11,11 +11,12 @@ namespace glint::synthetic {
 
 namespace {
 
-using Pixel = std::array<double, 4>;  // 0 to 1
+using Pixel = std::array<double, 4>;  // each channel from 0 to 1
 
-constexpr int kSize = 64;  // pixels a side: all of them stay in the caches, so that textures cost their work
+constexpr int kSize = 64;  // pixels a side; all textures stay in the caches, so that they cost their work
+                           // alone
 
-// `pixel`: of u and v in [0, 1).
+// `pixel` is a function of u and v in [0, 1).
 template <typename Make>
 Image makeImage(const std::string& name, int size, const Make& pixel) {
     Image image;
@@ -38,7 +39,7 @@ double wave(double turns) {
     return std::sin(2.0 * std::numbers::pi * turns);
 }
 
-// Of the height 0.02 sin(2 pi 4 u) sin(2 pi 4 v), by its slopes.
+// Returns the normal of the height 0.02 sin(2 pi 4 u) sin(2 pi 4 v), from its slopes.
 Pixel bump(double u, double v) {
     constexpr double kTurns = 4.0;
     constexpr double kSlope = 0.02 * 2.0 * std::numbers::pi * kTurns;

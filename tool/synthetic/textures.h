@@ -1,4 +1,4 @@
-// Small textures that the cases read.
+// The small textures that the cases read.
 #pragma once
 
 #include "gltf/scene.h"
@@ -14,7 +14,7 @@ enum CaseTexture : int {
     kBumps,    // a normal map
 };
 
-// Adds them, their images and their sampler to a scene without any.
+// Adds the textures, their images and their sampler to a scene that has none.
 void addTextures(Scene& scene);
 
 }  // namespace glint::synthetic

@@ -11,16 +11,16 @@ namespace glint::synthetic {
 
 namespace {
 
-// A side. Coherent: 4 tiles a case at most cases, each a dozen pixels wide in a picture of 400. Incoherent:
-// so many that the cosine spreads the rays of neighbours over hundreds.
+// Tiles a side. Coherent: at most cases, 4 tiles a case, each a dozen pixels wide in a picture of 400.
+// Incoherent: so many that cosine-weighted rays of neighbours spread over hundreds of tiles.
 constexpr int kCoherentTiles = 32;
 constexpr int kIncoherentTiles = 64;
 
-// How far an incoherent ceiling reaches beyond the floor, in heights of the ceiling: rays by the cosine miss
-// it with a chance of about 1 / (1 + 5²).
+// How far an incoherent ceiling reaches beyond the floor, in heights of the ceiling. Cosine-weighted rays
+// miss it with a chance of about 1 / (1 + 5²).
 constexpr double kReach = 5.0;
 
-// Every second bit of `code`, from the lowest on.
+// Returns every second bit of `code`, starting with the lowest.
 std::uint32_t compacted(std::uint32_t code) {
     std::uint32_t bits = 0;
     for (std::uint32_t i = 0; i < 16; ++i) {
@@ -29,7 +29,8 @@ std::uint32_t compacted(std::uint32_t code) {
     return bits;
 }
 
-// Places of tiles, row * tiles + column, along a Morton curve: what is near on it is near on the ceiling.
+// Returns places of tiles, row * tiles + column, along a Morton curve: places that are near on the curve are
+// near on the ceiling.
 std::vector<std::size_t> alongCurve(int tiles) {
     std::vector<std::size_t> places(static_cast<std::size_t>(tiles) * static_cast<std::size_t>(tiles));
     for (std::uint32_t i = 0; i < places.size(); ++i) {
@@ -38,7 +39,7 @@ std::vector<std::size_t> alongCurve(int tiles) {
     return places;
 }
 
-// Fisher and Yates; as std::shuffle differs between libraries.
+// The shuffle of Fisher and Yates, because std::shuffle differs between libraries.
 void shuffle(std::vector<std::size_t>& places) {
     std::mt19937_64 random(1);
     for (std::size_t i = places.size(); i > 1; --i) {
@@ -46,7 +47,7 @@ void shuffle(std::vector<std::size_t>& places) {
     }
 }
 
-// One each, and the rest by largest remainders.
+// Gives each case one tile, and distributes the rest by largest remainders.
 std::vector<std::size_t> tilesOfCases(const std::vector<double>& shares, std::size_t tiles) {
     const auto all = static_cast<double>(tiles);
     std::vector<std::size_t> counts;
@@ -62,7 +63,7 @@ std::vector<std::size_t> tilesOfCases(const std::vector<double>& shares, std::si
         ++counts[*std::ranges::max_element(order, {}, lacks)];
         ++given;
     }
-    // Those that got their one tile beyond their share take it from the greatest.
+    // If a minimum of one tile exceeded some shares, the surplus is taken from the largest counts.
     for (; given > tiles; --given) {
         --*std::ranges::max_element(counts);
     }
@@ -104,7 +105,7 @@ Ceiling makeCeiling(const CasesOptions& options) {
     Ceiling ceiling;
     ceiling.tiles = coherent ? kCoherentTiles : kIncoherentTiles;
     if (coherent) {
-        // What the mirror shows: the camera below the floor, as far as it is above.
+        // The mirror shows what a camera sees that is as far below the floor as the real one is above it.
         ceiling.extent = viewExtent(kCameraHeight + kCeilingHeight, options.aspect);
     } else {
         const Extent floor = viewExtent(kCameraHeight, options.aspect);

@@ -1,4 +1,4 @@
-// Where the tiles of the ceiling are, and of which case each is.
+// The places of the ceiling's tiles, and the case of each tile.
 #pragma once
 
 #include "synthetic/cases_scene.h"
@@ -8,10 +8,10 @@
 
 namespace glint::synthetic {
 
-// Metres: of the camera above the floor, which is at height 0, and of the ceiling.
+// Heights in metres above the floor, which is at height 0: the camera's and the ceiling's.
 inline constexpr double kCameraHeight = 1.0;
 inline constexpr double kCeilingHeight = 3.0;
-// Of the camera, vertical, radians.
+// The camera's vertical field of view, in radians.
 inline constexpr double kFieldOfView = 1.0;
 
 // What the camera sees at a distance, from the middle to the edge.
@@ -21,23 +21,23 @@ struct Extent {
 };
 Extent viewExtent(double distance, double aspect);
 
-// Parallel to the floor, around the vertical axis.
+// The ceiling. It is parallel to the floor, around the vertical axis.
 struct Ceiling {
     Extent extent;             // from the middle to the edge
-    int tiles = 0;             // a side
-    std::vector<int> cases{};  // row by row, from -z and there from -x
+    int tiles = 0;             // number of tiles a side
+    std::vector<int> cases{};  // row by row from -z, and within a row from -x
 
     std::size_t place(int row, int column) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles) +
                static_cast<std::size_t>(column);
     }
-    // The case above a point; -1: none.
+    // Returns the case above a point, or -1 if there is none.
     int caseAt(double x, double z) const;
 };
 
 Ceiling makeCeiling(const CasesOptions& options);
 
-// The share that each case should have, greatest first: 1 in all.
+// Returns the share that each case should have, largest first. They add up to 1.
 std::vector<double> sharesOf(const CasesOptions& options);
 
 }  // namespace glint::synthetic

@@ -1,11 +1,11 @@
 // The axes of the chart of error against time.
 
 const MARGIN = {left: 74, right: 16, top: 14, bottom: 46};
-// Height below the plot for points that a logarithmic axis can't hold.
+// Height of the area below the plot for points that a logarithmic axis can't show.
 const LANE = 26;
 
-// The noise of the reference is drawn if some error is less than so many times as large: farther down it would take
-// most of the chart.
+// The noise of the reference is drawn only if some error is less than this many times as large. Farther down
+// it would take most of the chart.
 const FARTHEST_NOISE = 50;
 
 function noiseOf(metric) {
@@ -13,7 +13,7 @@ function noiseOf(metric) {
     return isNumber(noise) && noise > 0 ? noise : null;
 }
 
-// What of a drawing is within the plot.
+// Clips a drawing to the plot.
 function clipped(axes, ...children) {
     const width = axes.width - MARGIN.right - MARGIN.left;
     const height = axes.height - MARGIN.bottom - MARGIN.top;
@@ -34,7 +34,7 @@ function makeAxes(width, height, metric, shown) {
     const [first, last] = paddedExtent(xs.length > 0 ? xs : [1, 10], true);
     const bottom = height - MARGIN.bottom - (lane ? LANE : 0);
     const x = makeScale({log: true, low: first, high: last, from: MARGIN.left, to: width - MARGIN.right, ticks: width < 600 ? 4 : 8});
-    // More exact is lower: of a measure that grows with exactness, the highest value stands at the bottom.
+    // Less error is drawn lower. For a measure that grows with exactness, the highest value is at the bottom.
     const ends = metric.higherIsBetter ? {from: MARGIN.top, to: bottom} : {from: bottom, to: MARGIN.top};
     const y = makeScale({log: metric.log, low, high, ...ends, ticks: 7});
     const laneMiddle = height - MARGIN.bottom - (lane ? LANE / 2 : 0);
@@ -64,7 +64,7 @@ function drawAxes(axes, metric) {
             `${metric.name}${metric.unit ? `, ${metric.unit}` : ""}${metric.log ? " (logarithmic)" : ", upside down"}`));
 }
 
-// As many digits as the tick has.
+// Shows as many digits as the tick has.
 function tickText(tick) {
     const digits = Number(tick.toPrecision(12)).toExponential().split("e")[0].replace(/[-.]/g, "").length;
     return number(tick, digits);

@@ -1,6 +1,6 @@
 // The chart of error against time.
 
-let chartPoints = [];  // {point, x, y, node} as drawn, from the fastest
+let chartPoints = [];  // {point, x, y, node} of each drawn point, the fastest first
 
 function drawChart() {
     const box = byId("chart-box");
@@ -24,7 +24,7 @@ function drawChart() {
         onkeydown: moveByKeys,
     }, drawAxes(axes, metric), drawNoise(axes), clipped(axes, drawFront(corners)));
     picture.append(clipped(axes, chartPoints.map(({point, x, y}) => whiskers(axes, metric, point, x, y))));
-    // What matters is drawn last, on top.
+    // The important points are drawn last, on top.
     const rank = ({point}) => (point.kind === "default" ? 2 : 0) + (onFront.has(point.id) ? 1 : 0);
     picture.append(...[...chartPoints].sort((a, b) => rank(a) - rank(b)).map((drawn) => drawPoint(drawn, metric, onFront)));
     box.querySelector("svg")?.remove();
@@ -52,7 +52,7 @@ function drawNoise(axes) {
                 "noise of the reference itself")];
 }
 
-// What the front attains: for a time, the least error within it. A staircase.
+// The staircase of the front: for each time, the least error that can be reached within it.
 function frontCorners(axes, metric, front) {
     const ends = front.map((id) => pointById.get(id)).filter((point) => isMeasured(point) && errorOf(point, metric))
         .map((point) => ({x: axes.x(point.time.median), y: axes.y(errorOf(point, metric).value)}));
@@ -81,7 +81,8 @@ function drawPoint(drawn, metric, onFront) {
     return drawn.node;
 }
 
-// Names of the front and of the default; in a narrow chart, of the front the numbers of the list below.
+// Labels the front and the default with names. In a narrow chart, the front gets the numbers of the list
+// below.
 function drawLabels(picture, axes, front, corners) {
     const wide = axes.width >= 600;
     const labels = svg("g", {class: "labels", "aria-hidden": "true"});
@@ -119,7 +120,7 @@ function focusedId() {
     return id === undefined ? null : Number(id);
 }
 
-// The point that is nearest to the pointer, within 24 pixels.
+// Returns the point nearest to the pointer, within 24 pixels.
 function nearest(event) {
     const bounds = byId("error-time").getBoundingClientRect();
     const x = event.clientX - bounds.left;
@@ -136,7 +137,7 @@ function nearest(event) {
     return best;
 }
 
-// One stop of the tab key; left and right go by time, up and down by error.
+// The chart is one stop of the tab key. Left and right move by time, up and down by error.
 function moveByKeys(event) {
     const id = focusedId();
     if (event.key === "Enter" || event.key === " ") {
@@ -154,7 +155,7 @@ function moveByKeys(event) {
     }
 }
 
-// Shows which points are selected and pointed at, without drawing anew.
+// Marks the points that are selected and pointed at, without drawing the chart again.
 function markPoints() {
     const stop = chartPoints.find(({point}) => point.id === state.selected) ?? chartPoints[0];
     for (const drawn of chartPoints) {

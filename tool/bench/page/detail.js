@@ -1,4 +1,4 @@
-// Every setting and number of one point: that under the pointer, or else the selected one.
+// Shows every setting and number of one point: the one under the pointer, or else the selected one.
 
 function showDetail() {
     const point = pointById.get(state.pointed) ?? selectedPoint();

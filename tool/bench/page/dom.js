@@ -1,4 +1,4 @@
-// Elements of HTML and SVG. Texts become text nodes, so that no name of a scene is ever read as markup.
+// Creates elements of HTML and SVG. Texts become text nodes, so no name of a scene is ever read as markup.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -26,7 +26,7 @@ function svg(name, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, name), attributes, children);
 }
 
-// Fills a <select> with [value, text] and calls back with the value that is chosen.
+// Fills a <select> with [value, text] and calls back with the chosen value.
 function fillSelect(select, options, chosen, changed) {
     select.replaceChildren(...options.map(([value, text, disabled]) => html("option", {value, disabled}, text)));
     select.value = chosen;
@@ -44,8 +44,8 @@ function copyButton(button, text) {
     return button;
 }
 
-// The clipboard's interface is missing where a page was opened as a file in some browsers: then the text is
-// selected and copied as by hand.
+// In some browsers the clipboard's interface is missing if a page was opened as a file. Then the text is
+// selected and copied by the old command.
 async function copyText(text) {
     try {
         await navigator.clipboard.writeText(text);

@@ -1,4 +1,4 @@
-// What the chart shows: the measure of error, and which points.
+// The controls for what the chart shows: the measure of error, and which points.
 
 function showFilters() {
     const available = (metric) => points.some((point) => errorOf(point, metric));

@@ -1,4 +1,4 @@
-// Numbers as text, with their units.
+// Formats numbers as text, with their units.
 
 const NONE = "–";
 
@@ -6,7 +6,7 @@ function superscript(exponent) {
     return String(exponent).replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
 }
 
-// Three significant digits; powers of ten where plain digits would be long.
+// Returns three significant digits; numbers that would be long get a power of ten.
 function number(value, digits = 3) {
     if (value === null || value === undefined || Number.isNaN(value)) {
         return NONE;
@@ -38,7 +38,7 @@ function milliseconds(value) {
     return withUnit(number(value), "ms");
 }
 
-// "[low, high]": the confidence interval.
+// Returns a confidence interval as "[low, high]".
 function range(interval, digits = 3) {
     if (!interval || interval.low === undefined || interval.low === null) {
         return "";
@@ -72,12 +72,12 @@ function secondsText(seconds) {
     return seconds < 120 ? `${number(seconds)} s` : `${number(seconds / 60)} minutes`;
 }
 
-// "a, b and c".
+// Returns "a, b and c".
 function sentenceList(items) {
     return items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items[items.length - 1]}`;
 }
 
-// "1 round", "7 rounds".
+// Returns "1 round" or "7 rounds".
 function plural(amount, word) {
     return `${count(amount)} ${word}${amount === 1 ? "" : "s"}`;
 }

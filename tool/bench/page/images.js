@@ -1,10 +1,10 @@
-// Pictures: two of them under a slider, and many side by side.
+// Shows pictures: two of them under a slider, and many side by side.
 
 const REFERENCE = "reference";
-// What the two selects hold: "selected", "reference", or the id of a point.
+// The values of the two selects: "selected", "reference", or the id of a point.
 const sides = {left: "selected", right: REFERENCE};
 let layer = "image";
-let revealed = 50;  // per cent of the width that show the left one
+let revealed = 50;  // per cent of the width that show the left picture
 
 function hasImage(point) {
     return imageUri(point?.image) !== null;
@@ -33,7 +33,7 @@ function showImages() {
     showGrid();
 }
 
-// {name, uri} of one side; the reference has no error map, so it shows its picture.
+// Returns {name, uri} of one side. The reference has no error map, so it shows its picture instead.
 function sideOf(choice) {
     if (choice === REFERENCE) {
         return {name: "reference", uri: imageUri(report.reference?.image)};
@@ -45,7 +45,7 @@ function sideOf(choice) {
 
 function picture(uri, name, attributes = {}) {
     const {width = 16, height = 9} = report.scene ?? {};
-    // Pixels of a small picture are to be seen one by one; a large one is drawn smaller than it is, and smoothed.
+    // Pixels of a small picture must be visible one by one. A large picture is shrunk and smoothed.
     const looks = [attributes.class, width <= 320 ? "pixels" : null].filter((name) => name).join(" ");
     return uri ? html("img", {src: uri, alt: name, width, height, ...attributes, class: looks || null})
         : html("span", {class: "no-image", ...attributes}, `no picture of ${name}`);

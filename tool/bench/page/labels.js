@@ -1,4 +1,4 @@
-// Places the names of points where they overlap neither each other nor, if it can be had, the points.
+// Places the names of points so that they do not overlap each other and, if possible, do not hide points.
 
 const LABEL_HEIGHT = 15;
 
@@ -11,7 +11,7 @@ function boxAround(x, y, width, height) {
     return {left: x - width / 2, right: x + width / 2, top: y - height / 2, bottom: y + height / 2};
 }
 
-// Small boxes along a line of {x, y}.
+// Returns small boxes along a line of {x, y}.
 function boxesAlong(corners) {
     return corners.slice(1).flatMap((end, i) => {
         const start = corners[i];
@@ -23,7 +23,7 @@ function boxesAlong(corners) {
     });
 }
 
-// Boxes for a label of this width around a point, the nearest first.
+// Returns boxes for a label of this width around a point, the nearest first.
 function candidates(anchor, width) {
     const boxes = [];
     for (const distance of [11, 20, 34, 52, 74, 100, 130]) {
@@ -36,13 +36,13 @@ function candidates(anchor, width) {
     return boxes;
 }
 
-// Two labels side by side must not read as one.
+// Two neighbouring labels must not read as one, so each box is widened.
 function widened(box) {
     return {...box, left: box.left - 6, right: box.right + 6};
 }
 
-// anchors: {x, y, width} of each label; obstacles: boxes that it had better not hide; within: the plot's box. Returns a box or
-// null for each: a name that fits nowhere stands in the list below the chart only.
+// anchors: {x, y, width} of each label; obstacles: boxes that labels should not hide; within: the plot's box.
+// Returns a box or null for each label. A name that fits nowhere is only in the list below the chart.
 function placeLabels(anchors, obstacles, within) {
     const taken = [];
     return anchors.map((anchor) => {
@@ -67,7 +67,7 @@ function placeLabels(anchors, obstacles, within) {
     });
 }
 
-// A line from a point to a label that is not beside it.
+// Returns a line from a point to a label that is not beside it.
 function leader(anchor, box) {
     const x = Math.min(Math.max(anchor.x, box.left), box.right);
     const y = Math.min(Math.max(anchor.y, box.top), box.bottom);

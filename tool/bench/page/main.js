@@ -20,7 +20,7 @@ function main() {
     redrawOnResize();
 }
 
-// Charts are drawn for the width that they have.
+// Charts are drawn for the width that is available, so they are drawn again when it changes.
 function redrawOnResize() {
     let width = byId("chart-box").clientWidth;
     new ResizeObserver(() => {

@@ -1,4 +1,4 @@
-// The shapes of points: colour and shape both tell the kind, so that neither has to be told apart alone.
+// The shapes of points. Colour and shape both tell the kind, so that either alone is enough.
 
 const SHAPES = {
     circle: "M-5,0a5,5 0 1,0 10,0a5,5 0 1,0 -10,0Z",

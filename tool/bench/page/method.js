@@ -1,4 +1,4 @@
-// The reference and the method, in words.
+// Describes the reference and the method in words.
 
 function showMethod() {
     byId("method-text").replaceChildren(...[...referenceSentences(), ...methodSentences(), ...diagnosticSentences()].map((text) => html("p", {}, text)));

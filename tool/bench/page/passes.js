@@ -1,10 +1,10 @@
-// Stacked bars: the passes of some points.
+// Draws stacked bars: the passes of some points.
 
-// Okabe and Ito's colours, but for black.
+// The colours of Okabe and Ito, without black.
 const PASS_COLORS = ["#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"];
 const OTHER = "other passes";
 
-// The passes that take most, over all points, have a colour each; the rest share one.
+// The passes that take the most time over all points have a colour each; the rest share one.
 let passColors = new Map();
 
 function choosePassColors() {
@@ -26,7 +26,7 @@ function passGroups() {
     return groups;
 }
 
-// The default and the points that change this setting alone.
+// Returns the default and the points that change this setting alone.
 function settingPoints(setting) {
     return setting.values.map((value) => (String(value) === String(setting.default) ? defaultPoint : singleOf(setting, value)))
         .filter((point) => point);

@@ -1,4 +1,4 @@
-// Every point with its numbers, for who would rather read than point.
+// A table of all points with their numbers, for readers who prefer that to the chart.
 
 function showPointsTable() {
     const metrics = METRICS.filter((metric) => points.some((point) => errorOf(point, metric)));

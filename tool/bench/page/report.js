@@ -1,4 +1,4 @@
-// The report that the page shows, and what is asked of it: docs/schemas/bench.json says what it holds.
+// The report that the page shows, and queries on it. docs/schemas/bench.json describes its content.
 
 const report = JSON.parse(byId("report-data").textContent);
 const imageData = JSON.parse(byId("image-data").textContent);
@@ -28,7 +28,7 @@ function isNumber(value) {
     return typeof value === "number" && Number.isFinite(value);
 }
 
-// What a signed number of the measure is called.
+// Returns the name of a measure's signed number.
 function signedName(metric) {
     return metric.key === "bias" ? "bias" : metric.name;
 }
@@ -37,7 +37,7 @@ function metricOf(key) {
     return METRICS.find((metric) => metric.key === key) ?? METRICS[0];
 }
 
-// {value, low, high} of a point's error, null where it has none. An infinite PSNR is Infinity.
+// Returns {value, low, high} of a point's error, or null if it has none. An infinite PSNR is Infinity.
 function errorOf(point, metric) {
     const error = point.error?.[metric.key];
     if (metric.key === "bias") {
@@ -57,7 +57,7 @@ function biasSize({mean, low, high}) {
             high: Math.max(Math.abs(low), Math.abs(high))};
 }
 
-// "1.2×10⁻³ [1.1×10⁻³, 1.3×10⁻³]"; of the bias with its sign.
+// Returns "1.2×10⁻³ [1.1×10⁻³, 1.3×10⁻³]". A bias has a sign.
 function errorText(point, metric) {
     const digits = metric.unit === "dB" ? 4 : 3;
     if (metric.key === "bias" && point.error?.bias) {
@@ -72,7 +72,7 @@ function errorText(point, metric) {
     return Number.isFinite(error.value) ? `${text} ${range(error, digits)}` : text;
 }
 
-// Smaller is more exact, for every measure.
+// Returns a number that is smaller for a more exact point, for every measure.
 function inexactness(point, metric) {
     const error = errorOf(point, metric);
     return error === null ? Infinity : metric.higherIsBetter ? -error.value : error.value;
@@ -86,7 +86,8 @@ function timeOf(point) {
     return isMeasured(point) ? point.time.median : Infinity;
 }
 
-// The ids of the Pareto front from the fastest: the report's own for its measure, that of the medians for others.
+// Returns the ids of the Pareto front, the fastest first. The report has the front for its own measure; for
+// others it is that of the medians.
 function frontFor(metric) {
     if (metric.key === ownMetric().key && report.front) {
         return report.front.filter((id) => pointById.has(id));
@@ -106,12 +107,13 @@ function ownMetric() {
     return metricOf(report.method?.metric);
 }
 
-// The value of a setting at a point.
+// Returns the value of a setting at a point.
 function valueAt(point, setting) {
     return String(point.settings?.[setting.name] ?? setting.default);
 }
 
-// The point that differs from the default by this value alone, or that is named so: some values take two options.
+// Returns the point that differs from the default by this value alone, or that has its name, because some
+// values take two options.
 function singleOf(setting, value) {
     return points.find((point) => {
         const changed = Object.entries(point.settings ?? {});

@@ -1,6 +1,6 @@
-// Scales from values to pixels, and their ticks. D3 has these too, in 258 KB that every page would carry.
+// Scales from values to pixels, and their ticks. D3 has these too, but every page would carry its 258 KB.
 
-// Multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, within [low, high].
+// Returns about `wanted` multiples of 1, 2 or 5 times a power of ten within [low, high].
 function linearTicks(low, high, wanted) {
     const raw = (high - low) / wanted;
     const power = 10 ** Math.floor(Math.log10(raw));
@@ -12,7 +12,8 @@ function linearTicks(low, high, wanted) {
     return ticks;
 }
 
-// Powers of ten, with their multiples by 2 and 5 where there is room, or linear ticks within less than a decade.
+// Returns powers of ten, with their multiples by 2 and 5 if there is room. Within less than a decade, ticks
+// are linear.
 function logTicks(low, high, wanted) {
     const decades = Math.log10(high / low);
     if (decades < 0.7) {
@@ -34,7 +35,7 @@ function logTicks(low, high, wanted) {
     return ticks;
 }
 
-// A scale from [low, high] to [from, to]: call it with a value; `ticks` are values.
+// Returns a scale from [low, high] to [from, to]. Call it with a value; `ticks` are values.
 function makeScale({log, low, high, from, to, ticks}) {
     const map = log ? Math.log10 : (value) => value;
     const start = map(low);
@@ -46,7 +47,7 @@ function makeScale({log, low, high, from, to, ticks}) {
     return scale;
 }
 
-// The extent of values with some room at both ends; never of length 0.
+// Returns the extent of values with some room at both ends. Its length is never 0.
 function paddedExtent(values, log) {
     let low = Math.min(...values);
     let high = Math.max(...values);

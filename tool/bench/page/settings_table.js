@@ -26,7 +26,7 @@ function settingRows() {
     ]);
 }
 
-// The values that were not tried, by the reason: [reason, values].
+// Returns the values that were not tried, grouped by reason: [reason, values].
 function skippedOf(setting) {
     const byReason = new Map();
     for (const {value, reason} of setting.skipped ?? []) {
@@ -35,7 +35,7 @@ function skippedOf(setting) {
     return [...byReason];
 }
 
-// What was skipped has no number and stays last whichever way the rest is sorted.
+// Skipped rows have no number and stay last, whichever way the rest is sorted.
 function compareRows(a, b, column) {
     const [x, y] = [column.of(a), column.of(b)];
     if (x === null || y === null) {

@@ -1,9 +1,9 @@
-// What the user chose. Parts of the page listen to what they show of it.
+// What the user chose. Each part of the page listens to the values that it shows.
 
 const state = {
     metric: ownMetric().key,
     selected: report.advice?.point ?? defaultPoint?.id ?? null,
-    pointed: null,  // under the pointer or focused
+    pointed: null,  // the point under the pointer or focused
     kind: "",
     filter: {},  // setting -> value
 };

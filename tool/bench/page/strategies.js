@@ -1,4 +1,4 @@
-// Which strategy is fastest here, and why.
+// Shows which strategy is fastest here, and why.
 
 function showStrategies() {
     const rows = report.strategies?.rows ?? [];

@@ -1,4 +1,4 @@
-// The heading: what was measured and what came out, in sentences.
+// The heading: it says in sentences what was measured and with which result.
 
 function showHeading() {
     const scene = report.scene ?? {};
