@@ -1,6 +1,5 @@
-// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers:
-// clearcoat over sheen over a base that is part metal, part dielectric. A lobe that no key of the case has
-// leaves no code.
+// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers: clearcoat over
+// sheen over a base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
 #include "generated/scene.glsl"
 #include "hit/features.glsl"
 #include "bsdf/constants.glsl"
@@ -13,15 +12,14 @@
 #include "bsdf/transmission.glsl"
 #include "bsdf/clearcoat.glsl"
 
-// GLINT_RELAXED values are shares of light in [0, 1] and may have 16 bits (--precision 16). Directions,
-// alphas, and losses, which vanish with alpha², keep 32 bits. Vectors are in the frame of the surface: z is
-// the shading normal on the viewer's side, x the direction of anisotropy.
+// GLINT_RELAXED values are shares of light in [0, 1] and may have 16 bits (--precision 16). Directions, alphas, and
+// losses, which vanish with alpha², keep 32 bits. Vectors are in the frame of the surface: z is the shading normal on
+// the viewer's side, x the direction of anisotropy.
 struct Bsdf {
     GLINT_RELAXED vec3 diffuse;   // albedo of the diffuse lobe, without metal and without what is transmitted
     GLINT_RELAXED vec3 f0;        // reflectance at normal incidence
     GLINT_RELAXED float f90;      // reflectance at grazing angles
-    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has
-                    // anisotropy
+    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy
     GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
@@ -44,9 +42,8 @@ GLINT_RELAXED vec3 meanFresnel(Bsdf b) {
     return b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
 }
 
-// The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting
-// Physically Based Shading at Imageworks" (2017). The Fresnel of the second and later bounces is that of Hill
-// (2018).
+// The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
+// Based Shading at Imageworks" (2017). The Fresnel of the second and later bounces is that of Hill (2018).
 GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b) {
     GLINT_RELAXED vec3 mean = meanFresnel(b);
     GLINT_RELAXED float loss = b.meanLoss;
@@ -64,8 +61,8 @@ GLINT_RELAXED vec3 specularAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXE
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
 }
 
-// 1 - specularAlbedo(), as a sum of positive terms: the difference would lose its digits where nearly all
-// light is reflected.
+// 1 - specularAlbedo(), as a sum of positive terms: the difference would lose its digits where nearly all light is
+// reflected.
 GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
     GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
@@ -83,15 +80,15 @@ GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
     return min(v.x, min(v.y, v.z));
 }
 
-// The part of the fitted loss that counts if the lobe is anisotropic. The fits are for isotropic lobes, and
-// along some azimuths an anisotropic lobe loses less than an isotropic lobe with either of its alphas. With
-// this factor the thousands of lobes of the furnace test make no light.
+// The part of the fitted loss that counts if the lobe is anisotropic. The fits are for isotropic lobes, and along some
+// azimuths an anisotropic lobe loses less than an isotropic lobe with either of its alphas. With this factor the
+// thousands of lobes of the furnace test make no light.
 float lossShare(Bsdf b) {
     return 0.75 + 0.25 * min(b.alpha.x, b.alpha.y) / max(b.alpha.x, b.alpha.y);
 }
 
-// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha, except for views near grazing, where it
-// rises. So the smaller loss of the two alphas and the larger bias are taken, which makes no energy.
+// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha, except for views near grazing, where it rises. So
+// the smaller loss of the two alphas and the larger bias are taken, which makes no energy.
 vec2 lobeAlbedo(Bsdf b, Features features, float cosine) {
     vec2 albedo = ggxAlbedo(cosine, b.alpha.x);
     if (hasLobe(features, GLINT_ANISOTROPY)) {
@@ -126,8 +123,8 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     }
 }
 
-// Returns whether light passes without bending. The facets that reflect and those that let light through then
-// differ, and the view alone decides between the two.
+// Returns whether light passes without bending. The facets that reflect and those that let light through then differ,
+// and the view alone decides between the two.
 bool passesStraight(Features features, float eta) {
     return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
 }
@@ -137,14 +134,12 @@ bool seenFromWithin(Bsdf b, Features features) {
     return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
 }
 
-// The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is
-// reciprocal, and the whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based
-// Coupled Specular-Matte BRDF Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF
-// 2.0, appendix B.3.5.
+// The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
+// whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
+// Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5.
 GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
-        // E does not include total reflection, so this uses what the smooth interface lets through, in both
-        // directions.
+        // E does not include total reflection, so this uses what the smooth interface lets through, in both directions.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
         vec2 light2 = exactSquare(vec2(lightCosine, 0.0));
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
@@ -189,8 +184,7 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     float lobe;
     GLINT_RELAXED float passed;
     if (passesStraight(features, eta)) {
-        // Nothing bends, whatever the facets are: the lobe is as narrow as lobes get, with the Fresnel of the
-        // view.
+        // Nothing bends, whatever the facets are: the lobe is as narrow as lobes get, with the Fresnel of the view.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
         passed = schlickPassed(b.f0, b.f90, b.view.z);
     } else if (hasLobe(features, GLINT_VOLUME)) {
@@ -215,16 +209,14 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
         result += b.transmitted * lobe;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view
-        // counts.
+        // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view counts.
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, -l.z, fresnel) * -l.z);
     }
     return result;
 }
 
-// The share of light that reaches the base below the sheen, for one cosine: KHR_materials_sheen, albedo
-// scaling.
+// The share of light that reaches the base below the sheen, for one cosine: KHR_materials_sheen, albedo scaling.
 GLINT_RELAXED float belowSheen(Bsdf b, float albedo) {
     GLINT_RELAXED float color = largest(b.sheenColor);
     GLINT_RELAXED float reflected = min(albedo, 1.0);
@@ -236,8 +228,8 @@ float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
-// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z
-// < 0 it is on the far side.
+// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
+// on the far side.
 vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
     vec3 result = vec3(0.0);

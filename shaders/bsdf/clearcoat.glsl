@@ -1,6 +1,6 @@
-// Clearcoat (KHR_materials_clearcoat): an isotropic GGX lobe of index 1.5 about its own normal. Vectors are
-// in the frame of the base, where the coat's normal need not be z. Products that nearly cancel therefore keep
-// their rounding errors.
+// Clearcoat (KHR_materials_clearcoat): an isotropic GGX lobe of index 1.5 about its own normal. Vectors are in the
+// frame of the base, where the coat's normal need not be z. Products that nearly cancel therefore keep their rounding
+// errors.
 
 // Reflectance of the layer, which depends on the angle of the view alone, as in the extension's text.
 GLINT_RELAXED float clearcoatFresnel(GLINT_RELAXED float factor, float nDotV) {

@@ -1,5 +1,5 @@
-// Sums and products that keep their rounding errors. A fused multiply-add would be shorter, but GLSL's fma()
-// need not be fused. `precise` keeps compilers from simplifying the errors away.
+// Sums and products that keep their rounding errors. A fused multiply-add would be shorter, but GLSL's fma() need not
+// be fused. `precise` keeps compilers from simplifying the errors away.
 
 // The exact error of fl(a * b): Dekker 1971, with Veltkamp's split at 12 bits.
 float productError(float a, float b, float product) {
@@ -53,10 +53,9 @@ vec2 exactSquare(vec2 x) {
     return vec2(square, productError(x.x, x.x, square) + 2.0 * x.x * x.y);
 }
 
-// The squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law. It is
-// negative beyond the critical angle. Near that angle, where reflectance is steepest, 1 - (1 - cosine²) /
-// eta² would lose its digits. That is so bad that the squared cosine of the near side must come with its
-// error.
+// The squared cosine on the far side of an interface of relative index eta = n_t / n_i, by Snell's law. It is negative
+// beyond the critical angle. Near that angle, where reflectance is steepest, 1 - (1 - cosine²) / eta² would lose its
+// digits. That is so bad that the squared cosine of the near side must come with its error.
 float refractedCosine2(vec2 cosine2, float eta) {
     vec2 eta2 = exactSquare(vec2(eta, 0.0));
     vec2 sum = exactSum(cosine2.x, eta2.x);
@@ -81,8 +80,8 @@ float accurateDot(vec3 a, vec3 b) {
     return exactDot(a, b).x;
 }
 
-// The squared cosine between a (or b) and their half vector, with its error: a quarter of |a + b|². a and b
-// are unit vectors.
+// The squared cosine between a (or b) and their half vector, with its error: a quarter of |a + b|². a and b are unit
+// vectors.
 vec2 halfCosine2(vec3 a, vec3 b) {
     vec2 x = exactSum(a.x, b.x);
     vec2 y = exactSum(a.y, b.y);
@@ -95,8 +94,8 @@ vec2 halfCosine2(vec3 a, vec3 b) {
     return 0.25 * exactSum(sum.x, sum.y + xy.y + x2.y + y2.y + z2.y);
 }
 
-// Returns cross(n, a + b), accurate where a + b is near n. It is the sine between a normal and an
-// unnormalised half vector.
+// Returns cross(n, a + b), accurate where a + b is near n. It is the sine between a normal and an unnormalised half
+// vector.
 vec3 accurateCrossOfSum(vec3 n, vec3 a, vec3 b) {
     precise vec3 s = a + b;
     vec3 low = vec3(sumError(a.x, b.x, s.x), sumError(a.y, b.y, s.y), sumError(a.z, b.z, s.z));

@@ -1,14 +1,14 @@
-// Thin-film iridescence (KHR_materials_iridescence): Belcour and Barla, "A Practical Extension to Microfacet
-// Theory for the Modeling of Varying Iridescence" (2017).
+// Thin-film iridescence (KHR_materials_iridescence): Belcour and Barla, "A Practical Extension to Microfacet Theory for
+// the Modeling of Varying Iridescence" (2017).
 
 // cos(2π cycles). The argument is reduced first, because hardware cosines are specified for one turn only.
 float cosineOfCycles(float cycles) {
     return cos(2.0 * kPi * (cycles - floor(cycles + 0.5)));
 }
 
-// The colour, in linear Rec. 709, of a spectrum that oscillates with the optical path difference
-// (nanometres): the Fourier transform of the XYZ sensitivities, fitted by Gaussians. `turns` is the phase
-// shift of each channel, in cycles.
+// The colour, in linear Rec. 709, of a spectrum that oscillates with the optical path difference (nanometres): the
+// Fourier transform of the XYZ sensitivities, fitted by Gaussians. `turns` is the phase shift of each channel, in
+// cycles.
 vec3 filmSensitivity(float pathDifference, vec3 turns) {
     float path = pathDifference * 1e-9;
     float phase = 2.0 * kPi * path;
@@ -22,9 +22,9 @@ vec3 filmSensitivity(float pathDifference, vec3 turns) {
                 0.0556434 * x - 0.2040259 * y + 1.0572252 * z);
 }
 
-// The reflectance of a film of `thickness` nanometres over a base whose reflectance at normal incidence is
-// `baseF0`, in [0, 1]. Below 0.03 nm the film's index fades to that of air, so that a film of no thickness
-// has no effect. The loop of the extension's text is unrolled: two orders of interference.
+// The reflectance of a film of `thickness` nanometres over a base whose reflectance at normal incidence is `baseF0`, in
+// [0, 1]. Below 0.03 nm the film's index fades to that of air, so that a film of no thickness has no effect. The loop
+// of the extension's text is unrolled: two orders of interference.
 vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness) {
     // The index minus 1. It has the digits that the index itself loses if it is near 1.
     float excess = (filmIor - 1.0) * smoothstep(0.0, 0.03, thickness);

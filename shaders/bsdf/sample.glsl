@@ -1,5 +1,4 @@
-// Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the
-// mixture.
+// Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the mixture.
 #include "bsdf/bsdf.glsl"
 #include "hit/geometry.glsl"
 
@@ -56,8 +55,8 @@ LobeChances lobeChances(Bsdf b, Features features) {
                        : LobeChances(0.0, 1.0, 0.0, 0.0);
 }
 
-// The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine
-// under which it is seen, with the error of the square.
+// The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine under which
+// it is seen, with the error of the square.
 vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return vec2(1.0, 0.0);
@@ -70,8 +69,8 @@ vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
 }
 
-// The squared cosine that decides between reflection and passage. It is that of the facet, `facet2`, unless
-// light passes straight.
+// The squared cosine that decides between reflection and passage. It is that of the facet, `facet2`, unless light
+// passes straight.
 vec2 decidingCosine2(Bsdf b, Features features, vec2 facet2, float eta) {
     return passesStraight(features, eta) ? exactSquare(vec2(b.view.z, 0.0)) : facet2;
 }
@@ -84,8 +83,7 @@ float sampledIndex(Bsdf b, Features features, float u) {
     return b.eta.y;
 }
 
-// The density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), with the cosine
-// cancelled.
+// The density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), with the cosine cancelled.
 float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
     return 0.5 * ggxDistribution(h, alpha) / (v.z + ggxProjection(v, alpha));
 }
@@ -165,8 +163,8 @@ vec3 reflectAbout(vec3 v, vec3 h) {
     return 2.0 * dot(v, h) * h - v;
 }
 
-// Samples a facet of the base and the direction to which it sends the view. u.z first chooses the colour,
-// then reflection or passage.
+// Samples a facet of the base and the direction to which it sends the view. u.z first chooses the colour, then
+// reflection or passage.
 vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u.xy);
     float eta = sampledIndex(b, features, u.z);
@@ -187,8 +185,8 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-// Samples a direction to which the coat reflects the view. Returns 0 if it points below the base, where the
-// coat has no density.
+// Samples a direction to which the coat reflects the view. Returns 0 if it points below the base, where the coat has no
+// density.
 vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 tangent;
     vec3 bitangent;

@@ -1,5 +1,5 @@
-// Charlie sheen (KHR_materials_sheen): Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017).
-// alpha = sheenRoughness², at least kMinSheenAlpha.
+// Charlie sheen (KHR_materials_sheen): Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017). alpha =
+// sheenRoughness², at least kMinSheenAlpha.
 
 // The NDF. sine2 = |n×h|².
 float sheenDistribution(float sine2, float alpha) {

@@ -1,10 +1,9 @@
-// Refraction at rough interfaces, for KHR_materials_transmission and KHR_materials_volume: Walter et al.,
-// "Microfacet Models for Refraction through Rough Surfaces" (2007). eta = n_t / n_i is the index of the far
-// side over that of the viewer's side. Vectors are unit vectors in the frame of the surface and point away
-// from it; the viewer is at z > 0.
+// Refraction at rough interfaces, for KHR_materials_transmission and KHR_materials_volume: Walter et al., "Microfacet
+// Models for Refraction through Rough Surfaces" (2007). eta = n_t / n_i is the index of the far side over that of the
+// viewer's side. Vectors are unit vectors in the frame of the surface and point away from it; the viewer is at z > 0.
 
-// If indices are this close, light bends by less than the width of the narrowest lobe, so it goes straight
-// on, whatever the microfacets are.
+// If indices are this close, light bends by less than the width of the narrowest lobe, so it goes straight on, whatever
+// the microfacets are.
 const float kMinIndexStep = 1e-4;
 
 bool refracts(float eta) {
@@ -28,14 +27,13 @@ struct RefractingFacet {
     vec3 h;         // unit
     float cosineV;  // v·h
     float cosineL;  // -l·h
-    float spread;   // eta² / (v·h + eta l·h)²: times |l·h| it turns densities of facets into densities of
-                    // directions
+    float spread;   // eta² / (v·h + eta l·h)²: times |l·h| it turns densities of facets into densities of directions
 };
 
 // Returns false if no facet refracts v to l.
 bool refractionHalfVector(vec3 v, vec3 l, float eta, out RefractingFacet facet) {
-    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface; its products
-    // with v and l cancel if the facet is seen from the side.
+    // v + eta l is (v·h + eta l·h) h. Its x and y cancel near the direction of a smooth surface; its products with v
+    // and l cancel if the facet is seen from the side.
     vec2 x = exactAddProduct(v.x, eta, l.x);
     vec2 y = exactAddProduct(v.y, eta, l.y);
     vec2 z = exactAddProduct(v.z, eta, l.z);
@@ -50,8 +48,8 @@ bool refractionHalfVector(vec3 v, vec3 l, float eta, out RefractingFacet facet) 
     return squared > 0.0 && facet.cosineV > 0.0 && facet.cosineL > 0.0;
 }
 
-// Light that a thin wall transmits: reflection, mirrored to the far side (KHR_materials_transmission), times
-// |n·l|, without Fresnel. `cosine` receives that between view and facet.
+// Light that a thin wall transmits: reflection, mirrored to the far side (KHR_materials_transmission), times |n·l|,
+// without Fresnel. `cosine` receives that between view and facet.
 float thinTransmission(vec3 v, vec3 l, vec2 alpha, out float cosine) {
     vec3 mirrored = vec3(l.x, l.y, -l.z);
     // |v + l| is twice the cosine between v and h. It keeps its digits if a facet is seen from the side.
@@ -62,10 +60,9 @@ float thinTransmission(vec3 v, vec3 l, vec2 alpha, out float cosine) {
     return ggxDistribution(h, alpha) * ggxVisibility(mirrored, v, alpha) * mirrored.z;
 }
 
-// Light that is transmitted into a volume (Walter et al., equation 21), times |n·l|, without Fresnel; eta
-// must differ from 1. It is in terms of flux: the compression of radiance by eta² is left out, because light
-// that comes in also goes out. `cosine` receives that to the facet on the less dense side, which Schlick's
-// approximation needs.
+// Light that is transmitted into a volume (Walter et al., equation 21), times |n·l|, without Fresnel; eta must differ
+// from 1. It is in terms of flux: the compression of radiance by eta² is left out, because light that comes in also
+// goes out. `cosine` receives that to the facet on the less dense side, which Schlick's approximation needs.
 float refractedTransmission(vec3 v, vec3 l, vec2 alpha, float eta, out float cosine) {
     RefractingFacet facet;
     cosine = 1.0;
@@ -77,8 +74,8 @@ float refractedTransmission(vec3 v, vec3 l, vec2 alpha, float eta, out float cos
            facet.spread * -l.z;
 }
 
-// The share of light that passes a length of absorbing medium (Beer and Lambert): KHR_materials_volume.
-// absorption is per metre.
+// The share of light that passes a length of absorbing medium (Beer and Lambert): KHR_materials_volume. absorption is
+// per metre.
 vec3 volumeTransmittance(vec3 absorption, float distance) {
     return exp(-absorption * distance);
 }

@@ -4,8 +4,8 @@
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
-// The mirror direction. An anisotropic lobe spreads across its grooves, so the normal bends towards the view
-// within the plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
+// The mirror direction. An anisotropic lobe spreads across its grooves, so the normal bends towards the view within the
+// plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
 vec3 ambientMirror(Surface surface, Features features, vec3 view) {
     vec3 normal = surface.normal;
     if (hasLobe(features, GLINT_ANISOTROPY)) {
@@ -16,8 +16,8 @@ vec3 ambientMirror(Surface surface, Features features, vec3 view) {
     return reflect(-view, normal);
 }
 
-// The sky behind the surface, through the microfacets. A thin wall does not bend the view; a volume bends it
-// where it enters.
+// The sky behind the surface, through the microfacets. A thin wall does not bend the view; a volume bends it where it
+// enters.
 vec3 skyBehind(Surface surface, Features features, float eta) {
     vec3 direction = -surface.bsdf.view;
     if (hasLobe(features, GLINT_VOLUME) && refracts(eta) &&
@@ -34,8 +34,8 @@ vec3 ambientTransmission(Surface surface, Features features) {
         behind.x = skyBehind(surface, features, bsdf.eta.x).x;
         behind.z = skyBehind(surface, features, bsdf.eta.z).z;
     }
-    // The rest of what the microfacets reflect. Without compensation, the loss of single scattering is
-    // subtracted too.
+    // The result is the share that the microfacets do not reflect. Without compensation, the loss of single scattering
+    // is subtracted too.
     GLINT_RELAXED float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
     GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
     return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);

@@ -10,9 +10,9 @@
 // The pair of dimensions of the sequence.
 const uint kPairOcclusion = 2u;
 
-// The rays are cosine-weighted about the shading normal, so that each counts the same. With `rays` of them
-// the mean is 1 - 1/π ∫ w(t) cos θ dω. w(t) is 1 up to the radius, or falls to 0 there with the distance t of
-// the hit. Zhukov, Iones and Kronin, "An Ambient Light Illumination Model" (1998).
+// The rays are cosine-weighted about the shading normal, so that each counts the same. With `rays` of them the mean is
+// 1 - 1/π ∫ w(t) cos θ dω. w(t) is 1 up to the radius, or falls to 0 there with the distance t of the hit. Zhukov,
+// Iones and Kronin, "An Ambient Light Illumination Model" (1998).
 void applyAmbientOcclusion(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     float open = 0.0;
     uint rays = 0u;

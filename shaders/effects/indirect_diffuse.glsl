@@ -1,5 +1,5 @@
-// The effect indirect diffuse: light that reaches the diffuse lobes after one bounce, or from the sky. It
-// replaces the sky's light without occlusion.
+// The effect indirect diffuse: light that reaches the diffuse lobes after one bounce, or from the sky. It replaces the
+// sky's light without occlusion.
 #include "bsdf/sample.glsl"
 #include "effects/sample.glsl"
 #include "effects/sky_shares.glsl"
@@ -10,13 +10,12 @@
 const uint kPairIndirect = 3u;
 const uint kPairIndirectSide = 4u;
 
-// How much a ray's cone grows in a metre. The rays of one pixel go everywhere, and their result is a mean. An
-// eighth of a radian keeps out the finest texture levels, which would only make noise.
+// How much a ray's cone grows in a metre. The rays of one pixel go everywhere, and their result is a mean. An eighth of
+// a radian keeps out the finest texture levels, which would only make noise.
 const float kIndirectSpread = 0.125;
 
-// Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters
-// light to it. The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks
-// the same.
+// Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
+// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
     vec3 front = surface.bsdf.diffuse * base;

@@ -7,9 +7,9 @@
 #include "hit/sequence.glsl"
 #include "hit/surface.glsl"
 
-// The share of a surface's reflection that its ray brings; the sky stands in for the rest. It falls to 0 over
-// the last fifth below the roughness limit, so that no edge shows where a texture crosses the limit. Just
-// below the limit a ray is still sent.
+// The share of a surface's reflection that its ray brings; the sky stands in for the rest. It falls to 0 over the last
+// fifth below the roughness limit, so that no edge shows where a texture crosses the limit. Just below the limit a ray
+// is still sent.
 float tracedShare(float roughness) {
     float limit = GLINT_FRAME.maxReflectionRoughness;
     if (roughness > limit) {
@@ -34,8 +34,8 @@ bool isMirror(float roughness) {
     return roughness <= GLINT_FRAME.mirrorRoughness;
 }
 
-// The mirror direction about the shading normal. If it points below the geometric surface, it is lifted to
-// leave it by at least 1e-3 (about a twentieth of a degree), so that no ray starts into its own surface.
+// The mirror direction about the shading normal. If it points below the geometric surface, it is lifted to leave it by
+// at least 1e-3 (a tenth of a degree), so that no ray starts into its own surface.
 vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
     vec3 direction = reflect(incoming, normal);
     float height = dot(direction, geometricNormal);
@@ -68,8 +68,7 @@ float coatLobe(Surface surface, Features features, vec3 l, out float pdf) {
                        : 0.0;
 }
 
-// A ray in the mirror direction about `normal`, whatever its pdf is. A flat mirror continues the pixel's
-// cone.
+// A ray in the mirror direction about `normal`, whatever its pdf is. A flat mirror continues the pixel's cone.
 EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
     return sentSample(hit, mirrorDirection(-hit.view, normal, hit.geometricNormal), weight, GLINT_FRAME.pixelSpread);
 }
@@ -78,8 +77,8 @@ EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
 const uint kPairDirection = 0u;
 const uint kPairLobe = 1u;
 
-// Samples a direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997,
-// balance heuristic). chances are those of base and coat; 0 for a lobe that has no density here.
+// Samples a direction of the coat or of the base, by one-sample multiple importance sampling (Veach 1997, balance
+// heuristic). chances are those of base and coat; 0 for a lobe that has no density here.
 EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLobes traced, vec2 chances,
                           bool choosesCoat) {
     Bsdf b = surface.bsdf;
@@ -104,8 +103,8 @@ EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLob
     return sentSample(hit, normalize(world), pdf > 0.0 ? weight / pdf : vec3(0.0), GLINT_FRAME.pixelSpread);
 }
 
-// Samples one ray for some lobe within the roughness limit. A lobe below the mirror limit reflects exactly;
-// between the limits its visible normals are sampled.
+// Samples one ray for some lobe within the roughness limit. A lobe below the mirror limit reflects exactly; between the
+// limits its visible normals are sampled.
 EffectSample sampleLobes(Hit hit, Surface surface, Features features, TracedLobes traced) {
     vec3 base = traced.base * firstBounce(surface, features);
     float coat = traced.coat * coatReflectance(surface, features);

@@ -11,7 +11,7 @@ EffectSample sampleRefraction(Hit hit, Surface surface, Features features, inout
     float share = baseShare(surface, features);
     vec3 weight = surface.bsdf.transmitted * (diffusePassed(surface) * share);
     sky.transmitted = 0.0;
-    // The walk begins again at the surface, without its coat and sheen. The share that these let through is
-    // stored in the place of the cone, which the walk computes anew.
+    // The walk begins again at the surface, without its coat and sheen. The share that these let through is stored in
+    // the place of the cone, which the walk computes anew.
     return sentSample(hit, -hit.view, weight, share);
 }

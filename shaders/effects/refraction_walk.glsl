@@ -1,8 +1,8 @@
 // The walk of a refracted ray from interface to interface.
 #include "generated/features.glsl"
 
-// The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and
-// absorption counts over real distances.
+// The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and absorption
+// counts over real distances.
 const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
                           GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME |
                           GLINT_DISPERSION;
@@ -28,8 +28,8 @@ struct Media {
     vec3 ior[kMaxMedia];  // indices of red, green, blue
 };
 
-// Returns the place of a material's medium counted from 1, the innermost of several; 0 if the ray is not in
-// that material.
+// Returns the place of a material's medium counted from 1, the innermost of several; 0 if the ray is not in that
+// material.
 uint placeOf(Media media, uint material) {
     uint place = 0u;
     for (uint i = 0u; i < min(media.count, kMaxMedia); ++i) {
@@ -90,8 +90,8 @@ const uint kReflects = 1u;
 const uint kStops = 2u;     // the surface is shaded like any other
 const uint kAbsorbs = 3u;
 
-// Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface,
-// whose other light is already shaded, so that the ray always passes.
+// Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface, whose
+// other light is already shaded, so that the ray always passes.
 uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
     Bsdf b = surface.bsdf;
     vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth);
@@ -162,8 +162,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     return kPasses;
 }
 
-// Sets the indices on both sides of a volume's surface, for the media that the ray is in. Returns the place
-// of the medium that the ray leaves if it passes, or 0 if it enters one.
+// Sets the indices on both sides of a volume's surface, for the media that the ray is in. Returns the place of the
+// medium that the ray leaves if it passes, or 0 if it enters one.
 uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
     vec3 own = mediumIor(hit, features);
     uint place = hit.frontFace ? 0u : placeOf(media, hit.material);
@@ -210,8 +210,7 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media.count = 0u;
-    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in
-                                                                        // effects/refraction.glsl
+    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in effects/refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
     bool meets = true;  // the ray meets a surface that affects it

@@ -3,8 +3,8 @@
 #include "hit/hit.glsl"
 #include "hit/samples.glsl"
 
-// coneSpread is the growth of the ray's cone in a metre. The sample is not sent if its result would have no
-// weight, or less than FrameConstants::faintWeight.
+// coneSpread is the growth of the ray's cone in a metre. The sample is not sent if its result would have no weight, or
+// less than FrameConstants::faintWeight.
 EffectSample sentSample(Hit hit, vec3 direction, vec3 weight, float coneSpread) {
     EffectSample result;
     float share = luminance(weight);

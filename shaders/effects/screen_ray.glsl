@@ -1,6 +1,5 @@
-// A ray as a line of pixels. Over the screen, 1/w and distance/w are linear, where w is the fourth coordinate
-// of clip space: McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (JCGT 2014). Orthographic views
-// have w = 1.
+// A ray as a line of pixels. Over the screen, 1/w and distance/w are linear, where w is the fourth coordinate of clip
+// space: McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (JCGT 2014). Orthographic views have w = 1.
 
 struct ScreenRay {
     vec2 begin;  // pixels
@@ -19,9 +18,9 @@ vec2 pixelOf(vec4 clip, vec2 size) {
     return (clip.xy / clip.w * 0.5 + 0.5) * size;
 }
 
-// The visible part of a ray: from its origin, which must be in view, to the first of the six planes of clip
-// space (reversed depth). A ray that meets none of them before `far` ends next to its vanishing point. `size`
-// is that of the image in pixels.
+// The visible part of a ray: from its origin, which must be in view, to the first of the six planes of clip space
+// (reversed depth). A ray that meets none of them before `far` ends next to its vanishing point. `size` is that of the
+// image in pixels.
 ScreenRay screenRay(vec4 origin, vec4 direction, vec2 size, float far) {
     float distance = far;
     distance = leavesAt(origin.w - origin.z, direction.w - direction.z, distance);

@@ -42,9 +42,9 @@ vec3 normalOf(vec4 position) {
     return octahedralDecode(unpackSnorm2x16(floatBitsToUint(position.w)));
 }
 
-// Returns whether the surface of a pixel hides the point: the surface is nearer, and the point is behind its
-// plane too. The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth
-// alone a ray would hit the floor that it leaves.
+// Returns whether the surface of a pixel hides the point: the surface is nearer, and the point is behind its plane too.
+// The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth alone a ray would hit
+// the floor that it leaves.
 bool isHidden(ScreenPoint point, ivec2 place) {
     float seen = imageLoad(radianceImage, place).w;
     if (seen == 0.0 || point.depth < seen) {
@@ -54,8 +54,8 @@ bool isHidden(ScreenPoint point, ivec2 place) {
     return dot(point.position - surface.xyz, normalOf(surface)) <= 0.0;
 }
 
-// Returns whether no surface of the surrounding pixels hides the point either. Then nothing as large as a
-// pixel lies between it and its neighbours on the line, even where a silhouette passes between their centres.
+// Returns whether no surface of the surrounding pixels hides the point either. Then nothing as large as a pixel lies
+// between it and its neighbours on the line, even where a silhouette passes between their centres.
 bool isClear(ScreenPoint point) {
     bool clear = true;
     for (int i = 0; clear && i < 9; ++i) {
@@ -66,11 +66,11 @@ bool isClear(ScreenPoint point) {
     return clear;
 }
 
-// Bisects the part of the line from `free`, where nothing hides the ray, to `hidden`, until it is shorter
-// than 1/64 pixel, because depths may change much within one pixel. The surface there is a hit if three
-// conditions hold: the ray is at most the surface's thickness behind it; a pixel earlier the ray was in front
-// of its plane, so that it meets the side that the camera sees; and it is not the surface that the ray
-// leaves. `pixel` is the share of the line that one pixel takes.
+// Bisects the part of the line from `free`, where nothing hides the ray, to `hidden`, until it is shorter than 1/64
+// pixel, because depths may change much within one pixel. The surface there is a hit if three conditions hold: the ray
+// is at most the surface's thickness behind it; a pixel earlier the ray was in front of its plane, so that it meets the
+// side that the camera sees; and it is not the surface that the ray leaves. `pixel` is the share of the line that one
+// pixel takes.
 ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, float hidden, float pixel) {
     while (hidden - free > 0.015625 * pixel) {
         float middle = 0.5 * (free + hidden);
@@ -90,9 +90,9 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
     return ScreenMarch(thick && crossed && point.place != insideImage(ray.begin), point.place, 0.0);
 }
 
-// Ends at the first surface that hides the ray, whether it is a hit or not, because anything may be behind
-// it. If the steps look at every pixel of the line, the returned distance is that of the last clear point but
-// one, which is a pixel before anything that the line may meet next. Otherwise it is 0.
+// Ends at the first surface that hides the ray, whether it is a hit or not, because anything may be behind it. If the
+// steps look at every pixel of the line, the returned distance is that of the last clear point but one, which is a
+// pixel before anything that the line may meet next. Otherwise it is 0.
 ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     ScreenRay ray = screenRay(toClip(vec4(origin, 1.0)), toClip(vec4(direction, 0.0)),
                               vec2(GLINT_FRAME.width, GLINT_FRAME.height), kFarDistance);
@@ -129,8 +129,8 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     return result;
 }
 
-// The light that the surface of a pixel sends to the ray: its light as the camera sees it, with the sky for
-// what it reflects, as in hits of rays.
+// The light that the surface of a pixel sends to the ray: its light as the camera sees it, with the sky for what it
+// reflects, as in hits of rays.
 vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
     uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);

@@ -1,5 +1,5 @@
-// The sky: an environment map, or a gradient. The gradient is linear in the cosine, from horizon to zenith
-// above, and from horizon to ground below.
+// The sky: an environment map, or a gradient. The gradient is linear in the cosine, from horizon to zenith above, and
+// from horizon to ground below.
 #include "bsdf/constants.glsl"
 #include "hit/bindings.glsl"
 
@@ -8,8 +8,8 @@
 // An equirectangular map. Each level holds the means over the lobes of one roughness.
 layout(set = kSetFrame, binding = kBindingEnvironment) uniform sampler2D environmentMap;
 
-// v is the polar angle from +Y; u is the azimuth from +X towards +Z, with +X at the middle of the map. Both
-// come from atan, which keeps its digits at the poles.
+// v is the polar angle from +Y; u is the azimuth from +X towards +Z, with +X at the middle of the map. Both come from
+// atan, which keeps its digits at the poles.
 vec2 environmentCoordinates(vec3 direction) {
     // At a pole any azimuth is right, and atan(0, 0) is undefined.
     float across = length(direction.xz);
@@ -17,8 +17,7 @@ vec2 environmentCoordinates(vec3 direction) {
     return vec2(azimuth / (2.0 * kPi) + 0.5 + GLINT_FRAME.environmentTurn, atan(across, direction.y) / kPi);
 }
 
-// The light that a lobe of this roughness about the direction sees. An explicit level avoids a seam where u
-// jumps.
+// The light that a lobe of this roughness about the direction sees. An explicit level avoids a seam where u jumps.
 vec3 skyAround(vec3 direction, float roughness) {
     float level = roughness * (GLINT_FRAME.environmentLevels - 1.0);
     return textureLod(environmentMap, environmentCoordinates(direction), level).rgb * GLINT_FRAME.environmentScale;
@@ -28,8 +27,8 @@ vec3 skyRadiance(vec3 direction) {
     return skyAround(direction, 0.0);
 }
 
-// Irradiance over π from nine spherical harmonics. With a small bright sun they are negative where there is
-// hardly any light.
+// Irradiance over π from nine spherical harmonics. With a small bright sun they are negative where there is hardly any
+// light.
 vec3 skyIrradianceOverPi(vec3 n) {
     vec3 sum = GLINT_FRAME.skyHarmonics[0] + GLINT_FRAME.skyHarmonics[1] * n.x + GLINT_FRAME.skyHarmonics[2] * n.y +
                GLINT_FRAME.skyHarmonics[3] * n.z + GLINT_FRAME.skyHarmonics[4] * (3.0 * n.y * n.y - 1.0) +
@@ -45,8 +44,8 @@ vec3 skyRadiance(vec3 direction) {
     return mix(GLINT_FRAME.skyHorizon, pole, min(abs(direction.y), 1.0));
 }
 
-// Irradiance over π from the first two orders of spherical harmonics (Ramamoorthi and Hanrahan 2001): the
-// mean of the radiance plus 2/3 of its first moment. Both are exact for this sky.
+// Irradiance over π from the first two orders of spherical harmonics (Ramamoorthi and Hanrahan 2001): the mean of the
+// radiance plus 2/3 of its first moment. Both are exact for this sky.
 vec3 skyIrradianceOverPi(vec3 normal) {
     vec3 mean = 0.25 * (2.0 * GLINT_FRAME.skyHorizon + GLINT_FRAME.skyZenith + GLINT_FRAME.skyGround);
     vec3 slope = 0.5 * (GLINT_FRAME.skyZenith - GLINT_FRAME.skyGround);

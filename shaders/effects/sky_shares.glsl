@@ -1,7 +1,6 @@
 #include "generated/scene.glsl"
 
-// The shares of the sky's light on a surface that remain. Light that an effect traces no longer comes from
-// the sky.
+// The shares of the sky's light on a surface that remain. Light that an effect traces no longer comes from the sky.
 struct SkyShares {
     GLINT_RELAXED float mirrored;     // of the base's reflection at the first bounce
     GLINT_RELAXED float coated;       // of the coat's reflection

@@ -2,9 +2,8 @@
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"
 
-// Returns whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. It reads mip 0,
-// because traversal knows no footprint. The module's own cases do not matter here: a ray of any case meets
-// masks of all cases.
+// Returns whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. It reads mip 0, because
+// traversal knows no footprint. The module's own cases do not matter here: a ray of any case meets masks of all cases.
 bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
     Features features = Features(0u, GLINT_ALPHA_ALWAYS, 0u, GLINT_ALPHA_SOMETIMES, 0u, geometry.featureInputs);
     MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];

@@ -1,5 +1,5 @@
-// Appends the rays of a workgroup to the list side by side, with one atomic on the list's length. So the pass
-// that traces the list finds neighbours on the screen together. For compute shaders.
+// Appends the rays of a workgroup to the list side by side, with one atomic on the list's length. So the pass that
+// traces the list finds neighbours on the screen together. For compute shaders.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
@@ -8,8 +8,8 @@
 shared uint appendedRays;   // number of rays of the workgroup
 shared uint appendedBegin;  // their begin in the list
 
-// Returns the slot of a thread's ray, and counts it in kCounterRays. The slot is undefined for a thread
-// without a ray. All threads of the workgroup must call this.
+// Returns the slot of a thread's ray, and counts it in kCounterRays. The slot is undefined for a thread without a ray.
+// All threads of the workgroup must call this.
 uint appendedSlot(bool hasRay) {
     if (gl_LocalInvocationIndex == 0u) {
         appendedRays = 0u;

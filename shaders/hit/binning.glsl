@@ -1,6 +1,6 @@
-// Sorts the rays of a workgroup by direction before they join the list, so that neighbours in the list walk
-// through the same parts of the acceleration structure. The workgroup must have at least kMaxDirectionBins
-// threads, and all of them must call.
+// Sorts the rays of a workgroup by direction before they join the list, so that neighbours in the list walk through the
+// same parts of the acceleration structure. The workgroup must have at least kMaxDirectionBins threads, and all of them
+// must call.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -15,8 +15,8 @@ shared uint groupBegin;                    // begin of the workgroup's rays in t
 // The bin of a thread without a ray. It is above every other bin.
 const uint kNoBin = 0xFFFFFFFFu;
 
-// Returns the number of this thread's ray among those of its bin. Conditions are equal in all threads of a
-// subgroup; it takes one atomic for each bin that a subgroup has.
+// Returns the number of this thread's ray among those of its bin. Conditions are equal in all threads of a subgroup; it
+// takes one atomic for each bin that a subgroup has.
 uint numberInBin(uint bin) {
     uint number = 0u;
     uint next = subgroupMin(bin);
@@ -35,8 +35,8 @@ uint numberInBin(uint bin) {
     return number;
 }
 
-// Returns the slot in the list of a thread's ray, and counts the rays in kCounterRays with one atomic for
-// each workgroup. The slot is undefined for a thread without a ray.
+// Returns the slot in the list of a thread's ray, and counts the rays in kCounterRays with one atomic for each
+// workgroup. The slot is undefined for a thread without a ray.
 uint binnedSlot(bool hasRay, vec3 direction) {
     uint thread = gl_LocalInvocationIndex;
     if (thread < kMaxDirectionBins) {

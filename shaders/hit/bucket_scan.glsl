@@ -1,5 +1,5 @@
-// Derives from the counts of the buckets where each begins, so that the order of buckets does not depend on
-// timing, and the indirect arguments for shading it.
+// Derives from the counts of the buckets where each begins, so that the order of buckets does not depend on timing, and
+// the indirect arguments for shading it.
 #include "hit/list.glsl"
 
 // The slots that a bucket takes up; the next bucket begins behind them.

@@ -16,8 +16,8 @@ CameraRay cameraRay(uvec2 pixel) {
     return CameraRay(GLINT_FRAME.cameraPosition, normalize(GLINT_FRAME.cameraForward + across));
 }
 
-// The barycentrics of the point where a ray meets a triangle's plane, clamped to the triangle: the rasteriser
-// decides that the pixel is covered, and rounds differently. Möller and Trumbore (1997).
+// The barycentrics of the point where a ray meets a triangle's plane, clamped to the triangle: the rasteriser decides
+// that the pixel is covered, and rounds differently. Möller and Trumbore (1997).
 vec2 rayTriangleBarycentrics(CameraRay ray, vec3 p0, vec3 edge1, vec3 edge2) {
     vec3 p = cross(ray.direction, edge2);
     float determinant = dot(edge1, p);

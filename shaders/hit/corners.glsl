@@ -1,5 +1,5 @@
-// The source of the hit triangle's corners: its vertex buffer, or the acceleration structure, which has
-// already read them. For modules that trace and shade. Include it before hit/hit.glsl.
+// The source of the hit triangle's corners: its vertex buffer, or the acceleration structure, which has already read
+// them. For modules that trace and shade. Include it before hit/hit.glsl.
 #include "generated/scene.glsl"
 
 #if GLINT_POSITION_FETCH

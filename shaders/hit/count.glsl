@@ -1,7 +1,8 @@
-// Counts what effects do. Each count has kCounterCopies counters, and adjacent workgroups add to different
-// ones, because a GPU executes atomics on one address one after the other. The host sums them up.
-// Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders,
-// which may lack subgroup operations, add one by one.
+// Counts what effects do. Each count has kCounterCopies counters, and adjacent workgroups add to different ones,
+// because a GPU executes atomics on one address one after the other. The host sums them up.
+//
+// Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders, which may
+// lack subgroup operations, add one by one.
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
@@ -49,8 +50,7 @@ void countThreads(uint counter, bool counted) {
     }
 }
 
-// Adds one to the count `kind` of each thread whose `counted` is true, with one atomic for each kind in the
-// subgroup.
+// Adds one to the count `kind` of each thread whose `counted` is true, with one atomic for each kind in the subgroup.
 void countKinds(uint effect, bool counted, uint kind) {
     const uint kNone = 0xFFFFFFFFu;
     uint waiting = counted ? kind : kNone;
@@ -64,8 +64,8 @@ void countKinds(uint effect, bool counted, uint kind) {
 
 #endif
 
-// Counts the rays of an effect that are traced at once, and those of them that hit nothing. All active
-// threads of a subgroup must call.
+// Counts the rays of an effect that are traced at once, and those of them that hit nothing. All active threads of a
+// subgroup must call.
 void countRays(uint effect, uint rays, uint misses) {
     if (GLINT_FRAME.countsLight != 0u) {
         addToCounter(counterOf(effect, kRaySent), rays);

@@ -1,9 +1,8 @@
 #include "generated/features.glsl"
 
-// The features that a case knows about its keys. `always` and `sometimes` are literals of the case; `lobes`
-// and `inputs` are the key of the geometry at hand. The functions are written so that SPIRV-Tools folds every
-// decided bit: a feature that no key of the case has leaves no code, and one that every key has leaves no
-// branch.
+// The features that a case knows about its keys. `always` and `sometimes` are literals of the case; `lobes` and
+// `inputs` are the key of the geometry at hand. The functions are written so that SPIRV-Tools folds every decided bit:
+// a feature that no key of the case has leaves no code, and one that every key has leaves no branch.
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
@@ -23,9 +22,9 @@ bool inputOfKey(Features features, uint bit) {
            ((features.sometimesInputs & bit) != 0u && (features.inputs & bit) != 0u);
 }
 
-// The features that all cases of the module have, and those that any has. A module that defines them before
-// it includes this file compiles several times faster, because what is decided for the whole module is
-// removed before functions are inlined.
+// The features that all cases of the module have, and those that any has. A module that defines them before it includes
+// this file compiles several times faster, because what is decided for the whole module is removed before functions are
+// inlined.
 #ifndef GLINT_MODULE_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_LOBES 0u
 #define GLINT_MODULE_ALWAYS_INPUTS 0u

@@ -1,7 +1,7 @@
 // Frames, normals and offsets.
 
-// An orthonormal basis without a branch on the sign of n.z: Duff et al., "Building an Orthonormal Basis,
-// Revisited" (JCGT 2017). n is a unit vector.
+// An orthonormal basis without a branch on the sign of n.z: Duff et al., "Building an Orthonormal Basis, Revisited"
+// (JCGT 2017). n is a unit vector.
 void buildBasis(vec3 n, out vec3 tangent, out vec3 bitangent) {
     float s = n.z >= 0.0 ? 1.0 : -1.0;
     float a = -1.0 / (s + n.z);
@@ -10,7 +10,7 @@ void buildBasis(vec3 n, out vec3 tangent, out vec3 bitangent) {
     bitangent = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
-// Octahedral mapping of a unit vector to [-1, 1]²: Cigolle et al., "A Survey of Efficient Representations for
+// The octahedral mapping of a unit vector to [-1, 1]²: Cigolle et al., "A Survey of Efficient Representations for
 // Independent Unit Vectors" (JCGT 2014).
 vec2 octahedralEncode(vec3 v) {
     vec2 p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
@@ -24,16 +24,17 @@ vec3 octahedralDecode(vec2 e) {
     return normalize(vec3(e.x + (e.x >= 0.0 ? -t : t), e.y + (e.y >= 0.0 ? -t : t), z));
 }
 
-// What decides where a ray starts and where it goes is `precise`: each shader rounds it in the same way, or a shadow
-// ray at the edge of something would depend on the strategy that shades it.
+// Values that decide where a ray starts and where it goes are `precise`, so that each shader rounds them in the same
+// way. Otherwise a shadow ray at an edge would depend on the strategy that shades the hit.
 
-// A vector's direction, or `fallback` where it has none (degenerate triangles, singular transforms) or is no number.
-// Scaled first, so that no square leaves the range of floats: good for lengths from 1e-37 to 1e37.
+// Returns a vector's direction, or `fallback` if it has none (degenerate triangles, singular transforms) or is not a
+// number. The vector is scaled first, so that no square leaves the range of floats: this works for lengths from 1e-37
+// to 1e37.
 vec3 directionOr(vec3 v, vec3 fallback) {
     precise vec3 scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
     precise float squared = dot(scaled, scaled);
     precise vec3 direction = scaled * inversesqrt(squared);
-    // 1 to 3; 0, infinity and NaN leave the range.
+    // The square is 1 to 3; 0, infinity and NaN lead outside of this range.
     return squared > 0.5 && squared < 4.0 ? direction : fallback;
 }
 
@@ -60,29 +61,32 @@ struct TrianglePoint {
     vec3 position;
 };
 
-// How far from its triangle's plane, along the world's unit normal n, rounding may put a point that has been
-// transformed into the world, sent off as a ray's origin, transformed back by the traversal and intersected with the
+// Bounds how far rounding may move a point from its triangle's plane, along the world's unit normal n. The point is
+// transformed into the world, used as a ray's origin, transformed back by the traversal and intersected with the
 // triangle. Forward error analysis (Higham, Accuracy and Stability of Numerical Algorithms, chapter 3): each sum of
-// products is off by at most the sum of their absolute values times the number of roundings in a row, here below 16.
+// products is off by at most the sum of their absolute values times the number of successive roundings, which is below
+// 16 here.
 float planeError(vec3 n, TrianglePoint point, vec4 objectToWorld[3], vec3 normalToWorld[3]) {
     const float kSixteenRoundings = 1.0 / 1048576.0;
-    // The plane's normal in the mesh's space, in metres of the world for one of the mesh.
+    // The plane's normal in the mesh's space, in metres of the world for one unit of the mesh.
     precise vec3 r = abs(n.x * objectToWorld[0].xyz + n.y * objectToWorld[1].xyz + n.z * objectToWorld[2].xyz);
-    // Interpolation and intersection, which mixes the axes: a triangle in the plane z = 0 is met at a rounded z, too.
+    // Interpolation and intersection. The latter mixes the axes: even a triangle in the plane z = 0 is met at a rounded
+    // z.
     vec3 extent = abs(point.edge1) + abs(point.edge2);
     float largestExtent = max(extent.x, max(extent.y, extent.z));
     precise float object = dot(r, abs(point.corner) + vec3(largestExtent));
-    // Into the world. The terms are no smaller than their sum: this bounds the world's coordinates, too.
+    // The transform into the world. The terms are no smaller than their sum, so this bounds the world's coordinates
+    // too.
     precise vec3 terms = vec3(dot(abs(objectToWorld[0]), vec4(abs(point.position), 1.0)),
                       dot(abs(objectToWorld[1]), vec4(abs(point.position), 1.0)),
                       dot(abs(objectToWorld[2]), vec4(abs(point.position), 1.0)));
     precise float world = dot(abs(n), terms);
-    // And back: by the inverse, which is the transposed cofactors over the determinant.
+    // The transform back by the inverse, which is the transposed cofactors over the determinant.
     precise vec3 inverse = vec3(dot(abs(normalToWorld[0]), r), dot(abs(normalToWorld[1]), r),
                                 dot(abs(normalToWorld[2]), r));
     precise float determinant = dot(objectToWorld[0].xyz, normalToWorld[0]);
     precise float back = dot(inverse, terms) / determinant;
-    // Past a condition of 1000 an origin so far off would leave the scene's detail behind.
+    // Beyond a condition number of 1000, an origin this far off would skip the scene's details.
     precise float most = 1024.0 * (object + world);
     precise float bound = kSixteenRoundings * (object + world + (back < most ? back : most));
     return bound;

@@ -1,4 +1,5 @@
-// A hit with its vertex attributes fetched and interpolated: all that materials read apart from their own record.
+// A hit with its vertex attributes fetched and interpolated: everything that materials read apart from their own
+// record.
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"
 #include "hit/geometry.glsl"
@@ -10,30 +11,30 @@
 
 struct Hit {
     vec3 position;         // world
-    vec3 geometricNormal;  // unit, on the viewer's side
-    float clearance;       // how far along it a ray that leaves the surface must start, metres
-    vec3 normal;           // interpolated, unit, on the side that the surface's front faces
-    vec3 view;             // unit, towards the viewer
+    vec3 geometricNormal;  // unit vector, on the viewer's side
+    float clearance;       // metres along geometricNormal at which a ray that leaves the surface must start
+    vec3 normal;           // interpolated, unit vector, on the side that the surface's front faces
+    vec3 view;             // unit vector, towards the viewer
     bool frontFace;
     uint material;
-    uint target;  // number of the sample that the hit is of; of a primary surface, of its pixel
+    uint target;  // number of the hit's sample; for a primary surface, of its pixel
     vec2 texCoords[2];
     vec4 color;
     vec4 tangent;    // world; w is the sign of the bitangent
     vec3 edges[2];   // world: from the first vertex to the second and third
-    vec4 uvEdges[2]; // by UV set: (Δu, Δv) along each edge
+    vec4 uvEdges[2]; // for each UV set: (Δu, Δv) along each edge
     vec4 footprint;  // axes of the ray cone's ellipse, across the ray and along it, in units of the edges
-    float scale;     // metres of the world in one of the mesh
+    float scale;     // metres of the world for one unit of the mesh
 };
 
-// Where a ray from the surface starts: off it, on the side that `direction` points to.
+// Returns the start of a ray from the surface. It lies off the surface, on the side to which `direction` points.
 vec3 rayOrigin(Hit hit, vec3 direction) {
     float side = dot(hit.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
     precise vec3 origin = hit.position + side * hit.clearance * hit.geometricNormal;
     return origin;
 }
 
-// A point of a triangle, world.
+// Returns a point of a triangle in the world.
 vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
     vec3 p0 = geometry.positions.data[geometry.indices.data[3u * primitive]];
     vec3 p1 = geometry.positions.data[geometry.indices.data[3u * primitive + 1u]];
@@ -42,7 +43,7 @@ vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics
                           p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
-// Attributes are fetched where `features` may need them. rayDirection is unit; coneWidth is that of the ray cone at
+// Fetches the attributes that `features` may need. rayDirection is a unit vector; coneWidth is that of the ray cone at
 // the hit.
 Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
              uint target, Features features) {
@@ -57,7 +58,7 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.material = geometry.materialIndex;
     hit.target = target;
 
-    // Position and the plane of the triangle. Counter-clockwise is the front in object space.
+    // The position and the plane of the triangle. In object space, the front is counter-clockwise.
     vec3 p0 = GLINT_CORNER(0);
     vec3 e1 = GLINT_CORNER(1) - p0;
     vec3 e2 = GLINT_CORNER(2) - p0;
@@ -86,7 +87,7 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
         hit.tangent = vec4(transformVector(instance.objectToWorld, t.xyz), mirrored ? -t0.w : t0.w);
     }
 
-    // UV sets, with their edges for derived frames and for the level of detail.
+    // The UV sets, with their edges for derived frames and for the level of detail.
     hit.texCoords[0] = vec2(0.0);
     hit.texCoords[1] = vec2(0.0);
     hit.uvEdges[0] = vec4(0.0);
@@ -117,7 +118,7 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.footprint = vec4(inEdges(across, hit.edges[0], hit.edges[1]), inEdges(along, hit.edges[0], hit.edges[1]));
     hit.scale = 1.0;
     if (hasLobe(features, GLINT_ATTENUATION)) {
-        // Root mean square over the axes.
+        // The scale is the root mean square over the axes.
         vec3 x = instance.objectToWorld[0].xyz;
         vec3 y = instance.objectToWorld[1].xyz;
         vec3 z = instance.objectToWorld[2].xyz;

@@ -1,4 +1,4 @@
-// Closest-hit shaders of the strategy hit-shaders: shading, with the shadow ray left to ray generation.
+// The closest-hit shaders of the strategy hit-shaders. They shade; ray generation traces the shadow ray.
 #extension GL_EXT_ray_tracing : require
 
 #include "generated/scene.glsl"

@@ -2,8 +2,8 @@
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
-// A workgroup for every `groupSize` elements, in two dimensions where one does not hold them; and a ray generation
-// thread for each.
+// Returns the arguments for one workgroup for every `groupSize` elements, in two dimensions if one is not enough, and
+// for one ray generation thread for each element.
 DispatchArguments listDispatch(uint count, uint groupSize) {
     uint groups = (count + (groupSize - 1u)) / groupSize;
     uint rows = (groups + (kMaxRayGroupsX - 1u)) / kMaxRayGroupsX;
@@ -11,7 +11,7 @@ DispatchArguments listDispatch(uint count, uint groupSize) {
     return DispatchArguments(min(groups, kMaxRayGroupsX), rows, any, count, count, any, any, 0u);
 }
 
-// Index of this thread in such a dispatch; it may be beyond the list.
+// Returns the index of this thread in such a dispatch. It may be beyond the list.
 uint listIndex() {
 #if GLINT_RAY_GENERATION
     return gl_LaunchIDEXT.x;

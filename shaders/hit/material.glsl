@@ -1,4 +1,4 @@
-// From a hit and its material to a Surface. Roughness and thickness, which limits and wavelengths are compared with,
+// Makes a Surface of a hit and its material. Roughness and thickness are compared with limits and wavelengths, so they
 // keep 32 bits whatever the precision.
 #include "hit/surface.glsl"
 #include "hit/texture.glsl"
@@ -9,13 +9,13 @@ GLINT_RELAXED vec4 baseColor(Hit hit, Features features) {
         color *= sampleSlot(hit, kTextureBaseColor, features);
     }
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
-        // glTF 2.0, section 3.7.2.1, bounds them; in 16 bits what is beyond would overflow further on.
+        // glTF 2.0, section 3.7.2.1, bounds vertex colours. Values beyond would overflow in 16 bits.
         color *= GLINT_PRECISION == 16 ? clamp(hit.color, vec4(0.0), vec4(1.0)) : hit.color;
     }
     return color;
 }
 
-// Normals of double-sided materials turn to the viewer.
+// The normals of double-sided materials turn to the viewer.
 float facing(Hit hit, Features features) {
     return hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace ? -1.0 : 1.0;
 }
@@ -31,15 +31,15 @@ vec3 emission(Hit hit, Features features) {
     return emitted;
 }
 
-// The base's colour as the extensions on top see it.
+// The base's colour, for the extensions on top of it.
 struct Base {
     GLINT_RELAXED vec3 color;
     GLINT_RELAXED float metallic;
     float roughness;
 };
 
-// Metallic-roughness: glTF 2.0, section 3.9.2 and appendix B.3.5, the dielectric's reflectance by KHR_materials_ior
-// and KHR_materials_specular. The fields of other lobes are left as they are.
+// Metallic-roughness: glTF 2.0, section 3.9.2 and appendix B.3.5. The dielectric's reflectance follows
+// KHR_materials_ior and KHR_materials_specular. The fields of other lobes are not changed.
 void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
     base.metallic = GLINT_MATERIAL(hit).metallicFactor;
@@ -69,7 +69,7 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
     bsdf.f90 = mix(f90, 1.0, base.metallic);
 }
 
-// KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, of which surfaces reflect no more than there is.
+// KHR_materials_pbrSpecularGlossiness: diffuse and specular colours. Surfaces reflect at most all of the light.
 void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
     base.metallic = 0.0;
@@ -87,7 +87,8 @@ void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Bas
     bsdf.f90 = 1.0;
 }
 
-// KHR_materials_anisotropy: alphas along the direction of anisotropy and across, and that direction as the frame's x.
+// KHR_materials_anisotropy: the alphas along the direction of anisotropy and across it. That direction becomes the
+// frame's x.
 void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
     vec2 direction = GLINT_MATERIAL(hit).anisotropyDirection;
     float strength = GLINT_MATERIAL(hit).anisotropyStrength;
@@ -110,8 +111,9 @@ void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
     surface.bsdf.alpha.x = mix(alpha, 1.0, strength * strength);
 }
 
-// KHR_materials_iridescence, at the angle of the view for all lights, as the reference renderer has it: the film's
-// reflectance becomes the f0 with which Schlick gives it, so that the albedos of the lobe stay known.
+// KHR_materials_iridescence. As in the reference renderer, the angle of the view serves for all lights. The film's
+// reflectance is turned into the f0 with which Schlick's approximation gives it, so that the albedos of the lobe are
+// still known.
 void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) {
     GLINT_RELAXED float factor = GLINT_MATERIAL(hit).iridescenceFactor;
     float thickness = GLINT_MATERIAL(hit).iridescenceThicknessMaximum;
@@ -127,8 +129,8 @@ void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) 
     bsdf.f0 = mix(bsdf.f0, min(schlickF0(film, bsdf.f90, nDotV), vec3(bsdf.f90)), factor);
 }
 
-// KHR_materials_transmission, KHR_materials_diffuse_transmission, KHR_materials_volume, KHR_materials_dispersion: what
-// passes the surface, out of what the diffuse lobe would have had.
+// KHR_materials_transmission, KHR_materials_diffuse_transmission, KHR_materials_volume, KHR_materials_dispersion: the
+// light that passes the surface is taken from the diffuse lobe.
 void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
     GLINT_RELAXED float transmission = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
@@ -160,7 +162,7 @@ void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
         bool inside = hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace;
         bsdf.eta = inside ? vec3(1.0) / iors : iors;
         if (inside) {
-            // From within, more is reflected than the albedos of the outside say: the diffuse lobe makes way.
+            // From within, more is reflected than the albedos of the outside say, so the diffuse lobe is removed.
             bsdf.diffuse = vec3(0.0);
             bsdf.diffuseTransmitted = vec3(0.0);
         }
@@ -203,7 +205,8 @@ void applyClearcoat(Hit hit, Features features, inout Surface surface) {
     surface.bsdf.clearcoat = factor;
     surface.bsdf.clearcoatAlpha = max(roughness * roughness, kMinAlpha);
     surface.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
-    // The base's normal texture does not bend the coat: without one of its own the coat has the mesh's normal.
+    // The base's normal texture does not affect the coat. Without a normal texture of its own, the coat has the mesh's
+    // normal.
     if (hasInput(features, GLINT_CLEARCOAT_NORMAL_TEXTURE)) {
         vec3 normal = mappedNormal(hit, kTextureClearcoatNormal, GLINT_MATERIAL(hit).clearcoatNormalScale, features);
         surface.bsdf.clearcoatNormal = directionOr(toSurface(surface, normal * facing(hit, features)),

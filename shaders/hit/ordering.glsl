@@ -1,25 +1,26 @@
-// Adds the hits of a workgroup to their buckets, by the module's ordering: GLINT_ORDERING is package::Ordering. The
-// module says before it includes this file which words of FrameConstants it adds to, GLINT_BUCKET_WORDS, and whether it
-// needs to know each hit's number in its bucket, GLINT_HITS_NUMBERED. The ordering tile-sort is apart: hit/tile_sort.glsl.
+// Adds the hits of a workgroup to their buckets, by the module's ordering (GLINT_ORDERING is package::Ordering). Before
+// it includes this file, the module defines GLINT_BUCKET_WORDS, the words of FrameConstants to add to, and
+// GLINT_HITS_NUMBERED, which says whether it needs each hit's number in its bucket. The ordering tile-sort is separate:
+// hit/tile_sort.glsl.
 //
-// Threads beyond the list take part, with kNoBucket: no thread may have returned before. Subgroups may have 1 to 128
+// Threads beyond the list take part with kNoBucket, so no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
-// that divides one. Only basic, ballot and arithmetic operations: not every device shuffles.
+// that divides one. Only basic, ballot and arithmetic operations are used, because not every device has shuffles.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 #include "hit/bindings.glsl"
 
-// Of a thread that has no hit: above every bucket.
+// The bucket of a thread without a hit. It is above every other bucket.
 const uint kNoBucket = 0xFFFFFFFFu;
 
 uint addToBucket(uint bucket, uint hits) {
     return atomicAdd(GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket], hits);
 }
 
-// Adds to a bucket that the whole subgroup names; gives each thread the number of the first. One atomic, by the first
-// thread, whatever its own hit, so that no other broadcast is needed than that from the first.
+// Adds to a bucket that is the same in the whole subgroup, and gives each thread the number of the first hit. The first
+// thread does one atomic, whatever its own hit is, so that a broadcast from the first thread is enough.
 uint addForSubgroup(uint bucket, uint hits) {
     uint first = 0u;
     if (subgroupElect()) {
@@ -28,8 +29,8 @@ uint addForSubgroup(uint bucket, uint hits) {
     return subgroupBroadcastFirst(first);
 }
 
-// addHit(): the word before this hit was added; a hit that goes before it in the same bucket has a lower one. Undefined
-// for a thread without a hit, and where hits are not numbered.
+// addHit() returns the word before this hit was added. A hit that comes before it in the same bucket has a lower word.
+// The result is undefined for a thread without a hit, and if hits are not numbered.
 
 #if GLINT_ORDERING == 0  // global-atomics
 
@@ -39,7 +40,7 @@ uint addHit(uint bucket) {
 
 #elif GLINT_ORDERING == 1  // wave-loop
 
-// The buckets that the subgroup has, in their order.
+// Loops over the buckets in the subgroup, in ascending order.
 uint addHit(uint bucket) {
     uint number = 0u;
     uint next = subgroupMin(bucket);
@@ -56,7 +57,7 @@ uint addHit(uint bucket) {
 
 #elif GLINT_ORDERING == 2  // wave-aggregated
 
-// Every bucket there is.
+// Loops over all buckets.
 uint addHit(uint bucket) {
     uint number = 0u;
     for (uint next = 0u; next <= GLINT_CASE_COUNT; ++next) {
@@ -74,11 +75,11 @@ uint addHit(uint bucket) {
 #elif GLINT_ORDERING == 3  // wave-ballot
 
 #if GLINT_HITS_NUMBERED
-shared uint leadersBefore;               // leaders of the subgroups that came first
-shared uint firstNumbers[kRayGroupSize];  // by leader: there are no more of them than threads
+shared uint leadersBefore;               // leaders of the subgroups that came before
+shared uint firstNumbers[kRayGroupSize];  // by leader; there are at most as many leaders as threads
 #endif
 
-// Lanes whose hits go to this lane's bucket: of each bit of the bucket's number, those that have the same.
+// The lanes whose hits go to this lane's bucket: those that agree in each bit of the bucket's number.
 uvec4 lanesOfBucket(uint bucket) {
     uvec4 lanes = subgroupBallot(bucket != kNoBucket);
     for (uint bit = 1u; bit <= GLINT_CASE_COUNT; bit <<= 1u) {
@@ -95,8 +96,9 @@ uvec4 lanesBelow(uint lane) {
                  bitfieldInsert(0u, ~0u, 0, bits.z), bitfieldInsert(0u, ~0u, 0, bits.w));
 }
 
-// The first lane of each bucket leads: all atomics of the subgroup at once. Leaders pass their numbers on through
-// shared memory, as lanes of different buckets read from different leaders, which takes a shuffle otherwise.
+// The first lane of each bucket leads, so that all atomics of the subgroup happen at once. Leaders pass their numbers
+// on through shared memory: lanes of different buckets read from different leaders, which would otherwise take a
+// shuffle.
 uint addHit(uint bucket) {
     bool hasHit = bucket != kNoBucket;
     uvec4 lanes = lanesOfBucket(bucket);
@@ -113,7 +115,7 @@ uint addHit(uint bucket) {
         before = atomicAdd(leadersBefore, subgroupBallotBitCount(leaders));
     }
     before = subgroupBroadcastFirst(before);
-    // A lane without a hit looks for no leader: its ballot may be empty, and a search in it undefined.
+    // A lane without a hit looks for no leader, because its ballot may be empty and a search in it is then undefined.
     uint leader = hasHit ? subgroupBallotFindLSB(lanes) : 0u;
     uint place = before + subgroupBallotBitCount(leaders & lanesBelow(leader));
     if (leads) {
@@ -131,10 +133,10 @@ uint addHit(uint bucket) {
 
 #elif GLINT_ORDERING == 4  // local-histogram
 
-// Renderers refuse this ordering where there are more buckets.
+// Renderers refuse this ordering if there are more buckets.
 shared uint localCounts[min(GLINT_CASE_COUNT + 1u, kMaxLocalBuckets)];
 
-// Only counts of buckets that the workgroup has are touched: the work does not grow with the number of buckets.
+// Only the counts of buckets that the workgroup has are touched, so the work does not grow with the number of buckets.
 uint addHit(uint bucket) {
     bool hasHit = bucket != kNoBucket;
     if (hasHit) {
@@ -143,7 +145,8 @@ uint addHit(uint bucket) {
     barrier();
     uint rank = hasHit ? atomicAdd(localCounts[bucket], 1u) : 0u;
     barrier();
-    // The first hit of each bucket; the count makes room for the number of the first, which it alone writes.
+    // The first hit of each bucket adds the count. The word of the count then holds the number of the first hit, which
+    // only this thread writes.
     if (hasHit && rank == 0u) {
         localCounts[bucket] = addToBucket(bucket, localCounts[bucket]);
     }

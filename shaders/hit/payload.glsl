@@ -1,15 +1,16 @@
-// What rays of a ray tracing pipeline carry.
+// The payloads of rays in a ray tracing pipeline.
 
-// Of rays that are shaded elsewhere, 20 bytes. A shadow ray reads the first alone.
+// The payload of rays that are shaded elsewhere, 20 bytes. A shadow ray reads only the first member.
 struct TracePayload {
-    uint geometry;  // kMissGeometry: nothing was hit
+    uint geometry;  // kMissGeometry if nothing was hit
     uint primitive;
     vec2 barycentrics;
     float distance;
 };
 
-// Of the strategy hit-shaders, 52 bytes: what a ShadeResult holds, and where the shadow ray starts. On the way to the
-// hit, `radiance` carries the number of the sample (bits), the width of the cone at the ray's start and its spread.
+// The payload of the strategy hit-shaders, 52 bytes: the content of a ShadeResult, and the start of the shadow ray. On
+// the way to the hit, `radiance` holds the number of the sample (as bits), the cone's width at the ray's start, and its
+// spread.
 struct HitPayload {
     vec3 radiance;
     vec3 direct;

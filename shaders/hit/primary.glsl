@@ -1,4 +1,4 @@
-// The surface of a pixel, from the visibility of the G-buffer.
+// The surface of a pixel, from the visibility in the G-buffer.
 #include "hit/camera.glsl"
 #include "hit/hit.glsl"
 

@@ -5,13 +5,13 @@
 #include "hit/geometry.glsl"
 
 struct LightSample {
-    vec3 direction;  // unit, towards the light
+    vec3 direction;  // unit vector, towards the light
     float distance;  // metres; kFarDistance for a directional light
     vec3 irradiance; // on a surface that faces the light
-    uint gate;       // kRaySent, or what keeps the light away: kRayRange, kRayCone
+    uint gate;       // kRaySent, or why no light arrives: kRayRange, kRayCone
 };
 
-// Squared distance to a light is at least 1 mm²: bounds the irradiance on a surface that touches a light.
+// The squared distance to a light is at least 1 mm², which bounds the irradiance on a surface that touches a light.
 const float kMinSquaredDistance = 1e-6;
 
 LightSample sampleLight(LightRecord light, vec3 position) {
@@ -21,9 +21,9 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     precise vec3 toLight = light.position - position;
     precise float squared = dot(toLight, toLight);
     precise float distance = sqrt(squared);
-    // A light at the point itself lights no side of it.
+    // A light at the point itself lights neither side.
     precise vec3 direction = squared > 0.0 ? toLight / distance : vec3(0.0);
-    // Inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
+    // The inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
     float attenuation = 1.0 / max(squared, kMinSquaredDistance);
     if (light.range > 0.0) {
         float ratio = distance / light.range;
@@ -39,9 +39,9 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     return LightSample(direction, distance, light.intensity * attenuation, gate);
 }
 
-// A direction within a cone, uniform by solid angle; u is uniform in [0, 1)².
+// Samples a direction within a cone, uniformly by solid angle; u is uniform in [0, 1)².
 vec3 sampleCone(vec3 axis, float sine, vec2 u) {
-    // 1 - cos of the half angle, which cancels for the sun.
+    // 1 - cos of the half angle. The plain difference would cancel for the sun.
     float height = sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
     float below = u.x * height;
     float radius = sqrt(max(below * (2.0 - below), 0.0));
@@ -52,9 +52,9 @@ vec3 sampleCone(vec3 axis, float sine, vec2 u) {
     return normalize((1.0 - below) * axis + radius * (cos(phi) * tangent + sin(phi) * bitangent));
 }
 
-// Towards a point of a light that has a size, uniform by the solid angle that it fills: a sphere, or a disk infinitely
-// far away. `centre`: of sampleLight(). Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
-// Calculations" (1996). From inside of the sphere nothing is between: distance 0.
+// Samples a point of a light that has a size, uniformly by the solid angle that it fills: a sphere, or a disk
+// infinitely far away. `centre` comes from sampleLight(). Shirley, Wang and Zimmerman, "Monte Carlo Techniques for
+// Direct Lighting Calculations" (1996). From inside of the sphere nothing can block the light, so the distance is 0.
 LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
     LightSample result = centre;
     bool sphere = light.type != kLightDirectional;
@@ -65,7 +65,7 @@ LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
     }
     result.direction = sampleCone(centre.direction, sine, u);
     if (sphere) {
-        // To the near side of the sphere.
+        // The distance to the near side of the sphere.
         float along = centre.distance * dot(result.direction, centre.direction);
         vec3 across = centre.distance * (result.direction - centre.direction * dot(result.direction, centre.direction));
         result.distance = along - sqrt(max(light.size * light.size - dot(across, across), 0.0));

@@ -1,4 +1,4 @@
-// Counter-based random numbers: PCG output permutation (O'Neill 2014) as a hash, after Jarzynski and Olano, "Hash
+// Counter-based random numbers: the PCG output permutation (O'Neill 2014) as a hash, after Jarzynski and Olano, "Hash
 // Functions for GPU Rendering" (2020).
 
 uint pcgHash(uint value) {
@@ -11,12 +11,13 @@ uint hashOf(uint a, uint b, uint c) {
     return pcgHash(a + pcgHash(b + pcgHash(c)));
 }
 
-// 24 bits as a number in [0, 1).
+// Turns 24 bits into a number in [0, 1).
 float unitOf(uint bits) {
     return float(bits >> 8) * (1.0 / 16777216.0);
 }
 
-// Uniform in [0, 1). The same for a pixel, sample, seed and dimension whatever the strategy.
+// Returns a number that is uniform in [0, 1). For a pixel, sample, seed and dimension it is the same with every
+// strategy.
 float randomUnit(uint pixel, uint sampleIndex, uint seed, uint dimension) {
     return unitOf(pcgHash(pixel + hashOf(sampleIndex, dimension, seed)));
 }

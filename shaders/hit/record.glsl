@@ -2,11 +2,11 @@
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
 
-// Shader ID that no case has.
+// A shader ID that no case has.
 const uint kNoShader = 0xFFFFFFFFu;
 
-// A cone's width in eighths of a power of two, from 2^-20 metres in 1 to 2^11.6 in 254: a sixteenth of a mip level off
-// at most. 0: no width.
+// Encodes a cone's width in eighths of a power of two, from 2^-20 metres as 1 to 2^11.6 as 254. The error is at most a
+// sixteenth of a mip level. 0 means no width.
 uint packConeWidth(float width) {
     return width > 0.0 ? uint(clamp(round(8.0 * (log2(width) + 20.0)), 1.0, 254.0)) : 0u;
 }
@@ -35,7 +35,7 @@ void storeHit(uint index, HitRecord hit) {
     GLINT_FRAME.packedHits.data[index] = record;
 }
 
-// The distance of a hit is not kept.
+// The distance of a hit is not stored.
 HitRecord storedHit(uint index) {
     PackedHitRecord record = GLINT_FRAME.packedHits.data[index];
     if (record.geometry24_coneLog8 == kMissGeometry) {
@@ -48,7 +48,7 @@ HitRecord storedHit(uint index) {
                      barycentrics.y, 0.0, unpackConeWidth(record.geometry24_coneLog8 & 0xFFu), index);
 }
 
-// Geometry of a stored hit, or kMissGeometry.
+// Returns the geometry of a stored hit, or kMissGeometry.
 uint storedGeometry(uint index) {
     uint word = GLINT_FRAME.packedHits.data[index].geometry24_coneLog8;
     return word == kMissGeometry ? kMissGeometry : word >> 8;
@@ -70,13 +70,13 @@ uint storedGeometry(uint index) {
 
 #endif
 
-// Direction of a ray that missed.
+// Returns the direction of a ray that missed.
 vec3 missDirection(HitRecord record) {
     return vec3(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY, record.distance_orDirectionZ);
 }
 
-// Bucket of what a ray hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to the misses,
-// whose pass shows it in an error colour and counts it.
+// Returns the bucket of what a ray hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes
+// to the misses; their pass shows it in an error colour and counts it.
 uint bucketOfGeometry(uint geometry) {
     if (geometry == kMissGeometry) {
         return 0u;

@@ -1,4 +1,5 @@
-// What the shading passes of all strategies share: from a record to a Hit, and from a ShadeResult to the sample.
+// The parts that the shading passes of all strategies share: from a record to a Hit, and from a ShadeResult to the
+// sample.
 #include "hit/samples.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
@@ -10,10 +11,10 @@ Hit loadHit(HitRecord record, vec3 direction, GeometryRecord geometry, Features 
     return fetchHit(geometry, record.primitive, barycentrics, direction, record.coneWidth, record.target, features);
 }
 
-// Direction of the ray of a stored hit.
+// Returns the direction of the ray of a stored hit.
 vec3 rayDirection(HitRecord record, GeometryRecord geometry) {
 #if GLINT_HIT_RECORD_PACKED
-    // From where the ray began to the point of the triangle.
+    // It points from the start of the ray to the point of the triangle.
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
     vec3 point = trianglePosition(geometry, record.primitive, barycentrics);
     return normalize(point - GLINT_FRAME.samples.data[record.target].origin);
@@ -26,7 +27,8 @@ void resolveMiss(uint target, vec3 direction) {
     storeRadiance(target, skyRadiance(direction), kPathMiss);
 }
 
-// Writes what the hit sends back to its sample. Its shadow ray is traced here, or put on the list of those that wait.
+// Writes the light that the hit sends back to its sample. Its shadow ray is traced here, or put on the list of deferred
+// rays.
 void resolveHit(Hit hit, ShadeResult result) {
     vec3 radiance = result.radiance;
     if (result.shadowDistance > 0.0) {

@@ -1,11 +1,11 @@
-// The samples of effects in memory: what primary surfaces send, and what comes back.
+// The samples of effects in memory: what primary surfaces send, and the light that comes back.
 #include "hit/bindings.glsl"
 
 uint pixelCount() {
     return GLINT_FRAME.width * GLINT_FRAME.height;
 }
 
-// Number of a pixel's sample.
+// Returns the number of a pixel's sample.
 uint sampleTarget(uint slot, uint pixel) {
     return slot * pixelCount() + pixel;
 }
@@ -19,7 +19,7 @@ void storeSample(uint target, EffectSample drawn) {
     GLINT_FRAME.radiance.data[target] = vec4(0.0, 0.0, 0.0, float(kPathNone));
 }
 
-// path: kPath*.
+// path is one of kPath*.
 void storeRadiance(uint target, vec3 radiance, uint path) {
     GLINT_FRAME.radiance.data[target] = vec4(radiance, float(path));
 }

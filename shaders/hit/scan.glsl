@@ -1,22 +1,23 @@
-// Exclusive sums over a workgroup of GLINT_SCAN_GROUP_SIZE threads, which the module says before it includes this file,
-// and all of which call. GLINT_SCAN_SHUFFLES is 1 where a module may ask devices for shuffles: subgroupInclusiveAdd() has
-// to do with threads that are missing, and an NVIDIA driver (580.159) makes a call of a function with ten shuffles of it.
+// Exclusive sums over a workgroup of GLINT_SCAN_GROUP_SIZE threads; all of them must call. The module defines the size
+// before it includes this file. GLINT_SCAN_SHUFFLES is 1 if a module may ask devices for shuffles:
+// subgroupInclusiveAdd() must handle missing threads, and an NVIDIA driver (580.159) turns it into a function call with
+// ten shuffles.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #if GLINT_SCAN_SHUFFLES
 #extension GL_KHR_shader_subgroup_shuffle_relative : require
 #endif
 
-// By subgroup, which have 4 threads or more.
+// The sum of each subgroup. Subgroups have at least 4 threads.
 shared uint scanSums[GLINT_SCAN_GROUP_SIZE / 4u];
 
-// This thread's number in the order that scans take. A subgroup's threads follow each other in it, which nothing says
-// of gl_LocalInvocationIndex.
+// Returns this thread's number in the order of the scan. In it the threads of a subgroup are consecutive, which is not
+// guaranteed for gl_LocalInvocationIndex.
 uint scanThread() {
     return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
 }
 
-// Sum of the values of the subgroup's threads up to this one.
+// Returns the sum of the values of the subgroup's threads up to this one.
 uint scanSubgroup(uint value) {
 #if GLINT_SCAN_SHUFFLES
     for (uint distance = 1u; distance < gl_SubgroupSize; distance *= 2u) {
@@ -29,13 +30,15 @@ uint scanSubgroup(uint value) {
 #endif
 }
 
-// Sum of the values of threads before this one; `total` is that of all. Every subgroup is full.
+// Returns the sum of the values of threads before this one; `total` receives the sum of all. Every subgroup must be
+// full.
 //
-// Where a module of 448 threads called this once, an NVIDIA driver (580.159), which then puts it in line, gave wrong sums
-// of subgroupAdd(); with 384, 512 or 1024 threads, or two calls, right ones. bench_ordering checks what it times.
+// In a module of 448 threads that called this once, an NVIDIA driver (580.159) inlined it and then gave wrong sums of
+// subgroupAdd(). With 384, 512 or 1024 threads, or with two calls, the sums were right. bench_ordering checks the
+// results that it times.
 uint scanWorkgroup(uint value, out uint total) {
     uint inclusive = scanSubgroup(value);
-    barrier();  // who reads the sums of the call before
+    barrier();  // waits for threads that still read the sums of the last call
     if (gl_SubgroupInvocationID == gl_SubgroupSize - 1u) {
         scanSums[gl_SubgroupID] = inclusive;
     }

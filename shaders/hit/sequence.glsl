@@ -1,9 +1,9 @@
-// A low-discrepancy sequence for each pixel: Sobol' points under Owen's scrambling, by hashes (Burley, "Practical
+// A low-discrepancy sequence for each pixel: Sobol' points with Owen's scrambling, by hashes (Burley, "Practical
 // Hash-based Owen Scrambling", JCGT 2020). Any power of two of successive samples is stratified, and pixels and pairs
 // of dimensions are independent of each other.
 #include "hit/random.glsl"
 
-// Permutes each bit by those below it: Laine and Karras (2011), with the constants of Vegdahl (2021).
+// Permutes each bit depending on those below it: Laine and Karras (2011), with the constants of Vegdahl (2021).
 uint scrambleUpwards(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -13,7 +13,7 @@ uint scrambleUpwards(uint x, uint seed) {
     return x;
 }
 
-// Owen's scrambling: each bit by those above it.
+// Owen's scrambling: permutes each bit depending on those above it.
 uint scrambleDownwards(uint x, uint seed) {
     return bitfieldReverse(scrambleUpwards(bitfieldReverse(x), seed));
 }
@@ -29,7 +29,7 @@ uint sobolSecond(uint index) {
     return result;
 }
 
-// Two dimensions of a pixel's sample, in [0, 1). Pairs are shuffled against each other.
+// Returns two dimensions of a pixel's sample, in [0, 1). Pairs are shuffled relative to each other.
 vec2 sequencePair(uint pixel, uint sampleIndex, uint seed, uint pair) {
     uint hash = hashOf(pixel, seed, pair);
     uint index = scrambleDownwards(sampleIndex, hash);

@@ -7,26 +7,26 @@
 #include "hit/samples.glsl"
 #include "hit/sequence.glsl"
 
-// Light that leaves the hit towards the viewer. `direct` counts only if nothing stands on the shadow ray: who calls
-// shade() traces that ray, so that one ray query serves every case.
+// The light that leaves the hit towards the viewer. `direct` counts only if nothing blocks the shadow ray. The caller
+// of shade() traces that ray, so that one ray query serves every case.
 struct ShadeResult {
     vec3 radiance;
     vec3 direct;
-    vec3 shadowDirection;  // unit
-    float shadowDistance;  // metres; 0: no light reaches the surface, no ray is needed
+    vec3 shadowDirection;  // unit vector
+    float shadowDistance;  // metres; 0 if no light reaches the surface and no ray is needed
 };
 
-// Dimensions of the random numbers of a sample.
+// The dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
-// And pairs of the sequence.
+// The pairs of the sequence.
 const uint kPairLightArea = 5u;
 
-// Light of one light on a surface, without its shadow.
+// The light of one light on a surface, without its shadow.
 vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
     return scatteredLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
 }
 
-// One shadow ray: to the light's place, or to a point of one that has a size.
+// Aims the shadow ray at the light's position, or at a point of a light that has a size.
 void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
     LightSample aim = sampleLight(light, hit.position);
 #if GLINT_EFFECT_SHADOW
@@ -35,10 +35,10 @@ void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
         vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLightArea);
         aim = sampleLightArea(light, aim, u);
         if (aim.distance <= 0.0) {
-            // Within the light.
+            // The point is within the light.
             result.radiance += result.direct;
         } else if (dot(hit.geometricNormal, centre) * dot(hit.geometricNormal, aim.direction) <= 0.0) {
-            // What of the light is below the surface is hidden by the surface itself.
+            // The surface itself hides the part of the light that is below it.
             aim.distance = 0.0;
         }
     }
@@ -47,8 +47,9 @@ void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
     result.shadowDistance = aim.distance;
 }
 
-// Direct light by one light, chosen in one pass with probability proportional to the luminance that it would bring
-// without shadows (weighted reservoir sampling, Chao 1982). Unbiased; exact where one light dominates.
+// Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
+// would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
+// dominates.
 void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
     float random = randomUnit(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
     float total = 0.0;
@@ -89,7 +90,7 @@ ShadeResult shade(Hit hit, Features features) {
     SkyShares sky = wholeSky();
 #if GLINT_EFFECT_REFRACTION
     if (hasLobe(features, GLINT_TRANSMISSION) && hit.target / pixelCount() == GLINT_SLOT_REFRACTION) {
-        // The walk of the refracted ray has chosen what does not pass.
+        // The walk of the refracted ray has chosen the light that does not pass.
         sky.transmitted = 0.0;
     }
 #endif
@@ -98,7 +99,7 @@ ShadeResult shade(Hit hit, Features features) {
     return result;
 }
 
-// What a hit with an unknown shader ID shows: impossible unless scene and package disagree.
+// The colour of a hit with an unknown shader ID. It occurs only if scene and package disagree.
 ShadeResult shadeUnknown() {
     return ShadeResult(vec3(1.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0);
 }

@@ -1,19 +1,19 @@
-// Shadow rays of hits: traced at once, or put on a list.
+// Shadow rays of hits, which are traced at once or put on a list.
 #include "hit/bindings.glsl"
 #include "hit/count.glsl"
 #include "hit/trace.glsl"
 
 struct ShadowRay {
     vec3 origin;
-    vec3 direction;  // unit
+    vec3 direction;  // unit vector
     float distance;  // metres
-    vec3 light;      // what it brings if nothing is in its way
+    vec3 light;      // light that arrives if nothing is in the way
 };
 
 #if GLINT_SHADOWS_DEFERRED
 
-// Next slot of the list: in compute shaders one atomic for the threads of a subgroup that are here, whose slots lie side
-// by side.
+// Returns the next slot of the list. In compute shaders it takes one atomic for the active threads of a subgroup, whose
+// slots are adjacent.
 uint shadowSlot() {
 #if GLINT_RAY_GENERATION
     return atomicAdd(GLINT_FRAME.counters.data[kCounterShadowRays], 1u);
@@ -29,8 +29,8 @@ uint shadowSlot() {
 
 #endif
 
-// The light that is certain now; deferred, the rest comes by a pass over the list. One ray a sample: the list has room.
-// Without the effect, nothing is in the way of any light.
+// Returns the light that is certain now; if shadow rays are deferred, a pass over the list adds the rest. The list has
+// room, because each sample has one ray. Without the effect, nothing blocks any light.
 vec3 lightOrDefer(uint target, ShadowRay shadow) {
 #if !GLINT_EFFECT_SHADOW
     return shadow.light;

@@ -1,4 +1,4 @@
-// Threads of the passes that may trace: of compute shaders, or of ray generation shaders.
+// The threads of passes that may trace, in compute shaders or in ray generation shaders.
 #ifndef GLINT_TRACER
 #define GLINT_TRACER 1  // 0: none, 1: ray queries, 2: ray tracing pipeline
 #endif

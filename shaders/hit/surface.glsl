@@ -1,9 +1,9 @@
-// What shading needs of a surface once its textures are read.
+// The properties of a surface that shading needs, once its textures are read.
 #include "bsdf/bsdf.glsl"
 
 struct Surface {
     Bsdf bsdf;       // prepared for the view
-    vec3 tangent;    // x, y and z of the BSDF's frame, world
+    vec3 tangent;    // x, y and z of the BSDF's frame in the world
     vec3 bitangent;
     vec3 normal;     // on the viewer's side
     float roughness; // sqrt of the larger alpha
@@ -19,21 +19,21 @@ vec3 toWorld(Surface surface, vec3 direction) {
     return direction.x * surface.tangent + direction.y * surface.bitangent + direction.z * surface.normal;
 }
 
-// BSDF times |n·l|, reflected or let through, for light from a direction of the world. geometricNormal is on the
-// viewer's side: where it and the shading normal differ on which side the light is, there is none, or it would leak
-// through the surface.
+// Returns the BSDF times |n·l|, reflected or transmitted, for light from a direction of the world. geometricNormal is
+// on the viewer's side. If it and the shading normal disagree on which side the light is, the result is 0, because
+// light would leak through the surface.
 vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
     vec3 l = toSurface(surface, toLight);
     return l.z * dot(geometricNormal, toLight) > 0.0 ? evaluateBsdf(surface.bsdf, features, l) : vec3(0.0);
 }
 
-// What the coat reflects of a uniform white sky, and 0 without one.
+// The share of a uniform white sky that the coat reflects; 0 without a coat.
 GLINT_RELAXED float coatReflectance(Surface surface, Features features) {
     return hasLobe(features, GLINT_CLEARCOAT) ? clearcoatFresnel(surface.bsdf.clearcoat, coatViewCosine(surface.bsdf))
                                               : 0.0;
 }
 
-// Share of what the base reflects or lets through that coat and sheen let out again.
+// The share of the base's reflected or transmitted light that coat and sheen let out again.
 GLINT_RELAXED float baseShare(Surface surface, Features features) {
     GLINT_RELAXED float share = 1.0 - coatReflectance(surface, features);
     if (hasLobe(features, GLINT_SHEEN)) {
@@ -42,7 +42,7 @@ GLINT_RELAXED float baseShare(Surface surface, Features features) {
     return share;
 }
 
-// Share of the light of a uniform sky that the microfacets let in to the diffuse lobes.
+// The share of a uniform sky's light that the microfacets let through to the diffuse lobes.
 GLINT_RELAXED float diffusePassed(Surface surface) {
     return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
 }

@@ -1,4 +1,4 @@
-// Material textures at a hit.
+// The material's textures at a hit.
 #include "hit/hit.glsl"
 
 #define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
@@ -6,14 +6,14 @@
     sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
               sceneSamplers[nonuniformEXT((record).samplerIndex)])
 
-// Whether a slot reads the second UV set.
+// Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
     return hasInput(features, GLINT_TEXCOORD_1) &&
            (!hasInput(features, GLINT_TEXCOORD_0) || GLINT_MATERIAL(hit).textures[slot].texCoord == 1u);
 }
 
-// The value of one texture slot of the hit's material. Read in 32 bits, with coordinates of as many, whatever the
-// precision of the result.
+// Returns the value of one texture slot of the hit's material. Texture and coordinates are read in 32 bits, whatever
+// the precision of the result.
 GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
     TextureRecord record = GLINT_MATERIAL(hit).textures[slot];
     bool second = readsSecondSet(hit, slot, features);
@@ -33,8 +33,8 @@ GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
     return texel;
 }
 
-// Tangent and bitangent at the hit: from the TANGENT attribute, or from the derivatives of position by the UV set that
-// `slot` reads. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
+// Returns tangent and bitangent at the hit, from the TANGENT attribute or from the derivatives of position by the UV
+// set that `slot` reads. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
 void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out vec3 bitangent) {
     vec3 along = hit.tangent.xyz;
     float handedness = hit.tangent.w;
@@ -47,14 +47,14 @@ void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out v
     }
     tangent = directionOr(along - hit.normal * dot(hit.normal, along), vec3(0.0));
     if (tangent == vec3(0.0)) {
-        // No direction of U on the surface: any frame will do.
+        // U has no direction on the surface, so any frame will do.
         buildBasis(hit.normal, tangent, bitangent);
     } else {
         bitangent = cross(hit.normal, tangent) * handedness;
     }
 }
 
-// The normal that a normal texture gives.
+// Returns the normal from a normal texture.
 vec3 mappedNormal(Hit hit, uint slot, float scale, Features features) {
     vec4 packedNormal = sampleSlot(hit, slot, features);
     vec3 texel = packedNormal.xyz * 2.0 - 1.0;

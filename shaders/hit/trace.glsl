@@ -1,4 +1,4 @@
-// Tracing rays: by ray queries, or by a ray tracing pipeline.
+// Traces rays by ray queries, or by a ray tracing pipeline.
 #include "hit/alpha.glsl"
 #include "hit/constants.glsl"
 #include "hit/payload.glsl"
@@ -16,8 +16,8 @@ HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
 
 #if GLINT_TRACER == 1
 
-// In the shape that mobile compilers make fast: one proceed for each initialise, called unconditionally, opaque, no
-// AABBs. Only a package that tests alpha loops over candidates.
+// Queries have the shape that mobile compilers make fast: one proceed for each initialise, called unconditionally,
+// opaque, no AABBs. Only a package that tests alpha loops over candidates.
 #extension GL_EXT_ray_query : require
 #extension GL_EXT_ray_flags_primitive_culling : require
 
@@ -38,7 +38,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 #define GLINT_PROCEED(query) rayQueryProceedEXT(query)
 #endif
 
-// The closest hit of a ray.
+// Returns the closest hit of a ray.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, ray.origin, 0.0,
@@ -58,7 +58,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
                                   rayQueryGetIntersectionTEXT(query, true)));
 }
 
-// Whether nothing stands between `origin` and a light. Both sides of a surface cast shadows.
+// Returns whether nothing stands between `origin` and a light. Both sides of a surface cast shadows.
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
@@ -67,7 +67,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
-// Distance to whatever is closest within `most`, of either side; or that.
+// Returns the distance to the closest surface within `most`, seen from either side, or `most` if there is none.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, origin, 0.0, direction, most);
@@ -80,7 +80,7 @@ float closestDistance(vec3 origin, vec3 direction, float most) {
 #elif GLINT_RAY_GENERATION
 
 #ifndef GLINT_TRACE_LOCATION
-#define GLINT_TRACE_LOCATION 0  // of the payload; and the number of its miss shader
+#define GLINT_TRACE_LOCATION 0  // location of the payload, and the number of its miss shader
 #endif
 
 layout(location = GLINT_TRACE_LOCATION) rayPayloadEXT TracePayload traced;
@@ -91,7 +91,7 @@ const uint kOpacityFlags = gl_RayFlagsNoneEXT;
 const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 #endif
 
-// As above.
+// Does the same as the function for ray queries above.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
                 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
@@ -99,7 +99,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 }
 
 bool isVisible(vec3 origin, vec3 direction, float distance) {
-    // What a ray that hits leaves as it is.
+    // A ray that hits leaves this value unchanged.
     traced.geometry = 0u;
     traceRayEXT(sceneTlas[pushed.tlasIndex],
                 kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, 0u,
@@ -107,7 +107,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return traced.geometry == kMissGeometry;
 }
 
-// As above.
+// Does the same as the function for ray queries above.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
                 direction, most, GLINT_TRACE_LOCATION);

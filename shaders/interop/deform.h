@@ -1,4 +1,4 @@
-// What the pass that skins and morphs meshes works on.
+// The data of the pass that skins and morphs meshes.
 #ifndef GLINT_INTEROP_DEFORM_H
 #define GLINT_INTEROP_DEFORM_H
 
@@ -12,23 +12,23 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer De
 
 GLINT_INTEROP_BEGIN
 
-// Threads of a workgroup, one a vertex.
+// Threads of a workgroup; each handles one vertex.
 GLINT_CONSTANT(kDeformGroupSize, 64u);
-// Workgroups of a dispatch in x before it grows in y: half of the least limit that Vulkan allows.
+// The most workgroups of a dispatch in x before it grows in y: half of the least limit that Vulkan allows.
 GLINT_CONSTANT(kMaxDeformGroupsX, 32768u);
 
-// DeformRecord::flags: which attributes it has.
+// DeformRecord::flags: which attributes the record has.
 GLINT_CONSTANT(kDeformNormals, 1u);
 GLINT_CONSTANT(kDeformTangents, 2u);
 GLINT_CONSTANT(kDeformTargetPositions, 4u);
 GLINT_CONSTANT(kDeformTargetNormals, 8u);
 GLINT_CONSTANT(kDeformTargetTangents, 16u);
 
-// One primitive of one instance. Addresses are 0 where it lacks the attribute.
+// One primitive of one instance. The address of a missing attribute is 0.
 struct DeformRecord {
     uint vertexCount;
-    uint targetCount;     // morph targets
-    uint influenceCount;  // joints a vertex follows; 0: none
+    uint targetCount;     // number of morph targets
+    uint influenceCount;  // joints that a vertex follows; 0 for none
     uint flags;           // kDeform*
     GLINT_ADDRESS(Vec3) positions;  // at rest
     GLINT_ADDRESS(Vec3) normals;
@@ -37,9 +37,9 @@ struct DeformRecord {
     GLINT_ADDRESS(Vec3) targetNormals;
     GLINT_ADDRESS(Vec3) targetTangents;
     GLINT_ADDRESS(Float) targetWeights;  // targetCount
-    GLINT_ADDRESS(Uint) joints;          // influenceCount a vertex: into jointRows
-    GLINT_ADDRESS(Float) jointWeights;   // likewise
-    GLINT_ADDRESS(Vec4) jointRows;       // three rows a joint: from the mesh's space to the world
+    GLINT_ADDRESS(Uint) joints;          // influenceCount for each vertex: indices into jointRows
+    GLINT_ADDRESS(Float) jointWeights;   // influenceCount for each vertex
+    GLINT_ADDRESS(Vec4) jointRows;       // three rows for each joint: from the mesh's space to the world
     GLINT_ADDRESS(DeformedVec3) deformedPositions;
     GLINT_ADDRESS(DeformedVec3) deformedNormals;
     GLINT_ADDRESS(DeformedVec4) deformedTangents;
@@ -55,7 +55,7 @@ GLINT_INTEROP_BEGIN
 
 struct DeformConstants {
     GLINT_ADDRESS(Deform) records;
-    uint record;  // which of them this dispatch deforms
+    uint record;  // the record that this dispatch deforms
     uint pad;
 };
 

@@ -1,4 +1,4 @@
-// What the passes of a frame share: constants, ray list, hit records, buckets.
+// The data that the passes of a frame share: constants, ray list, hit records, buckets.
 #ifndef GLINT_INTEROP_FRAME_H
 #define GLINT_INTEROP_FRAME_H
 
@@ -6,19 +6,20 @@
 
 GLINT_INTEROP_BEGIN
 
-// Threads of a workgroup: one-dimensional passes over rays, and 8 x 8 tiles of passes over pixels.
+// Threads of a workgroup in one-dimensional passes over rays, and the side of the 8 x 8 tiles of passes over pixels.
 GLINT_CONSTANT(kRayGroupSize, 64u);
 GLINT_CONSTANT(kPixelGroupSize, 8u);
-// Workgroups of a dispatch over rays in x before it grows in y: half of the least limit that Vulkan allows.
+// The most workgroups of a dispatch over rays in x before it grows in y: half of the least limit that Vulkan allows.
 GLINT_CONSTANT(kMaxRayGroupsX, 32768u);
 // Threads of the single workgroup that scans the buckets.
 GLINT_CONSTANT(kScanGroupSize, 256u);
 
-// Buckets that the orderings local-histogram and tile-sort hold in shared memory.
+// The most buckets that the orderings local-histogram and tile-sort hold in shared memory.
 GLINT_CONSTANT(kMaxLocalBuckets, 1024u);
-// The ordering tile-sort: hits of a tile, which a workgroup sorts at a time, by thread; threads of such a workgroup by the
-// number of buckets, up to kSmallTileBuckets, up to kTileBuckets, and above it, where a device can; and of one that
-// counts. A vector of keys may be read up to the end of the last tile.
+// The ordering tile-sort. The first constant is the number of hits for each thread in a tile, which a workgroup sorts
+// at a time. The threads of that workgroup depend on the number of buckets: up to kSmallTileBuckets, up to
+// kTileBuckets, and above, where a device can run that many. The last constant is for the workgroups that count. A
+// vector of keys may be read up to the end of the last tile.
 GLINT_CONSTANT(kTileHitsOfThread, 8u);
 GLINT_CONSTANT(kSmallTileBuckets, 128u);
 GLINT_CONSTANT(kTileBuckets, 512u);
@@ -26,40 +27,42 @@ GLINT_CONSTANT(kSmallTileThreads, 448u);
 GLINT_CONSTANT(kTileThreads, 512u);
 GLINT_CONSTANT(kLargeTileThreads, 1024u);
 GLINT_CONSTANT(kCountGroupSize, 512u);
-// What it takes at most: bytes of shared memory (a word a hit, a bucket and a subgroup); and with kLargeTileThreads.
+// The most shared memory that tile-sort takes in bytes (a word for each hit, bucket and subgroup), and the same with
+// kLargeTileThreads.
 GLINT_CONSTANT(kTileSharedBytes, 20992u);
 GLINT_CONSTANT(kLargeTileSharedBytes, 37888u);
 
-// HitRecord::geometry of a ray that hit nothing: no geometry can have it, as custom indices have 24 bits.
+// HitRecord::geometry of a ray that hit nothing. No geometry can have this index, because custom indices have 24 bits.
 GLINT_CONSTANT(kMissGeometry, 0xFFFFFFFFu);
-// FrameConstants::orderedHits: a slot that no hit has.
+// FrameConstants::orderedHits: a slot without a hit.
 GLINT_CONSTANT(kNoHit, 0xFFFFFFFFu);
-// GBuffer: geometry index of a pixel without a surface.
+// G-buffer: the geometry index of a pixel without a surface.
 GLINT_CONSTANT(kNoSurface, 0xFFFFFFFFu);
 
-// What an effect sends from a primary surface: slot * width * height + x + y * width, with the slot of the effect among
-// those of the package that send rays. Samples, what they bring, rays and hits are found by this number.
+// The number of what an effect sends from a primary surface: slot * width * height + x + y * width, where slot is that
+// of the effect among the package's effects that send rays. Samples, their results, rays and hits are found by this
+// number.
 
-// A ray of an effect, and how much what it finds counts. 48 bytes.
+// A ray of an effect, and the weight of what it finds. 48 bytes.
 struct EffectSample {
     vec3 origin;
     uint outcome;      // kRaySent, or why there is no ray
-    vec3 direction;    // unit
+    vec3 direction;    // unit vector
     float coneWidth;   // width of the ray cone at the origin, metres
-    vec3 weight;       // of the radiance that the ray finds
-    float coneSpread;  // growth of the width by metre
+    vec3 weight;       // factor of the radiance that the ray finds
+    float coneSpread;  // growth of the width in a metre
 };
 
 // A ray that waits in the list. 36 bytes.
 struct RayRecord {
     vec3 origin;
     uint target;  // number of the sample
-    vec3 direction;  // unit
+    vec3 direction;  // unit vector
     float coneWidth;   // width of the ray cone at the origin, metres
-    float coneSpread;  // growth of the width by metre
+    float coneSpread;  // growth of the width in a metre
 };
 
-// What a ray found. 32 bytes.
+// The result of a ray. 32 bytes.
 struct HitRecord {
     uint target;     // number of the sample
     uint geometry;   // GeometryRecord index, or kMissGeometry
@@ -71,19 +74,20 @@ struct HitRecord {
     uint ray;         // RayRecord index
 };
 
-// The same in 16 bytes. A miss is 0xFFFFFFFF in its second word, which no hit can have.
+// The same in 16 bytes. A miss has 0xFFFFFFFF in its second word, which no hit can have.
 struct PackedHitRecord {
     uint target;
-    uint geometry24_coneLog8;           // 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0: none
-    uint primitive_orDirectionOctX;     // of a miss: bits of a float
-    uint barycentrics2x16_orDirectionOctY;  // unorm; likewise
+    uint geometry24_coneLog8;           // top 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0
+                                        // for no width
+    uint primitive_orDirectionOctX;     // for a miss: the bits of a float
+    uint barycentrics2x16_orDirectionOctY;  // unorm; for a miss: the bits of a float
 };
 
-// A shadow ray that waits, with the light that it brings if nothing is in its way. 48 bytes.
+// A shadow ray that waits, with the light that arrives if nothing is in the way. 48 bytes.
 struct ShadowRecord {
     vec3 origin;
-    uint target;  // number of the sample that it brings light to
-    vec3 direction;  // unit
+    uint target;  // number of the sample that gets the light
+    vec3 direction;  // unit vector
     float distance;  // metres
     vec3 light;
     uint pad;
@@ -118,7 +122,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray
 
 GLINT_INTEROP_BEGIN
 
-// Effects: bits, as package::Effect.
+// The bits of effects, as in package::Effect.
 GLINT_CONSTANT(kEffectShadow, 1u);
 GLINT_CONSTANT(kEffectAmbientOcclusion, 2u);
 GLINT_CONSTANT(kEffectReflection, 4u);
@@ -126,9 +130,9 @@ GLINT_CONSTANT(kEffectRefraction, 8u);
 GLINT_CONSTANT(kEffectIndirectDiffuse, 16u);
 GLINT_CONSTANT(kEffectCount, 5u);
 
-// Whether a surface sends a ray of an effect, or which gate keeps it from doing so; also what is counted of it.
+// Whether a surface sends a ray of an effect, or why it doesn't. These are also the first counts of an effect.
 GLINT_CONSTANT(kRaySent, 0u);
-GLINT_CONSTANT(kRayNoSurface, 1u);  // the sky
+GLINT_CONSTANT(kRayNoSurface, 1u);  // the pixel shows the sky
 GLINT_CONSTANT(kRayUnlit, 2u);
 GLINT_CONSTANT(kRayRough, 3u);      // above the roughness limit
 GLINT_CONSTANT(kRayBlack, 4u);      // the sample would bring no light, or points into the surface
@@ -138,89 +142,91 @@ GLINT_CONSTANT(kRayFacing, 7u);     // the surface faces away from the light
 GLINT_CONSTANT(kRayRange, 8u);      // beyond the light's range
 GLINT_CONSTANT(kRayCone, 9u);       // outside the light's cone
 GLINT_CONSTANT(kRayOff, 10u);       // FrameConstants::effects lacks the effect
-GLINT_CONSTANT(kRayEnded, 11u);     // its end was found without the list
-// Further counts of an effect.
+GLINT_CONSTANT(kRayEnded, 11u);     // the ray's end was found without the list
+// The further counts of an effect.
 GLINT_CONSTANT(kCountScreenHits, 12u);  // found in screen space
 GLINT_CONSTANT(kCountHits, 13u);        // rays that hit
-GLINT_CONSTANT(kCountMisses, 14u);      // rays that left the scene, or met nothing on their way
+GLINT_CONSTANT(kCountMisses, 14u);      // rays that left the scene, or hit nothing on their way
 GLINT_CONSTANT(kCountSegments, 15u);    // rays traced before the one that joins the list
 GLINT_CONSTANT(kCountsOfEffect, 16u);
 
 // FrameConstants::counters, one uint each.
 GLINT_CONSTANT(kCounterRays, 0u);           // rays appended to the list
-GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays of the list
+GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays in the list
 GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
-GLINT_CONSTANT(kCounterOrderErrors, 3u);    // found by the check of the order: lost, doubled or misplaced hits
-// kCounterCopies times, to be added up: kCountsOfEffect for each effect, in order of their bits.
+GLINT_CONSTANT(kCounterOrderErrors, 3u);    // lost, doubled or misplaced hits, found by the check of the order
+// These counters exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the order of
+// their bits.
 GLINT_CONSTANT(kCounterEffects, 4u);
 GLINT_CONSTANT(kCounterCopies, 64u);
-// Pixels whose sample was no number: taken as black.
+// Pixels whose sample was not a number and was taken as black.
 GLINT_CONSTANT(kCounterNonFinite, kCounterEffects + kCounterCopies * kEffectCount * kCountsOfEffect);
 GLINT_CONSTANT(kCounterCount, kCounterNonFinite + 1u);
 
-// FrameConstants::binning: what rays of a workgroup are sorted by before they are appended to the list.
+// FrameConstants::binning: the criterion by which rays of a workgroup are sorted before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);
 GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
 GLINT_CONSTANT(kBinningOctahedral, 2u);  // cells of the octahedral map of the direction: 8 x 8 bins
 GLINT_CONSTANT(kMaxDirectionBins, 64u);
 
-// One frame of one sample.
+// The constants of one frame of one sample.
 struct FrameConstants {
     vec4 worldToClip[4];  // rows; Vulkan clip space, y down, reversed depth (1 near, 0 far), jittered
     vec3 cameraPosition;
     uint width;  // pixels
-    vec3 cameraForward;  // unit
+    vec3 cameraForward;  // unit vector
     uint height;
-    vec3 cameraRight;  // from the image centre to its right edge, on the plane at distance 1 (perspective) or as is
+    vec3 cameraRight;  // from the image centre to its right edge, on the plane at distance 1 (perspective) or in world
+                       // units (orthographic)
     uint orthographic;  // 1: rays are parallel
-    vec3 cameraUp;      // from the image centre to its top edge, likewise
-    float pixelSpread;  // growth of a pixel's cone by metre (perspective); 0 if orthographic
+    vec3 cameraUp;      // from the image centre to its top edge, in the same way
+    float pixelSpread;  // growth of a pixel's cone in a metre (perspective); 0 if orthographic
     vec2 jitter;        // offset of the sample from the pixel centre, pixels in [-0.5, 0.5)
     float pixelWidth;   // width of a pixel's cone at the camera, metres; 0 for perspective
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
-    uint effects;  // bits: those of the package that are on
-    uint countsLight;  // 1: rays of lights and of occlusion are counted
+    uint effects;  // bits of the package's effects that are on
+    uint countsLight;  // 1 if rays of lights and of occlusion are counted
     uint lightCount;
-    uint shadowSamples;     // rays a light and sample on primary surfaces, for lights that have a size
-    uint occlusionSamples;  // rays a sample
-    float occlusionRadius;  // metres; kFarDistance: unlimited
-    uint occlusionFalloff;  // 1: an occluder counts less the farther it is, linearly; 0: all alike
-    uint maxInterfaces;     // that a refracted ray passes
+    uint shadowSamples;     // rays for each light and sample on primary surfaces, for lights that have a size
+    uint occlusionSamples;  // rays for each sample
+    float occlusionRadius;  // metres; kFarDistance for no limit
+    uint occlusionFalloff;  // 1: an occluder counts less with distance, linearly; 0: all count alike
+    uint maxInterfaces;     // the most interfaces that a refracted ray passes
     uint bucketCount;  // 1 + cases
     uint bucketAlignment;  // buckets begin at multiples of it in the ordered list
     float mirrorRoughness;  // surfaces smoother than this reflect as mirrors
     float maxReflectionRoughness;  // surfaces rougher than this send no ray
-    float faintWeight;  // samples whose weight has a lesser luminance are not sent; 0: all are
-    float maxSampleRadiance;  // what a ray of an effect brings at most, luminance; infinite: no limit
+    float faintWeight;  // samples whose weight has a smaller luminance are not sent; 0 sends all
+    float maxSampleRadiance;  // the most luminance that a ray of an effect brings; infinite for no limit
     uint binning;  // kBinning*
-    uint screenSteps;  // steps of the march in screen space; 0: none
-    float screenThickness;  // how far behind the depth of a pixel its surface is taken to reach, share of its depth
+    uint screenSteps;  // steps of the march in screen space; 0 for none
+    float screenThickness;  // assumed thickness of a pixel's surface, as a share of its depth
     vec3 skyZenith;    // radiance, cd/m² in the units of the lights
     vec3 skyHorizon;
     vec3 skyGround;
     vec3 skyHarmonics[9];  // environment: irradiance over π, factors of 1, x, y, z, 3y² - 1, xy, yz, xz, x² - z²
     float environmentLevels;  // mip levels of the environment map: roughness 0 to 1
     float environmentTurn;    // added to its u: a rotation over 2π
-    float environmentScale;   // radiance of a texel's 1
+    float environmentScale;   // radiance of a texel with the value 1
     GLINT_ADDRESS(Geometry) geometries;
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
-    GLINT_ADDRESS(Sample) samples;    // of every pixel, effect by effect
-    GLINT_ADDRESS(Radiance) radiance;  // likewise: what the rays bring; kPath* as a float
+    GLINT_ADDRESS(Sample) samples;    // samples of every pixel, effect by effect
+    GLINT_ADDRESS(Radiance) radiance;  // the radiance that the rays bring, in the same order; kPath* as a float
     GLINT_ADDRESS(Ray) rays;
     GLINT_ADDRESS(Hit) hits;
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
-    // Bucket of a hit: 0 a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in as many bytes as the
-    // number of buckets takes: 1, 2 or 4. Of each bucket: its hits, its first slot in the ordered list, and how many of
-    // its slots have been given out while hits are copied.
+    // The bucket of a hit is 0 for a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in 1, 2 or 4
+    // bytes, depending on the number of buckets. The next three lists hold for each bucket: its number of hits, its
+    // first slot in the ordered list, and how many of its slots have been taken while hits are copied.
     GLINT_ADDRESS(Key) bucketKeys;
     GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount
     GLINT_ADDRESS(Counter) bucketBegins;   // bucketCount
     GLINT_ADDRESS(Counter) bucketCursors;  // bucketCount
-    GLINT_ADDRESS(Counter) visitedHits;  // a bit a hit, of the check of the order
+    GLINT_ADDRESS(Counter) visitedHits;  // one bit for each hit, for the check of the order
     GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
     GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
@@ -239,8 +245,8 @@ GLINT_INTEROP_BEGIN
 struct PushConstants {
     GLINT_ADDRESS(Frame) frame;
     uint tlasIndex;  // into the array of acceleration structures; uniform in a dispatch
-    uint bucket;     // shading passes: which bucket this dispatch shades
-    uint geometry;   // G-buffer pass: GeometryRecord index of this draw
+    uint bucket;     // the bucket that this dispatch of a shading pass shades
+    uint geometry;   // GeometryRecord index of this draw of the G-buffer pass
     uint pad;
 };
 
@@ -252,17 +258,17 @@ GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 // Descriptor set 1: the images of a frame, all storage images.
 GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);      // rg32ui: geometry, primitive; also a colour attachment
-GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, effects with rays apart;
-                                          // distance along the camera's axis, 0: none
-GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over samples so far, linear
-GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding keeps out of that mean
+GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, without effects that have
+                                          // rays; distance along the camera's axis, 0 for none
+GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over the samples so far, linear
+GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding leaves out of that mean
 GLINT_CONSTANT(kBindingPosition, 4u);     // rgba32f: ray origin off the surface; geometric normal, octahedral, bits
-                                          // 2x16snorm. Of packages with reflection, for the march over the screen
+                                          // 2x16snorm. In packages with reflection, for the march over the screen
 GLINT_CONSTANT(kFrameImageCount, 5u);
-// And of the same set:
+// The set also holds:
 GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map
 
-// How a sample came to what it brings.
+// How the radiance of a sample was found.
 GLINT_CONSTANT(kPathNone, 0u);    // no ray
 GLINT_CONSTANT(kPathScreen, 1u);  // found in screen space
 GLINT_CONSTANT(kPathHit, 2u);     // a ray that hit

@@ -1,4 +1,4 @@
-// What the device knows of a scene: geometry, instances, materials, lights.
+// A scene on the device: geometry, instances, materials, lights.
 #ifndef GLINT_INTEROP_SCENE_H
 #define GLINT_INTEROP_SCENE_H
 
@@ -13,7 +13,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec
 
 GLINT_INTEROP_BEGIN
 
-// Texture slots of a material, in the order of MaterialRecord::textures.
+// The texture slots of a material, in the order of MaterialRecord::textures.
 GLINT_CONSTANT(kTextureBaseColor, 0u);
 GLINT_CONSTANT(kTextureMetallicRoughness, 1u);
 GLINT_CONSTANT(kTextureNormal, 2u);
@@ -36,26 +36,26 @@ GLINT_CONSTANT(kTextureDiffuseTransmissionColor, 18u);
 GLINT_CONSTANT(kTextureSlotCount, 19u);
 
 // GeometryRecord::flags
-GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: test the candidate
+GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: the candidate must be tested
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
-GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass tests alpha, whatever hits do
+GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass tests alpha, whether or not hits do
 
 // InstanceRecord::flags
 GLINT_CONSTANT(kInstanceMirrored, 1u);  // the determinant of objectToWorld is negative
 
-// One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex.
-// Addresses are 0 where the primitive lacks the attribute; featureInputs then lacks the bit.
+// One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing
+// attribute is 0, and featureInputs then lacks its bit.
 struct GeometryRecord {
     uint shaderId;       // number of the case that shades it
-    uint materialIndex;  // into FrameConstants::materials
+    uint materialIndex;  // index into FrameConstants::materials
     uint featureLobes;   // the key, low word: lobes
     uint featureInputs;  // the key, high word: inputs
-    uint instanceIndex;  // into FrameConstants::instances
+    uint instanceIndex;  // index into FrameConstants::instances
     uint flags;          // kGeometry*
-    GLINT_ADDRESS(Uint) indices;     // 3 a triangle
+    GLINT_ADDRESS(Uint) indices;     // 3 for each triangle
     GLINT_ADDRESS(Vec3) positions;   // object space
-    GLINT_ADDRESS(Vec3) normals;     // object space, unit
-    GLINT_ADDRESS(Vec4) tangents;    // object space, unit; w = ±1 is the sign of the bitangent
+    GLINT_ADDRESS(Vec3) normals;     // object space, unit vectors
+    GLINT_ADDRESS(Vec4) tangents;    // object space, unit vectors; w = ±1 is the sign of the bitangent
     GLINT_ADDRESS(Vec2) texCoords0;
     GLINT_ADDRESS(Vec2) texCoords1;
     GLINT_ADDRESS(Vec4) colors;  // linear RGBA
@@ -64,24 +64,24 @@ struct GeometryRecord {
 // One instance of a mesh. Matrices are three rows of four (positions) or three (normals).
 struct InstanceRecord {
     vec4 objectToWorld[3];
-    vec3 normalToWorld[3];  // cofactors of the linear part times a scale, of its determinant's sign:
-                            // finite where singular
+    vec3 normalToWorld[3];  // cofactors of the linear part times a scale with its determinant's sign: finite even if it
+                            // is singular
     uint flags;             // kInstance*
 };
 
-// One texture of a material. uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1))), as KHR_texture_transform.
+// One texture of a material. uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1))), as in KHR_texture_transform.
 struct TextureRecord {
-    uint textureIndex;  // into the bindless images
-    uint samplerIndex;  // into the bindless samplers
+    uint textureIndex;  // index into the bindless images
+    uint samplerIndex;  // index into the bindless samplers
     uint texCoord;      // 0 or 1
     vec3 rowU;
     vec3 rowV;
-    // 0 in a package, as only the runtime sees image and device.
+    // The next two are 0 in a package, because only the runtime knows image and device.
     vec2 texels;       // size of mip 0
-    float anisotropy;  // up to which the sampler filters; 1: not at all
+    float anisotropy;  // maximum of the sampler's filter; 1 for none
 };
 
-// One layout for every permutation; what a key lacks is never read.
+// One layout serves every permutation. Values that a key lacks are never read.
 struct MaterialRecord {
     vec4 baseColorFactor;  // linear
     vec3 emissiveFactor;   // linear

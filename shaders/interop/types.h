@@ -1,6 +1,5 @@
-// Scalar types that C++ and GLSL both see. Every shared structure uses the `scalar` block layout, in which a
-// member is aligned to its component, so that the C++ structure below it has the same offsets without
-// padding.
+// The scalar types that C++ and GLSL share. Every shared structure uses the `scalar` block layout, in which a member is
+// aligned to its component. So the C++ structure has the same offsets without padding.
 #ifndef GLINT_INTEROP_TYPES_H
 #define GLINT_INTEROP_TYPES_H
 

@@ -1,5 +1,5 @@
 #version 460
-// Ordering, last pass: each hit's index into the next free slot of its bucket.
+// Ordering, last pass: writes each hit's index into the next free slot of its bucket.
 #define GLINT_BUCKET_WORDS bucketCursors
 #define GLINT_HITS_NUMBERED 1
 #include "hit/bucket_key.glsl"

@@ -1,9 +1,10 @@
 #version 460
-// Last pass of the ordering tile-sort. Workgroups, of which there are as many as run at once, take tiles of hits in turn.
-// One sorts a tile in shared memory, takes room in each bucket that the tile has by one atomic, and writes whole runs of
-// a bucket side by side. Where buckets begin each workgroup finds out for itself, which spares a pass.
+// The last pass of the ordering tile-sort. There are as many workgroups as can run at once, and they take tiles of hits
+// in turn. A workgroup sorts a tile in shared memory, reserves slots in each bucket that occurs in the tile with one
+// atomic, and writes whole runs of a bucket side by side. Each workgroup computes for itself where buckets begin, which
+// saves a pass.
 //
-// The counters of a tile, scanned in the order of buckets and then of copies, are where hits go in the sorted tile
+// The counters of a tile, scanned in the order of buckets and then of copies, say where hits go in the sorted tile
 // (Satish, Harris and Garland, "Designing efficient sorting algorithms for manycore GPUs", 2009).
 #extension GL_EXT_control_flow_attributes : require
 
@@ -12,9 +13,10 @@
 #include "hit/bucket_scan.glsl"
 #include "hit/tile_sort.glsl"
 
-// An H200 has shared memory for three of the small workgroups on a multiprocessor, for two of the next, for one of the
-// large ones, whose tiles have twice as many hits of each bucket. A device that cannot run these runs kTileThreads.
-// Arrays are as long as the least takes, which is known without the constant.
+// On a multiprocessor, an H200 has shared memory for three of the small workgroups, for two of the next size, or for
+// one of the large ones, whose tiles have twice as many hits of each bucket. A device that cannot run the large ones
+// runs kTileThreads. Arrays have the length that the smallest workgroup needs, which is known without the
+// specialisation constant.
 const uint kLeastThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
 #if GLINT_CASE_COUNT < 512  // kTileBuckets
 layout(local_size_x = kLeastThreads) in;
@@ -27,21 +29,21 @@ const uint kTileHits = kThreads * kTileHitsOfThread;
 
 #include "hit/scan.glsl"
 
-// Counters of a bucket, so that neighbours with hits of the same one do not wait for each other: an atomic that returns
-// takes its turn. Few, as they have to be scanned.
+// The number of counters of a bucket. With several, neighbours whose hits are in the same bucket do not wait for each
+// other, because atomics that return a value are executed in turn. There are few, because they have to be scanned.
 const uint kCopies = clamp(2048u / kLocalBuckets, 1u, 16u);
 const uint kCounters = kLocalBuckets * kCopies;
-// Odd, so that threads that scan their own read from different banks.
+// Odd, so that threads that scan their own counters read from different banks.
 const uint kCountersOfThread = (kCounters + kLeastThreads - 1u) / kLeastThreads | 1u;
-// Those that a thread takes room in.
+// The number of buckets in which one thread reserves slots.
 const uint kBucketsOfThread = (kLocalBuckets + kLeastThreads - 1u) / kLeastThreads;
-// Words with the keys of a thread's hits.
+// The number of words with the keys of a thread's hits.
 const uint kKeyWords = kTileHitsOfThread * kKeyBytes / 4u;
 
 shared uint tile[kThreads * max(kCountersOfThread, kTileHitsOfThread)];  // counters; later the sorted hits
-shared uint slotOffsets[kLocalBuckets];  // from a place in the sorted tile to the slot, by bucket
+shared uint slotOffsets[kLocalBuckets];  // by bucket: the difference between a slot and a place in the sorted tile
 
-// Keys of a thread's hits in the tile that begins with hit `first`.
+// Loads the keys of a thread's hits in the tile that begins with hit `first`.
 uint[kKeyWords] loadKeys(KeyArray list, uint first) {
     uint words[kKeyWords];
     uint word = (first / kTileHitsOfThread + gl_LocalInvocationIndex) * kKeyWords;
@@ -61,13 +63,13 @@ uint[kKeyWords] loadKeys(KeyArray list, uint first) {
     return words;
 }
 
-// Key of the thread's hit `k`.
+// Returns the key of the thread's hit `k`.
 uint keyAt(uint words[kKeyWords], uint k) {
     return keyOfWord(words[k / kKeysOfWord], k % kKeysOfWord);
 }
 
-// Place of a hit in the sorted tile. Hits of one bucket come from each copy in turn, a power of two apart: they are
-// spread over the banks.
+// Returns the place of a hit in the sorted tile. Hits of one bucket come from each copy in turn, a power of two apart,
+// so they are spread over the banks.
 uint sortedPlace(uint place) {
     return place ^ (place >> 7 & 31u);
 }
@@ -76,8 +78,8 @@ uint bucketOfThread(uint i) {
     return i * kThreads + scanThread();
 }
 
-// Where the buckets of the thread begin. The first workgroup says it to the passes that follow; gaps are cleared by all
-// `workgroups` that have a tile.
+// Returns where the buckets of the thread begin. The first workgroup stores that for later passes. All `workgroups`
+// that have a tile clear the gaps together.
 uint[kBucketsOfThread] scanBuckets(uint workgroups) {
     CounterArray counts = GLINT_FRAME.bucketCounts;
     uint begins[kBucketsOfThread];
@@ -102,7 +104,7 @@ uint[kBucketsOfThread] scanBuckets(uint workgroups) {
     return begins;
 }
 
-// From the number of hits of each counter to where they begin in the sorted tile.
+// Turns the number of hits of each counter into their begin in the sorted tile.
 void scanCounters() {
     uint first = scanThread() * kCountersOfThread;
     uint counts[kCountersOfThread];
@@ -119,22 +121,22 @@ void scanCounters() {
     }
 }
 
-// Takes slots for the tile's hits of a bucket that begins at slot `begin`; gives the bucket's slotOffsets.
+// Reserves slots for the tile's hits of a bucket that begins at slot `begin`. Returns the bucket's slotOffsets.
 uint takeSlots(CounterArray cursors, uint bucket, uint begin, uint hits) {
     uint first = tile[bucket * kCopies];
     uint end = bucket + 1u < kLocalBuckets ? tile[(bucket + 1u) * kCopies] : hits;
     return end > first ? begin + atomicAdd(cursors.data[bucket], end - first) - first : 0u;
 }
 
-// What a thread knows of its hits in the tile.
+// A thread's hits in the tile.
 struct Hits {
     uint keys[kKeyWords];
-    uint count;   // there are fewer than kTileHitsOfThread in the last tile
-    uint first;   // number of the first in the tile
-    uint places[kTileHitsOfThread];  // in the counter; later in the sorted tile
+    uint count;   // fewer than kTileHitsOfThread in the last tile
+    uint first;   // number in the tile of the first hit
+    uint places[kTileHitsOfThread];  // place in the counter; later in the sorted tile
 };
 
-// `one` is 1.
+// `one` is always 1; main() says why it is a parameter.
 void countHits(inout Hits hits, uint copy, uint one) {
     [[unroll]] for (uint k = 0u; k < kTileHitsOfThread; ++k) {
         if (k < hits.count) {
@@ -151,7 +153,7 @@ void findPlaces(inout Hits hits, uint copy) {
     }
 }
 
-// In the upper half of a word the bucket of a hit; in the lower its number in the tile.
+// A word holds the hit's bucket in its upper half, and the hit's number in the tile in its lower half.
 void storeHits(Hits hits) {
     [[unroll]] for (uint k = 0u; k < kTileHitsOfThread; ++k) {
         if (k < hits.count) {
@@ -171,7 +173,8 @@ void writeSlots(OrderedArray slots, uint firstOfTile, uint hitsOfTile) {
 }
 
 void main() {
-    // What is written may be the constants, as far as a compiler knows: read once, an address is not read anew.
+    // These addresses are read once: for all that a compiler knows, later writes may change the constants, so it would
+    // read them again.
     uint rays = GLINT_FRAME.rayDispatch.data[0].elementCount;
     KeyArray list = GLINT_FRAME.bucketKeys;
     OrderedArray slots = GLINT_FRAME.orderedHits;
@@ -186,12 +189,13 @@ void main() {
     hits.keys = loadKeys(list, first);
     hits.first = gl_LocalInvocationIndex * kTileHitsOfThread;
     uint begins[kBucketsOfThread] = scanBuckets(workgroups);
-    // 1, which no compiler can know: given the constant, an NVIDIA driver (580.159) makes each atomicAdd() wait until the
-    // subgroup's threads have compared their addresses, in order to add once where all are the same.
+    // This is always 1, but no compiler can know that. With a constant, an NVIDIA driver (580.159) makes each
+    // atomicAdd() wait until the subgroup's threads have compared their addresses, in order to add only once if all are
+    // equal.
     uint one = 1u + (hits.keys[0] & rays >> 31);
     uint copy = gl_LocalInvocationIndex % kCopies;
     for (; first < rays; first += stride) {
-        // The next tile's keys are on their way while this one is sorted.
+        // The keys of the next tile are loaded while this one is sorted.
         uint next[kKeyWords] = loadKeys(list, first + stride < rays ? first + stride : first);
         uint hitsOfTile = min(rays - first, kTileHits);
         hits.count = hitsOfTile - min(hitsOfTile, hits.first);

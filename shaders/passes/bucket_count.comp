@@ -1,5 +1,5 @@
 #version 460
-// Ordering, first pass: the number of hits in each bucket.
+// Ordering, first pass: counts the hits in each bucket.
 #define GLINT_BUCKET_WORDS bucketCounts
 #define GLINT_HITS_NUMBERED 0
 #include "hit/bucket_key.glsl"

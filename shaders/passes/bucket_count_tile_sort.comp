@@ -1,14 +1,14 @@
 #version 460
-// First pass of the ordering tile-sort: the number of hits in each bucket. Each workgroup counts many hits in shared
-// memory and adds what it has once.
+// The first pass of the ordering tile-sort: counts the hits in each bucket. Each workgroup counts many hits in shared
+// memory and adds its counts once.
 #extension GL_EXT_control_flow_attributes : require
 
 #include "hit/tile_sort.glsl"
 
 layout(local_size_x = kCountGroupSize) in;
 
-// A bucket has several counters, and neighbouring threads add to different ones: hits of one bucket, which neighbours
-// mostly are, do not wait for each other.
+// A bucket has several counters, and neighbouring threads add to different ones. Neighbours mostly have hits of one
+// bucket, and so they do not wait for each other.
 const uint kCopies = min(2048u / kLocalBuckets, 32u);
 const uint kCounters = kLocalBuckets * kCopies;
 
@@ -24,7 +24,7 @@ void countKey(uint key) {
     atomicAdd(counters[key * kCopies + gl_LocalInvocationIndex % kCopies], 1u);
 }
 
-// The vector that follows is on its way while one is counted.
+// The next vector is loaded while this one is counted.
 void countKeys(KeyArray list, uint rays) {
     uint vectors = rays / kKeysOfVector;
     uint stride = gl_NumWorkGroups.x * kCountGroupSize;
@@ -40,7 +40,7 @@ void countKeys(KeyArray list, uint rays) {
     }
 }
 
-// Keys behind the last whole vector.
+// Counts the keys behind the last whole vector.
 void countRest(KeyArray list, uint rays) {
     uint vectors = rays / kKeysOfVector;
     if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex < rays % kKeysOfVector) {
@@ -62,7 +62,8 @@ void addCounters(CounterArray counts) {
 }
 
 void main() {
-    // What is written may be the constants, as far as a compiler knows: read once, an address is not read anew.
+    // These addresses are read once: for all that a compiler knows, later writes may change the constants, so it would
+    // read them again.
     uint rays = GLINT_FRAME.rayDispatch.data[0].elementCount;
     KeyArray list = GLINT_FRAME.bucketKeys;
     CounterArray counts = GLINT_FRAME.bucketCounts;

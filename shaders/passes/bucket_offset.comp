@@ -1,6 +1,6 @@
 #version 460
-// Ordering, second pass: where each bucket begins. One workgroup, kScanGroupSize buckets at a time. The ordering
-// tile-sort has no such pass: each workgroup of its last one does the same for itself.
+// Ordering, second pass: computes where each bucket begins. One workgroup handles kScanGroupSize buckets at a time. The
+// ordering tile-sort has no such pass: each workgroup of its last pass does the same for itself.
 #define GLINT_SCAN_GROUP_SIZE kScanGroupSize
 #define GLINT_SCAN_SHUFFLES 0
 #include "hit/bucket_scan.glsl"

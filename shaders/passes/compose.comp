@@ -1,5 +1,5 @@
 #version 460
-// Adds what the effects bring to the lit surfaces and takes the sample into the running mean.
+// Adds the light of the effects to the lit surfaces, and adds the sample to the running mean.
 #include "generated/compose_effects.glsl"
 #include "hit/accumulate.glsl"
 #include "hit/images.glsl"
@@ -13,7 +13,7 @@ void main() {
     }
     ivec2 place = ivec2(pixel);
     vec3 radiance = imageLoad(radianceImage, place).rgb + composeEffects(pixel.x + pixel.y * GLINT_FRAME.width);
-    // One sample that is no number would stay in the mean for good.
+    // A single sample that is not a number would stay in the mean forever.
     if (!isFinite(radiance)) {
         atomicAdd(GLINT_FRAME.counters.data[kCounterNonFinite], 1u);
         radiance = vec3(0.0);

@@ -32,14 +32,15 @@ vec3 applyRows(vec4 rows[3], vec4 v) {
     return vec3(dot(rows[0], v), dot(rows[1], v), dot(rows[2], v));
 }
 
-// A vector's direction, or `fallback` where it has none or is no number.
+// Returns a vector's direction, or `fallback` if it has none or is not a number.
 vec3 unitOr(vec3 v, vec3 fallback) {
     vec3 scaled = v / max(max(abs(v.x), abs(v.y)), abs(v.z));
     float squared = dot(scaled, scaled);
     return squared > 0.5 && squared < 4.0 ? scaled * inversesqrt(squared) : fallback;
 }
 
-// By the cofactors of the linear part, of its determinant's sign: the inverse transpose, finite where singular.
+// Transforms by the cofactors of the linear part, with its determinant's sign: the inverse transpose, which is finite
+// even if the matrix is singular.
 vec3 transformedNormal(vec4 rows[3], vec3 normal) {
     vec3 x = rows[0].xyz;
     vec3 y = rows[1].xyz;
@@ -85,7 +86,7 @@ void main() {
         tangent.xyz = applyRows(blend.rows, vec4(tangent.xyz, 0.0));
     }
 
-    // What is no number would make a triangle inactive, which a refit may not change.
+    // A position that is not a number would make a triangle inactive, which a refit must not change.
     bool isFinite = all(lessThanEqual(abs(position), vec3(3.0e38)));
     record.deformedPositions.data[vertex] = isFinite ? position : rest;
     if (hasNormals) {

@@ -1,5 +1,5 @@
 #version 460
-// G-buffer: which triangle each pixel sees. Materials are read by the lighting pass, once a pixel.
+// G-buffer: stores which triangle each pixel sees. The lighting pass reads materials, once for each pixel.
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"
 
@@ -19,7 +19,7 @@ void main() {
         float alpha = material.baseColorFactor.a * vertexAlpha;
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
             TextureRecord record = material.textures[kTextureBaseColor];
-            // The draw has one material: the indices are uniform.
+            // The draw has one material, so the indices are uniform.
 #if GLINT_TEXTURE_LOD_CONES
             alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
                              texCoord)

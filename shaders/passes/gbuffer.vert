@@ -1,5 +1,5 @@
 #version 460
-// G-buffer, vertices pulled by address: each triangle has its own three, so that its number needs no geometry shader
+// G-buffer: vertices are pulled by address. Each triangle has its own three, so its number needs no geometry shader
 // capability.
 #include "hit/bindings.glsl"
 #include "hit/features.glsl"

@@ -1,5 +1,5 @@
 #version 460
-// The ray left the scene: ray generation has the sky.
+// The ray left the scene. Ray generation adds the sky.
 #extension GL_EXT_ray_tracing : require
 #include "hit/payload.glsl"
 

@@ -1,5 +1,5 @@
 #version 460
-// Lighting of the primary surfaces: materials, every punctual light, the sky; and the samples of the effects.
+// Lighting of the primary surfaces: materials, every punctual light, the sky. It also makes the samples of the effects.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)

@@ -1,7 +1,7 @@
 #version 460
-// Checks the order of the hits on the device. Buckets lie side by side and hold as many hits as there are rays; each of
-// their slots has a hit of that bucket that no other slot has. Then no hit is lost, as there are no more hits than
-// slots. Any number of threads will do: each takes every threadCount-th bucket and slot.
+// Checks the order of the hits on the device. Buckets must lie side by side and hold as many hits as there are rays,
+// and each of their slots must have a hit of that bucket that no other slot has. Then no hit is lost, because there are
+// no more hits than slots. Any number of threads works: each takes every threadCount-th bucket and slot.
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 
@@ -24,7 +24,7 @@ Bucket loadBucket(uint index) {
                   GLINT_FRAME.bucketCursors.data[index]);
 }
 
-// Where the bucket after this one begins.
+// Returns where the bucket after this one begins.
 uint endOfBucket(Bucket bucket) {
     uint alignment = GLINT_FRAME.bucketAlignment;
     return bucket.begin + (bucket.count + alignment - 1u) / alignment * alignment;
@@ -48,7 +48,8 @@ void checkSum(uint rayCount) {
     report(sum != rayCount);
 }
 
-// The bucket that a slot is of: the last that begins there or before it. Others that begin at the same slot are empty.
+// Returns the bucket of a slot: the last bucket that begins there or before it. Other buckets that begin at the same
+// slot are empty.
 uint bucketOfSlot(uint slot) {
     uint found = 0u;
     uint end = GLINT_FRAME.bucketCount;
@@ -63,7 +64,7 @@ uint bucketOfSlot(uint slot) {
     return found;
 }
 
-// Whether an earlier call was given the same hit.
+// Returns whether an earlier call was given the same hit.
 bool isVisited(uint hit) {
     uint bit = 1u << (hit & 31u);
     return (atomicOr(GLINT_FRAME.visitedHits.data[hit >> 5u], bit) & bit) != 0u;

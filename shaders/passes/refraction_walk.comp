@@ -1,10 +1,10 @@
 #version 460
 // Follows refracted rays from one interface to the next, until they leave the scene or meet a surface that lets nothing
-// through: that hit is left to the list, and is shaded as those of every effect.
+// through. That hit is left to the list, and is shaded like those of every effect.
 //
-// At an interface the ray is reflected or passes by chance, in proportion to Fresnel; in a medium it is attenuated over
-// the distance that it really goes (Beer and Lambert). Media that overlap are nested: what a ray enters last it leaves
-// first, and each surface stands between its medium and the one around.
+// At an interface the ray is randomly reflected or passed, in proportion to Fresnel. In a medium it is attenuated over
+// the real distance (Beer and Lambert). Overlapping media are nested: the medium that a ray enters last is the first
+// that it leaves, and each surface lies between its medium and the surrounding one.
 #define GLINT_MODULE_ALWAYS_LOBES 0u
 #define GLINT_MODULE_ALWAYS_INPUTS (GLINT_ALWAYS_INPUTS)
 #define GLINT_MODULE_ANY_LOBES ((GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES) & kWalkedLobes)

@@ -1,5 +1,5 @@
 #version 460
-// Shades bucket 0: rays that left the scene see the sky. No shadow ray.
+// Shades bucket 0: rays that left the scene see the sky, and need no shadow ray.
 #include "effects/sky.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"

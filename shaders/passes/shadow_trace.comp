@@ -1,5 +1,5 @@
 #version 460
-// Traces the deferred shadow rays of hits: light that nothing blocks joins what their samples bring.
+// Traces the deferred shadow rays of hits. Light that nothing blocks is added to the results of their samples.
 #include "hit/count.glsl"
 #include "hit/list.glsl"
 #include "hit/trace.glsl"
@@ -15,7 +15,7 @@ void main() {
     bool visible = isVisible(shadow.origin, shadow.direction, shadow.distance);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     if (visible) {
-        // A sample has one ray, and its hit one shadow ray: nobody else writes here.
+        // A sample has one ray, and its hit has one shadow ray, so no other thread writes here.
         vec4 radiance = GLINT_FRAME.radiance.data[shadow.target];
         GLINT_FRAME.radiance.data[shadow.target] = vec4(radiance.rgb + shadow.light, radiance.w);
     }

@@ -1,6 +1,6 @@
 #version 460
-// Shades the ordered hits in one dispatch. Buckets begin at multiples of a workgroup, so that the switch over the cases
-// is uniform in each.
+// Shades the ordered hits in one dispatch. Buckets begin at multiples of a workgroup, so the switch over the cases is
+// uniform in each workgroup.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
@@ -10,13 +10,13 @@
 
 GLINT_RAY_WORKGROUP
 
-// The slot of the workgroup's first thread. A bucket's slots are filled from its beginning: where any thread of the
-// workgroup has a hit, the first has.
+// Returns the slot of the workgroup's first thread. A bucket's slots are filled from its beginning, so if any thread of
+// the workgroup has a hit, the first thread has one.
 uint firstSlot() {
 #if GLINT_RAY_GENERATION
     return gl_LaunchIDEXT.x / kRayGroupSize * kRayGroupSize;
 #else
-    // Of built-in variables that are uniform alone, so that a compiler sees that the switch is.
+    // This uses only built-in variables that are uniform, so that a compiler sees that the switch is uniform.
     return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kRayGroupSize;
 #endif
 }
@@ -35,7 +35,7 @@ void main() {
         resolveMiss(record.target, missDirection(record));
         return;
     }
-    // The first hit of a workgroup says which case all of it has.
+    // The first hit of a workgroup gives the case of all its hits.
     uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);
     uint shaderId = first == kMissGeometry ? kNoShader : GLINT_FRAME.geometries.data[first].shaderId;
     GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];

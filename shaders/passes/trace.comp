@@ -1,5 +1,5 @@
 #version 460
-// Traces the ray list into hit records, and says to which bucket each belongs.
+// Traces the ray list into hit records, and stores the bucket of each hit.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)

@@ -1,5 +1,5 @@
 #version 460
-// Keeps what the ray hit; it is shaded elsewhere.
+// Stores what the ray hit; it is shaded elsewhere.
 #extension GL_EXT_ray_tracing : require
 #include "hit/payload.glsl"
 

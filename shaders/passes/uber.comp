@@ -1,5 +1,5 @@
 #version 460
-// Uber shader: traces each ray of the list and shades what it hits, whichever of the scene's cases that is.
+// Uber shader: traces each ray of the list and shades its hit, whichever of the scene's cases it belongs to.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
