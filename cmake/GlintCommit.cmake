@@ -1,7 +1,7 @@
-# glint_commit(TARGET): compiles the commit of the sources into TARGET, as sourceCommit() of tool/cli/commit.h. Looked at
-# in every build; only another commit compiles anything.
+# glint_commit(TARGET): compiles the commit of the sources into TARGET, as sourceCommit() of
+# tool/cli/commit.h. Every build checks the commit, but only a new commit compiles anything.
 #
-# The same file is the script that looks: cmake -DSOURCE=… -DOUTPUT=… -P GlintCommit.cmake.
+# The same file is the script that checks: cmake -DSOURCE=… -DOUTPUT=… -P GlintCommit.cmake.
 
 if(CMAKE_SCRIPT_MODE_FILE)
   cmake_minimum_required(VERSION 3.25)

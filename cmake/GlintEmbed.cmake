@@ -1,9 +1,10 @@
-# glint_embed(TARGET OUTPUT file.cpp HEADER path.h FUNCTION name ROOTS dir… PATTERNS glob…): compiles text files into
-# TARGET, found at run time by their path below a root through glint::FUNCTION(), which HEADER declares as
-# std::span<const BuiltinFile> FUNCTION(). Changed, added and removed files rebuild it.
+# glint_embed(TARGET OUTPUT file.cpp HEADER path.h FUNCTION name ROOTS dir… PATTERNS glob…): compiles text
+# files into TARGET. At run time they are found by their path below a root through glint::FUNCTION(), which
+# HEADER declares as std::span<const BuiltinFile> FUNCTION(). Changed, added and removed files cause a
+# rebuild.
 #
-# The same file is the generator: cmake -DOUTPUT=… -DLIST=… -DHEADER=… -DFUNCTION=… -P GlintEmbed.cmake, where each line
-# of LIST is "name|path".
+# The same file is the generator: cmake -DOUTPUT=… -DLIST=… -DHEADER=… -DFUNCTION=… -P GlintEmbed.cmake, where
+# each line of LIST is "name|path".
 
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS "${LIST}" entries ENCODING UTF-8)
@@ -51,7 +52,8 @@ function(glint_embed target)
     DEPENDS ${inputs} "${arg_OUTPUT}.list" "${GLINT_EMBED_SCRIPT}"
     COMMENT "Embedding the files of ${arg_FUNCTION}()"
     VERBATIM)
-  # The target may live in another folder, where this rule is out of sight: it waits for a target of this one.
+  # The target may be defined in another folder, where this rule is not visible. So it depends on a target of
+  # this folder.
   add_custom_target(${target}_embedded DEPENDS "${arg_OUTPUT}")
   add_dependencies(${target} ${target}_embedded)
   set_source_files_properties("${arg_OUTPUT}" TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)

@@ -1,5 +1,5 @@
-# Install, and export as the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler, Glint::glint and
-# glint_add_materials(), from a prefix or from a build folder.
+# Installs and exports the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler,
+# Glint::glint and glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_runtime)
@@ -13,7 +13,7 @@ install(TARGETS ${glint_targets} EXPORT GlintTargets
 install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
-  # What compile.h includes, and no more: the rest is the compiler's own business.
+  # The headers that compile.h includes. All others are internal to the compiler.
   foreach(header base/files.h emit/compile.h gltf/animation.h gltf/import.h gltf/scene.h plan/cost.h plan/effects.h plan/features.h plan/lock_ids.h
                  plan/material.h plan/merge.h plan/plan.h plan/strategy_choice.h plan/strategy_cost.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)

@@ -4,11 +4,12 @@
 # Compiles the materials of glTF scenes into a package before TARGET, and again whenever a scene, a file that it reads, the
 # lock or the tool changes. docs/integration.md describes each argument and what TARGET gets.
 
-# Functions keep the policies that were set where they were defined.
+# Functions keep the policies that are set where they are defined.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.25)
 
-# The tool: GLINT_EXECUTABLE where it is set, as for a build for another machine, else that of the project or of the package.
+# Finds the tool: GLINT_EXECUTABLE if it is set, as in a build for another machine; otherwise the tool of the
+# project or of the package.
 function(_glint_find_tool result)
   if(GLINT_EXECUTABLE)
     set(${result} "${GLINT_EXECUTABLE}" PARENT_SCOPE)
@@ -31,7 +32,7 @@ function(_glint_check_target target)
   endif()
 endfunction()
 
-# Absolute paths of input files, relative ones below the caller's source folder.
+# Makes the paths of input files absolute. Relative paths are relative to the caller's source folder.
 function(_glint_resolve_inputs result)
   set(paths "")
   foreach(path IN LISTS ARGN)
@@ -41,7 +42,8 @@ function(_glint_resolve_inputs result)
   set(${result} "${paths}" PARENT_SCOPE)
 endfunction()
 
-# A name for files and, in upper case, for a macro; two packages of one folder must not share it.
+# Checks a name, which is used for files and, in upper case, for a macro. Two packages of one folder must not
+# share it.
 function(_glint_check_name name folder)
   if(NOT name MATCHES "^[A-Za-z][A-Za-z0-9_]*$")
     message(FATAL_ERROR "glint_add_materials: NAME ${name} must be letters, digits and underscores, a letter first")
@@ -85,7 +87,7 @@ function(glint_add_materials)
   _glint_check_name("${arg_NAME}" "${base}")
   string(TOUPPER "GLINT_PACKAGE_${arg_NAME}" macro)
 
-  # The command line.
+  # Builds the command line.
   set(options "")
   foreach(keyword IN LISTS passed)
     if(arg_${keyword})
@@ -105,7 +107,8 @@ function(glint_add_materials)
     list(APPEND products "${source}" "${base}_package.h")
   endif()
 
-  # The stamp is as new as the last run; what did not change keeps its time, and nothing that reads it is built again.
+  # The stamp is as new as the last run. Files that did not change keep their time, so nothing that reads them
+  # is built again.
   set(stamp "${base}.stamp")
   add_custom_command(
     OUTPUT "${stamp}"
@@ -118,7 +121,8 @@ function(glint_add_materials)
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     COMMENT "Compiling the materials of ${arg_NAME}"
     VERBATIM)
-  # The target may live in another folder, where this rule is out of sight: it waits for a target of this one.
+  # The target may be defined in another folder, where this rule is not visible. So it depends on a target of
+  # this folder.
   add_custom_target(${arg_TARGET}_${arg_NAME}_materials DEPENDS "${stamp}")
   add_dependencies(${arg_TARGET} ${arg_TARGET}_${arg_NAME}_materials)
 

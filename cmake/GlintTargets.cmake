@@ -1,4 +1,4 @@
-# What every target of the project has in common.
+# The settings that all targets of the project share.
 
 set(glint_compile_options -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 set(glint_link_options "")
@@ -13,12 +13,12 @@ if(GLINT_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "GLINT_FUZZ needs Clang: cmake --preset fuzz")
   endif()
-  # Coverage counters in everything that targets run; the targets themselves bring libFuzzer.
+  # All code that the fuzz targets run gets coverage counters. The targets themselves link libFuzzer.
   list(APPEND glint_compile_options -fsanitize=fuzzer-no-link)
   list(APPEND glint_link_options -fsanitize=fuzzer-no-link)
 endif()
 
-# glint_configure(TARGET): the project's warnings and sanitizers, for its own sources only.
+# glint_configure(TARGET): sets the project's warnings and sanitizers for its own sources only.
 function(glint_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${glint_compile_options})

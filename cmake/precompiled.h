@@ -1,5 +1,5 @@
-// What most files of the project include, for GLINT_PRECOMPILE. Every file still includes what it uses:
-// builds without the option show that.
+// The headers that most files of the project include, for GLINT_PRECOMPILE. Every file still includes what it
+// uses; builds without the option check that.
 #pragma once
 
 #include <fmt/format.h>

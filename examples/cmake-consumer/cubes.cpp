@@ -4,7 +4,7 @@
 
 namespace {
 
-// Rows of a matrix that scales and then moves.
+// The rows of a matrix that first scales and then moves.
 glint::InstanceView place(std::uint32_t mesh, const std::array<float, 3>& at,
                           const std::array<float, 3>& scale) {
     return {mesh, {scale[0], 0, 0, at[0], 0, scale[1], 0, at[1], 0, 0, scale[2], at[2]}};
@@ -13,7 +13,7 @@ glint::InstanceView place(std::uint32_t mesh, const std::array<float, 3>& at,
 }  // namespace
 
 Cubes::Cubes() {
-    // A unit cube, face by face: the normal n, then u and v so that u × v = n.
+    // Builds a unit cube, face by face: the normal n, then u and v so that u × v = n.
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const float sign : {1.0F, -1.0F}) {
             const auto first = static_cast<std::uint32_t>(positions_.size());
@@ -34,7 +34,7 @@ Cubes::Cubes() {
             }
         }
     }
-    // Four meshes of the same geometry, each with a material of its own.
+    // Four meshes have the same geometry, and each has its own material.
     for (std::uint32_t mesh = 0; mesh < kMeshCount; ++mesh) {
         glint::PrimitiveView primitive;
         primitive.mesh = mesh;

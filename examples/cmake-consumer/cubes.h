@@ -1,5 +1,5 @@
-// The scene as an engine has it: meshes, instances and textures in its own memory. Its materials are those of
-// scene/cubes.gltf, by the numbers of meshes and images there.
+// The scene as an engine has it: meshes, instances and textures in its own memory. The materials are those of
+// scene/cubes.gltf; meshes and images have the same numbers as there.
 #pragma once
 
 #include <glint/scene_view.h>
@@ -12,7 +12,7 @@ class Cubes {
 public:
     Cubes();
 
-    // Valid as long as the object.
+    // The view is valid as long as the object.
     glint::SceneView view() const;
 
 private:

@@ -1,4 +1,5 @@
-// A program whose materials were compiled with it: they are in the program itself, and in a folder beside it.
+// A program that is compiled together with its materials: the package is in the program itself, and in a
+// folder beside it.
 #include "cubes.h"
 #include "cubes/glint_tables.h"
 #include "cubes_package.h"
@@ -25,7 +26,7 @@ void printShaders(const glint::Package& package) {
     }
 }
 
-// Whether both have the same modules, of the same size.
+// Returns whether both packages have the same modules with the same sizes.
 bool areAlike(const glint::Package& one, const glint::Package& other) {
     bool alike = one.modules().size() == other.modules().size();
     for (const glint::package::ModuleEntry& module : one.modules()) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kWidth = 320;
 constexpr std::uint32_t kHeight = 180;
 
-// The transfer function of IEC 61966-2-1.
+// Applies the transfer function of IEC 61966-2-1.
 char toSrgb(float linear) {
     const float light = std::clamp(linear, 0.0F, 1.0F);
     const float encoded =

@@ -1,4 +1,4 @@
-// One frame, without a window.
+// Renders one frame without a window.
 #pragma once
 
 #include <glint/package.h>
@@ -11,5 +11,5 @@
 glint::Result<glint::LinearImage> renderPicture(glint::Context& context, const glint::Package& package,
                                                 const glint::SceneView& scene);
 
-// As a PPM file, 8 bits a channel, sRGB, brighter than 1 clipped.
+// Writes a PPM file: 8 bits a channel, sRGB, with values above 1 clipped.
 glint::Status writePicture(const glint::LinearImage& image, const std::string& path);

@@ -1,4 +1,4 @@
-// What placing exhibits takes: sets of attributes, turns, and a mesh that is shown once.
+// Helpers that place exhibits: sets of attributes, turns, and a mesh that is shown once.
 #pragma once
 
 #include "scene.h"
@@ -25,7 +25,7 @@ struct Builder {
     GltfWriter& writer;
     const MaterialSet& materials;
 
-    // A mesh of its own, placed once.
+    // Adds a mesh that is placed once.
     void show(const std::string& name, const MeshData& mesh, unsigned attributes, int material,
               const Placement& placement) const {
         const int geometry = writer.addGeometry(mesh, attributes);

@@ -1,4 +1,4 @@
-// What the room shows. Heights are above the floor.
+// The exhibits of the room. Heights are above the floor.
 #include "builder.h"
 #include "shapes.h"
 
@@ -13,7 +13,7 @@ namespace gallery {
 
 namespace {
 
-// The knot on its dais, before the gate.
+// The knot on its dais in front of the gate.
 void addCentrepiece(const Builder& builder) {
     const MaterialSet& materials = builder.materials;
     const std::array<glm::vec2, 8> dais{{{0.0F, 0.30F},
@@ -93,7 +93,7 @@ void addPlinthExhibits(const Builder& builder) {
     builder.show("Pot", lathe(pot, false, 64, 1), kPlain, materials.redRubber, {{-4.1F, 0.45F, -0.9F}});
 }
 
-// A low bench across the front with a row of small things, so that their reflections stand beside them.
+// A low bench across the front with a row of small things, so that their reflections appear beside them.
 void addBench(const Builder& builder) {
     const MaterialSet& materials = builder.materials;
     GltfWriter& writer = builder.writer;
@@ -115,7 +115,7 @@ void addBench(const Builder& builder) {
     writer.addMeshNode("Globe", writer.addMesh("Globe", {{textured, materials.globe}}),
                        {{-0.72F, kTop, 0.9F}, turn(-15.0F, kZ) * turn(140.0F, kY)});
     const int red = writer.addMesh("Ball, red", {{plain, materials.redRubber}});
-    // The same ball again, flattened to a pebble.
+    // The same ball, flattened to a pebble.
     writer.addMeshNode("Ball, red", red, {{-0.20F, kTop, 0.9F}});
     writer.addMeshNode("Pebble", red, {{0.28F, 0.45F + 0.095F, 0.98F}, turn(30.0F, kY), {1.0F, 0.5F, 0.75F}});
     const std::array<glm::vec2, 11> bottle{{{0.0F, 0.62F},
@@ -133,7 +133,7 @@ void addBench(const Builder& builder) {
     builder.show("Emerald", gem(0.20F, 6), 0, materials.emerald, {{1.22F, 0.62F, 0.9F}, turn(8.0F, kY)});
 }
 
-// Blocks at the right, of one rounded box.
+// Blocks on the right, all made from one rounded box.
 void addBlocks(const Builder& builder) {
     GltfWriter& writer = builder.writer;
     MeshData block = roundedBox({0.5F, 0.5F, 0.5F}, 0.06F, 5);
@@ -146,7 +146,7 @@ void addBlocks(const Builder& builder) {
     writer.addMeshNode("Block, blue, upper", blueMesh,
                        {{3.33F, 0.68F, 1.45F}, turn(-35.0F, kY), {0.72F, 0.72F, 0.72F}});
     writer.addMeshNode("Block, white", whiteMesh, {{3.60F, 0.25F, 1.30F}, turn(-10.0F, kY)});
-    // A left-handed knot: the negative scale mirrors it.
+    // A left-handed knot, mirrored by the negative scale.
     const int knot = writer.addMesh(
         "Small knot", {{writer.addGeometry(torusKnot(2, 3, 0.16F, 0.075F, 0.042F, 192, 16), kPlain),
                         builder.materials.copper}});
@@ -171,7 +171,7 @@ void addStairs(const Builder& builder) {
                  {{4.35F, 0.0F, -1.3F}});
 }
 
-// A folding screen: one panel, three nodes, the middle one mirrored.
+// A folding screen: one panel in three nodes, of which the middle one is mirrored.
 void addScreen(const Builder& builder) {
     GltfWriter& writer = builder.writer;
     MeshData leaf = panel({0.62F, 1.9F});

@@ -54,7 +54,7 @@ Json extensionJson(const ExtensionSpec& extension) {
     }
     for (const auto& [name, use] : extension.textures) {
         json[name] = textureJson(use);
-        // Of the extensions' textures only clearcoat's normals have an amount.
+        // Among the extensions' textures, only clearcoat's normals have an amount.
         if (use.amount != 1.0) {
             json[name]["scale"] = use.amount;
         }

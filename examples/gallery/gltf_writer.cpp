@@ -14,7 +14,7 @@ namespace gallery {
 
 namespace {
 
-// Values of the glTF specification.
+// These values are from the glTF specification.
 constexpr int kArrayBuffer = 34962;
 constexpr int kElementArrayBuffer = 34963;
 constexpr int kUnsignedByte = 5121;
@@ -60,7 +60,7 @@ glint::Status writeBytes(const std::filesystem::path& path, std::span<const std:
     return glint::okStatus();
 }
 
-// Every key under an "extensions" object.
+// Collects every key under an "extensions" object.
 void collectExtensions(const Json& json, std::set<std::string>& names) {
     for (const auto& [key, value] : json.items()) {
         if (json.is_object() && key == "extensions") {
@@ -102,7 +102,7 @@ int GltfWriter::addMaterial(const MaterialSpec& material) {
 }
 
 int GltfWriter::addAccessor(const void* data, std::size_t bytes, int target, Json accessor) {
-    // Every view starts at a multiple of four bytes, as the widest component needs.
+    // Every view starts at a multiple of four bytes, because the widest component needs that.
     binary_.resize((binary_.size() + 3) / 4 * 4);
     accessor["bufferView"] = bufferViews_.size();
     bufferViews_.push_back(
@@ -132,7 +132,7 @@ int GltfWriter::addFloats(const std::vector<float>& values, int components, bool
 
 int GltfWriter::addIndices(const std::vector<std::uint32_t>& indices, std::size_t vertexCount) {
     Json accessor = {{"componentType", kUnsignedInt}, {"count", indices.size()}, {"type", "SCALAR"}};
-    // 65535 is reserved for primitive restart.
+    // The index 65535 is reserved for primitive restart.
     if (vertexCount > 65535) {
         return addAccessor(indices.data(), indices.size() * 4, kElementArrayBuffer, std::move(accessor));
     }
@@ -266,7 +266,7 @@ glint::Status GltfWriter::write(const std::filesystem::path& folder, const std::
                                 "cannot make the folder: " + error.message(),
                                 "name a folder that can be made");
     }
-    // Compression takes most of the time: one task an image.
+    // Compression takes most of the time, so each image is a task of its own.
     std::vector<std::future<glint::Status>> tasks;
     for (const NamedImage& image : images_) {
         tasks.push_back(std::async(std::launch::async, [&image, &folder]() -> glint::Status {

@@ -1,4 +1,4 @@
-// A glTF 2.0 scene under construction: one .gltf, one .bin, PNG textures.
+// Builds a glTF 2.0 scene: one .gltf, one .bin, PNG textures.
 #pragma once
 
 #include "image.h"
@@ -21,7 +21,7 @@ namespace gallery {
 
 using Json = nlohmann::ordered_json;
 
-// KHR_texture_transform, written whenever it is present, identity or not.
+// KHR_texture_transform. It is written whenever it is present, even if it is the identity.
 struct TextureTransform {
     std::array<double, 2> offset{0.0, 0.0};
     double rotation = 0.0;  // radians, counter-clockwise
@@ -29,20 +29,21 @@ struct TextureTransform {
 };
 
 struct TextureUse {
-    int texture = -1;  // from GltfWriter::addTexture(); -1: none
+    int texture = -1;  // from GltfWriter::addTexture(); -1 for none
     int texCoord = 0;
     std::optional<TextureTransform> transform = std::nullopt;
     double amount = 1.0;  // scale of a normal texture, strength of an occlusion texture
 };
 
-// A material extension under the names that it has in the file.
+// A material extension, with the names that it has in the file.
 struct ExtensionSpec {
     std::string name;
     std::vector<std::pair<std::string, Json>> values = {};
     std::vector<std::pair<std::string, TextureUse>> textures = {};
 };
 
-// What differs from glTF's defaults is written; optional members whenever they have a value.
+// Values that differ from glTF's defaults are written. Optional members are written whenever they have a
+// value.
 struct MaterialSpec {
     std::string name = {};
     std::array<double, 4> baseColor{1.0, 1.0, 1.0, 1.0};  // linear
@@ -61,7 +62,7 @@ struct MaterialSpec {
     std::vector<ExtensionSpec> extensions = {};
 };
 
-// Which attributes of a MeshData are written, besides positions.
+// The attributes of a MeshData that are written besides positions.
 enum Attribute : unsigned {
     kNormals = 1,
     kTangents = 2,
@@ -90,7 +91,7 @@ class GltfWriter {
 public:
     int addTexture(const std::string& name, Image image);
     int addMaterial(const MaterialSpec& material);
-    // Writes the geometry once; meshes share it.
+    // Writes the geometry once, so that meshes can share it.
     int addGeometry(const MeshData& mesh, unsigned attributes);
 
     // Names a variant of the scene (KHR_materials_variants).
@@ -111,7 +112,7 @@ public:
     void addLightNode(const LightSpec& light, const Placement& placement);
     void addCameraNode(const std::string& name, double yfov, const Placement& placement);
 
-    // Writes NAME.gltf, NAME.bin and the images into `folder`, which is made. Errors: "gallery-write".
+    // Writes NAME.gltf, NAME.bin and the images into `folder`, which is created. Errors: "gallery-write".
     glint::Status write(const std::filesystem::path& folder, const std::string& name) const;
 
 private:

@@ -8,10 +8,10 @@
 #include <future>
 #include <thread>
 
-// Internal linkage: another part of the program may carry its own copy of stb. The analyser sees declarations
-// only, as its findings within stb are not ours to mend.
+// Functions of stb get internal linkage, because another part of the program may carry its own copy. The
+// analyser sees only declarations, because findings within stb are not ours to fix.
 #ifndef __clang_analyzer__
-#ifndef __clang_analyzer__  // not ours to lint
+#ifndef __clang_analyzer__  // third-party code is not linted
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #endif
 #define STB_IMAGE_WRITE_STATIC
@@ -26,8 +26,8 @@ std::uint8_t toByte(float value) {
     return static_cast<std::uint8_t>(std::lround(glm::clamp(value, 0.0F, 1.0F) * 255.0F));
 }
 
-// Calls visit(index, uv) once for every pixel, rows shared out among the cores. Pixels do not depend on one
-// another, so the result does not depend on the number of threads.
+// Calls visit(index, uv) once for every pixel; rows are shared among the cores. Pixels do not depend on each
+// other, so the result does not depend on the number of threads.
 void forEachPixel(int width, int height, const std::function<void(std::size_t, const glm::vec2&)>& visit) {
     const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
     const auto rows = [&](int first) {
@@ -72,7 +72,7 @@ HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heigh
 }
 
 Image normalMap(const HeightField& field) {
-    // Central differences: two pixels of 1 / size each.
+    // These are central differences over two pixels of 1 / size each.
     const float scale = 0.5F * static_cast<float>(field.size);
     return paint(field.size, field.size, 3, [&](const glm::vec2& uv) {
         const int x = static_cast<int>(uv.x * static_cast<float>(field.size));

@@ -20,11 +20,11 @@ struct Image {
     std::vector<std::uint8_t> pixels;  // first row on top
 };
 
-// Calls `colorOf` at every pixel centre with u to the right and v down, both within (0, 1).
-// Colours are stored as they come, clamped to [0, 1]: encode sRGB where the texture is a colour.
+// Calls `colorOf` at every pixel centre with u to the right and v down, both within (0, 1). Colours are
+// clamped to [0, 1] and stored without conversion, so encode sRGB if the texture is a colour.
 Image paint(int width, int height, int channels, const std::function<glm::vec4(const glm::vec2&)>& colorOf);
 
-// Heights over the unit square, in units of its width; repeats at the borders.
+// Heights over the unit square, in units of its width. They repeat at the borders.
 struct HeightField {
     int size = 0;
     std::vector<float> heights;
@@ -35,10 +35,10 @@ struct HeightField {
     }
 };
 
-// `size` is a power of two.
+// `size` must be a power of two.
 HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heightOf);
 
-// The tangent-space normals of a height field in glTF's convention: +X right, +Y up the image.
+// Returns the tangent-space normals of a height field in glTF's convention: +X right, +Y up in the image.
 Image normalMap(const HeightField& field);
 
 // Errors: "png-encode".

@@ -1,4 +1,4 @@
-// Materials of the glTF extensions that change what light does at the surface.
+// The materials of the glTF extensions that change what light does at the surface.
 #include "scene.h"
 #include "textures.h"
 
@@ -10,7 +10,7 @@ constexpr double kQuarterTurn = 1.5707963267948966;
 
 void addCoatedMaterials(GltfWriter& writer, MaterialSet& set) {
     const int weave = writer.addTexture("carbon_normal", carbonNormal());
-    // The coat is smooth over the weave: without a normal texture of its own it has the mesh's normals.
+    // The coat is smooth over the weave. It has no normal texture of its own, so it has the mesh's normals.
     set.carbon =
         writer.addMaterial({.name = "Carbon fibre",
                             .baseColor = {0.14, 0.14, 0.15, 1.0},
@@ -68,7 +68,7 @@ void addGlassMaterials(GltfWriter& writer, MaterialSet& set) {
                                            {"KHR_materials_volume", {{"thicknessFactor", 0.5}}}}});
     const int roundel = writer.addTexture("roundel_color", roundelColor());
     const int panes = writer.addTexture("roundel_transmission", roundelTransmission());
-    // No volume: a thin sheet, which does not bend the view.
+    // Without a volume this is a thin sheet, which does not bend the view.
     set.stainedGlass = writer.addMaterial({.name = "Stained glass",
                                            .metallic = 0.0,
                                            .roughness = 0.05,
@@ -84,7 +84,7 @@ void addGlassMaterials(GltfWriter& writer, MaterialSet& set) {
          .extensions = {{"KHR_materials_ior", {{"ior", 2.42}}},
                         {"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
                         {"KHR_materials_volume", {{"thicknessFactor", 0.3}}},
-                        // 20 over the Abbe number, which is 55 for diamond; four times that, to be seen.
+                        // This is 20 over the Abbe number (55 for diamond), times four to be visible.
                         {"KHR_materials_dispersion", {{"dispersion", 1.5}}}}});
 }
 
@@ -110,7 +110,7 @@ void addReflectiveMaterials(GltfWriter& writer, MaterialSet& set) {
                          {{"specularColorFactor", {6.0, 6.0, 6.0}}},
                          {{"specularTexture", {bands}}, {"specularColorTexture", {bands}}}}}});
     const int strokes = writer.addTexture("turned_anisotropy", turnedAnisotropy());
-    // Grooves run along the tangent, which goes round: the highlight stretches across them.
+    // The grooves run along the tangent, which goes in circles, so the highlight stretches across them.
     set.turnedSteel = writer.addMaterial(
         {.name = "Turned steel",
          .baseColor = {0.75, 0.74, 0.72, 1.0},
@@ -131,7 +131,7 @@ void addReflectiveMaterials(GltfWriter& writer, MaterialSet& set) {
               {{"diffuseTransmissionTexture", {paper}}, {"diffuseTransmissionColorTexture", {paper}}}}}});
     const int glaze = writer.addTexture("celadon_color", celadonColor());
     const int gloss = writer.addTexture("celadon_specular_glossiness", celadonSpecularGlossiness());
-    // The older of glTF's two base models.
+    // This is the older of glTF's two base models.
     set.celadon = writer.addMaterial(
         {.name = "Celadon",
          .metallic = 0.0,

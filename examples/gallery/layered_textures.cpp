@@ -22,19 +22,20 @@ float fraction(float value) {
     return value - std::floor(value);
 }
 
-// 1 within `half` of 0, 0 beyond, over an edge `blur` wide.
+// Returns 1 within `half` of 0, and 0 beyond, over an edge that is `blur` wide.
 float stripe(float distance, float half, float blur) {
     return glm::clamp(0.5F - (std::abs(distance) - half) / blur, 0.0F, 1.0F);
 }
 
-// Distance to the nearest of the diagonals that cut the square into `count` x `count` lozenges, in lozenges.
+// Returns the distance to the nearest of the diagonals that cut the square into `count` x `count` lozenges,
+// in lozenges.
 float lozengeEdge(const glm::vec2& uv, float count) {
     const glm::vec2 diagonal = glm::vec2(uv.x + uv.y, uv.x - uv.y) * count;
     const glm::vec2 edge = glm::abs(diagonal - glm::round(diagonal));
     return std::min(edge.x, edge.y);
 }
 
-// Where a point lies in a rosette of petals about the middle of the image.
+// The place of a point in a rosette of petals about the middle of the image.
 struct Petal {
     int number;
     float across;  // 0 on the petal's axis, 1 on its edge
@@ -48,7 +49,7 @@ Petal petalAt(const glm::vec2& uv, int count) {
     return {static_cast<int>(along) % count, std::abs(fraction(along) - 0.5F) * 2.0F, glm::length(p)};
 }
 
-// 1 on the lead between the panes of the roundel.
+// Returns 1 on the lead between the panes of the roundel.
 float roundelLead(const glm::vec2& uv) {
     const Petal outer = petalAt(uv, 8);
     const float arc = outer.radius * glm::pi<float>() / 8.0F;
@@ -62,7 +63,7 @@ float roundelLead(const glm::vec2& uv) {
 }  // namespace
 
 Image carbonNormal() {
-    // A twill: each thread passes over two and under two.
+    // This is a twill: each thread passes over two and under two.
     return normalMap(sculpt(256, [](const glm::vec2& uv) {
         const glm::vec2 scaled = uv * 16.0F;
         const glm::ivec2 cell(glm::floor(scaled));
@@ -127,7 +128,7 @@ Image oilFilm() {
 }
 
 Image porcelainSpecular() {
-    // Bands that mirror in colour, between bands of bare clay that do not mirror.
+    // Bands that reflect in colour alternate with bands of bare clay that do not reflect.
     return paint(256, 256, 4, [](const glm::vec2& uv) {
         const float row = fraction(uv.y * 6.0F) - 0.5F;
         const float bare = stripe(row, 0.16F, 0.02F);
@@ -138,7 +139,7 @@ Image porcelainSpecular() {
 }
 
 Image turnedAnisotropy() {
-    // Strokes that swing about the direction of the factor.
+    // The strokes swing about the direction of the factor.
     return paint(256, 64, 3, [](const glm::vec2& uv) {
         const float angle = 0.6F * std::sin(uv.x * 12.0F * glm::two_pi<float>());
         const glm::vec2 direction = 0.5F + 0.5F * glm::vec2(std::cos(angle), std::sin(angle));

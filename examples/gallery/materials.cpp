@@ -1,4 +1,4 @@
-// The materials. Some differ in features, some in values only, and some name a feature at its neutral value.
+// The materials. Some differ in features, some only in values, and some have a feature at its neutral value.
 #include "scene.h"
 #include "textures.h"
 
@@ -39,7 +39,7 @@ void addRoomMaterials(GltfWriter& writer, MaterialSet& set) {
                                           .roughness = 0.95,
                                           .baseColorTexture = {plasterBase, 0, tiled(0.5, 0.5)},
                                           .normalTexture = {plasterBump, 0, tiled(0.7, 0.7), 0.5}});
-    // The same features as chalk: only the values differ.
+    // This has the same features as chalk; only the values differ.
     set.plasterRight = writer.addMaterial(
         {.name = "Plaster, petrol",
          .baseColor = {0.16, 0.32, 0.36, 1.0},
@@ -76,7 +76,7 @@ void addPlainMaterials(GltfWriter& writer, MaterialSet& set) {
         writer.addMaterial({.name = "Copper", .baseColor = {0.95, 0.55, 0.40, 1.0}, .roughness = 0.2});
     set.mirror =
         writer.addMaterial({.name = "Mirror", .baseColor = {0.95, 0.95, 0.95, 1.0}, .roughness = 0.0});
-    // Emissive strength 1 changes nothing.
+    // An emissive strength of 1 changes nothing.
     set.redRubber = writer.addMaterial({.name = "Rubber, red",
                                         .baseColor = {0.60, 0.06, 0.04, 1.0},
                                         .metallic = 0.0,
@@ -84,10 +84,10 @@ void addPlainMaterials(GltfWriter& writer, MaterialSet& set) {
                                         .emissiveStrength = 1.0});
     set.bluePlastic = writer.addMaterial(
         {.name = "Plastic, blue", .baseColor = {0.05, 0.16, 0.55, 1.0}, .metallic = 0.0, .roughness = 0.25});
-    // Its mesh has COLOR_0 that is white everywhere, which changes nothing.
+    // The mesh has a COLOR_0 that is white everywhere, which changes nothing.
     set.whitePlastic = writer.addMaterial(
         {.name = "Plastic, white", .baseColor = {0.85, 0.85, 0.83, 1.0}, .metallic = 0.0, .roughness = 0.3});
-    // Shaded flat: the geometry has no normals.
+    // This is shaded flat, because the geometry has no normals.
     set.ruby = writer.addMaterial(
         {.name = "Ruby", .baseColor = {0.75, 0.05, 0.12, 1.0}, .metallic = 0.35, .roughness = 0.05});
     set.emerald = writer.addMaterial(
@@ -155,7 +155,7 @@ void addMetalMaterials(GltfWriter& writer, MaterialSet& set) {
                                              .baseColor = {0.90, 0.48, 0.34, 1.0},
                                              .roughness = 0.16,
                                              .normalTexture = {hammered}});
-    // The coat follows the dents of the base: one texture, read once.
+    // The coat follows the dents of the base: both use one texture, which is read once.
     set.enamel =
         writer.addMaterial({.name = "Enamel",
                             .baseColor = {0.02, 0.16, 0.20, 1.0},

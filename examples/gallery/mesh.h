@@ -12,8 +12,9 @@
 
 namespace gallery {
 
-// Every attribute is empty or as long as positions. Metres, +Y up, counter-clockwise fronts.
-// Texture coordinates have V down; the bitangent is cross(normal, tangent) * w and points up the image.
+// Every attribute is empty or as long as positions. Units are metres, +Y is up, and fronts are
+// counter-clockwise. Texture coordinates have V down; the bitangent is cross(normal, tangent) * w and points
+// up in the image.
 struct MeshData {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -24,8 +25,8 @@ struct MeshData {
     std::vector<std::uint32_t> indices;
 };
 
-// Adds `part`, moved by `transform`: rotation, translation and uniform positive scale. Both meshes must have
-// the same attributes, or `mesh` none at all.
+// Appends `part`, transformed by `transform`: rotation, translation and uniform positive scale. Both meshes
+// must have the same attributes, unless `mesh` has none at all.
 void append(MeshData& mesh, const MeshData& part, const glm::mat4& transform = glm::mat4(1.0F));
 
 void scaleTexCoords(MeshData& mesh, const glm::vec2& scale);

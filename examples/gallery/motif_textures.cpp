@@ -18,7 +18,8 @@ glm::vec4 rgb(float r, float g, float b) {
     return {r, g, b, 1.0F};
 }
 
-// 1 inside a shape, 0 outside, from its signed distance (negative inside) over an edge `blur` wide.
+// Returns 1 inside a shape and 0 outside, from its signed distance (negative inside) over an edge that is
+// `blur` wide.
 float coverage(float distance, float blur) {
     return glm::clamp(0.5F - distance / blur, 0.0F, 1.0F);
 }
@@ -34,7 +35,7 @@ struct Stroke {
     glm::vec2 to;
 };
 
-// The word GLINT and an arrow to the right, letters one unit high, y up.
+// The word GLINT and an arrow to the right. Letters are one unit high, and y points up.
 constexpr std::array<Stroke, 21> kSignStrokes{{
     {{0.70F, 0.82F}, {0.54F, 1.00F}},   {{0.54F, 1.00F}, {0.16F, 1.00F}},
     {{0.16F, 1.00F}, {0.00F, 0.82F}},   {{0.00F, 0.82F}, {0.00F, 0.18F}},
@@ -61,10 +62,10 @@ float signDistance(const glm::vec2& uv) {
     return distance - 0.085F;
 }
 
-// Signed distance to a leaf with its axis along v, in units of its cell.
+// Returns the signed distance to a leaf whose axis is along v, in units of its cell.
 float leafDistance(const glm::vec2& inside) {
     const glm::vec2 p = glm::abs(inside - 0.5F);
-    // Two circles of radius r, centres apart by 2 d: a pointed oval.
+    // Two circles of radius r with centres 2 d apart form a pointed oval.
     constexpr float kRadius = 0.55F;
     constexpr float kOffset = 0.33F;
     return glm::length(p + glm::vec2(kOffset, 0.0F)) - kRadius;
@@ -83,7 +84,7 @@ float lanternDistance(const glm::vec2& uv) {
     const float row = std::floor(scaled.y);
     const float along = scaled.x + (static_cast<int>(row) % 2 == 0 ? 0.0F : 0.5F);
     const glm::vec2 inside(along - std::floor(along) - 0.5F, scaled.y - row - 0.5F);
-    // Holes shrink towards the poles with the width of the cells.
+    // Holes shrink towards the poles together with the width of the cells.
     const float width = std::max(0.15F, std::sin(glm::pi<float>() * (row + 0.5F) / 10.0F));
     return glm::length(inside * glm::vec2(width, 1.0F)) - 0.30F * width;
 }
@@ -102,7 +103,7 @@ Image vaseColor() {
         if (uv.y > 0.9F) {
             return glm::vec4(clay + 0.06F * fractalNoise(uv, glm::ivec2(16), 3, 201), 1.0F);
         }
-        // Bands above and below, waves between them.
+        // There are bands above and below, and waves between them.
         const float wave = 0.42F + 0.05F * std::sin(uv.x * 8.0F * glm::two_pi<float>());
         float ink = coverage(std::abs(uv.y - wave) - 0.014F, 0.004F);
         ink = std::max(ink, coverage(std::abs(uv.y - wave - 0.09F) - 0.026F, 0.004F));
@@ -150,7 +151,7 @@ Image screenColor() {
         const float hole = coverage(screenDistance(uv), 0.06F);
         const float grain = 0.06F * fractalNoise(uv, {48, 4}, 3, 221);
         const glm::vec3 wood = glm::vec3(0.44F, 0.26F, 0.17F) + grain;
-        // What is cut out is dark as well, so that the motif shows where alpha is not tested.
+        // The cut-out parts are also dark, so that the motif shows where alpha is not tested.
         return glm::vec4(glm::mix(wood, glm::vec3(0.13F, 0.10F, 0.09F), hole), 1.0F - hole);
     });
 }
@@ -202,7 +203,7 @@ Image paintingColor() {
     constexpr int kSize = 512;
     constexpr std::array<glm::vec3, 4> kHills{
         {{0.62F, 0.40F, 0.42F}, {0.42F, 0.30F, 0.40F}, {0.22F, 0.28F, 0.34F}, {0.10F, 0.18F, 0.20F}}};
-    // The line of each hill, column by column.
+    // Computes the outline of each hill, column by column.
     std::array<std::array<float, kSize>, kHills.size()> ridges{};
     for (std::size_t hill = 0; hill < kHills.size(); ++hill) {
         const auto depth = static_cast<float>(hill);
@@ -213,7 +214,7 @@ Image paintingColor() {
         }
     }
     return paint(kSize, kSize, 3, [&](const glm::vec2& uv) {
-        // A low sun over folded hills, with the sun on the left.
+        // A low sun stands on the left over folded hills.
         const float haze = uv.y + 0.05F * fractalNoise(uv, {3, 6}, 4, 241);
         glm::vec3 color = glm::mix(glm::vec3(0.16F, 0.24F, 0.42F), glm::vec3(0.96F, 0.66F, 0.40F),
                                    glm::smoothstep(0.0F, 0.55F, haze));

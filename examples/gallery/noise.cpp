@@ -11,7 +11,7 @@ namespace gallery {
 
 namespace {
 
-// Eight directions, the diagonals and the axes.
+// There are eight directions: the diagonals and the axes.
 constexpr float kDiagonal = 0.70710678F;
 constexpr std::array<glm::vec2, 8> kGradients{{{1, 0},
                                                {kDiagonal, kDiagonal},

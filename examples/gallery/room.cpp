@@ -1,4 +1,4 @@
-// Floor, walls, gate, beams, sea; and the lights and cameras.
+// The floor, walls, gate, beams and sea; and the lights and cameras.
 #include "builder.h"
 #include "shapes.h"
 
@@ -13,7 +13,7 @@ constexpr float kHalfWidth = 5.0F;
 constexpr float kFrontZ = 6.0F;
 constexpr float kWallHeight = 4.2F;
 constexpr float kWallThickness = 0.24F;
-// A camera or light at `from` that looks at `to`.
+// Places a camera or light at `from` so that it looks at `to`.
 Placement lookAt(const glm::vec3& from, const glm::vec3& to) {
     const glm::vec3 forward = glm::normalize(to - from);
     return {from, glm::quatLookAt(forward, std::abs(forward.y) > 0.99F ? kX : kY)};
@@ -40,7 +40,7 @@ void addWalls(GltfWriter& writer, const MaterialSet& materials) {
     const int back = writer.addMesh("Back wall", {{writer.addGeometry(wall, kBumped), materials.brick}});
     writer.addMeshNode("Back wall", back, {{0.0F, 0.0F, kBackWallZ}});
 
-    // The ring hides the cut edge of the wall: its tube is wider than the wall is thick.
+    // The ring hides the cut edge of the wall, because its tube is wider than the wall is thick.
     const int ring = writer.addMesh(
         "Gate ring", {{writer.addGeometry(torus(kGateRadius, 0.15F, 128, 24), kPlain), materials.copper}});
     writer.addMeshNode("Gate ring", ring,

@@ -1,4 +1,4 @@
-// The gallery: a roofless room by the sea, with exhibits in more materials than most scenes have.
+// The gallery: a roofless room by the sea, whose exhibits have more materials than most scenes.
 #pragma once
 
 #include "gltf_writer.h"
@@ -9,7 +9,7 @@
 
 namespace gallery {
 
-// Indices of materials in the file, named by what they cover.
+// The indices of materials in the file, named after what they cover.
 struct MaterialSet {
     int floor;
     int brick;
@@ -46,7 +46,7 @@ struct MaterialSet {
     int hammeredCopper;
     int globe;
     int tintedMarble;
-    // One for each material extension, and more where a second look is worth a key:
+    // One material for each extension, and more where a second one is worth a key.
     int carbon;
     int lacquer;
     int enamel;
@@ -66,20 +66,20 @@ struct MaterialSet {
 MaterialSet addMaterials(GltfWriter& writer);
 
 void addRoom(GltfWriter& writer, const MaterialSet& materials);
-// The materials of extensions other than unlit and emissive strength.
+// Adds the materials of all extensions except unlit and emissive strength.
 void addLayeredMaterials(GltfWriter& writer, MaterialSet& set);
 
 void addExhibits(GltfWriter& writer, const MaterialSet& materials);
-// What wears the materials of addLayeredMaterials().
+// Adds the exhibits that have the materials of addLayeredMaterials().
 void addShowcase(GltfWriter& writer, const MaterialSet& materials);
 void addLightsAndCameras(GltfWriter& writer);
 
-// Where the gate stands in the back wall.
+// The place of the gate in the back wall.
 inline constexpr float kBackWallZ = -4.0F;
 inline constexpr float kGateHeight = 2.15F;
 inline constexpr float kGateRadius = 1.65F;
 
-// Where the lamp in the paper shade is.
+// The position of the lamp in the paper shade.
 inline const glm::vec3 kPaperShade(1.95F, 2.55F, -2.6F);
 
 // Writes gallery.gltf, gallery.bin and the textures into `folder`. Errors: "gallery-write", "png-encode".

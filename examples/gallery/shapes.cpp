@@ -1,4 +1,4 @@
-// Surfaces of revolution, tubes and spheres: everything that one parametric grid covers.
+// Surfaces of revolution, tubes and spheres: all shapes that one parametric grid covers.
 #include "shapes.h"
 
 #include <glm/common.hpp>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr float kTwoPi = glm::two_pi<float>();
 
-// The direction in which u grows, made orthogonal to the normal. Poles, where u moves nothing, take the
-// tangent of a row beside them.
+// Returns the direction in which u grows, made orthogonal to the normal. At poles, where u has no effect, it
+// takes the tangent of a neighbouring row.
 glm::vec4 tangentAt(const Surface& surface, float u, float v, const glm::vec3& normal) {
     constexpr float kStep = 1.0F / 1024.0F;
     const float row = std::clamp(v, 0.01F, 0.99F);
@@ -26,13 +26,13 @@ glm::vec4 tangentAt(const Surface& surface, float u, float v, const glm::vec3& n
 void addTriangle(MeshData& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const glm::vec3 edge1 = mesh.positions[b] - mesh.positions[a];
     const glm::vec3 edge2 = mesh.positions[c] - mesh.positions[a];
-    // Half a quad collapses at each pole; 1e-12 m² is far below any triangle that shows.
+    // Half a quad collapses at each pole. 1e-12 m² is far below the area of any visible triangle.
     if (glm::length(glm::cross(edge1, edge2)) > 1e-12F) {
         mesh.indices.insert(mesh.indices.end(), {a, b, c});
     }
 }
 
-// A point and the direction of travel on a Catmull-Rom spline through `points`, t within [0, 1].
+// Returns a point and the direction of travel on a Catmull-Rom spline through `points`, t within [0, 1].
 glm::vec2 splinePoint(std::span<const glm::vec2> points, float t) {
     const auto last = static_cast<int>(points.size()) - 1;
     const float scaled = std::clamp(t, 0.0F, 1.0F) * static_cast<float>(last);
@@ -49,7 +49,8 @@ glm::vec2 splinePoint(std::span<const glm::vec2> points, float t) {
                    (3.0F * p1 - p0 - 3.0F * p2 + p3) * f * f * f);
 }
 
-// Turns a point of a profile about +Y; `travel` is the direction of the profile, downwards on the outside.
+// Turns a point of a profile about +Y. `travel` is the direction of the profile, which goes down on the
+// outside.
 SurfacePoint turned(const glm::vec2& point, const glm::vec2& travel, float u) {
     const float angle = kTwoPi * u;
     const glm::vec3 outward(std::sin(angle), 0.0F, std::cos(angle));
@@ -89,7 +90,7 @@ MeshData sphere(float radius, int columns, int rows) {
     return grid(columns, rows, [radius](float u, float v) {
         const float polar = glm::pi<float>() * v;
         const float angle = kTwoPi * u;
-        // The sine of the float nearest π is -8.7e-8: clamped, so that the pole is one point.
+        // The sine of the float nearest to π is -8.7e-8. It is clamped so that the pole is one point.
         const float ring = v <= 0.0F || v >= 1.0F ? 0.0F : std::sin(polar);
         const glm::vec3 normal(ring * std::sin(angle), std::cos(polar), ring * std::cos(angle));
         return SurfacePoint{normal * radius, glm::normalize(normal)};
@@ -118,7 +119,8 @@ MeshData torusKnot(int p, int q, float majorRadius, float knotRadius, float tube
         constexpr float kStep = 1.0F / 2048.0F;
         const glm::vec3 centre = curve(u);
         const glm::vec3 forward = glm::normalize(curve(u + kStep) - curve(u - kStep));
-        // From the core circle of the torus to the curve: never parallel to the curve, periodic with it.
+        // The vector goes from the core circle of the torus to the curve. It is never parallel to the curve,
+        // and has the same period.
         const float turn = kTwoPi * u * static_cast<float>(p);
         const glm::vec3 core(majorRadius * std::cos(turn), 0.0F, majorRadius * std::sin(turn));
         const glm::vec3 away = centre - core;

@@ -1,5 +1,5 @@
-// The exhibits of material extensions: a row on the floor before the bench, glass before the gate, a shield
-// on the wall, a lampshade, and a pouf in two variants.
+// The exhibits of material extensions: a row on the floor in front of the bench, glass in front of the gate,
+// a shield on the wall, a lampshade, and a pouf in two variants.
 #include "builder.h"
 #include "shapes.h"
 
@@ -49,7 +49,7 @@ void addFloorRow(const Builder& builder) {
                  {{2.55F, 0.0F, 2.75F}});
 }
 
-// Before the sky, which is what is seen through them.
+// The glass stands before the sky, which is seen through it.
 void addGlass(const Builder& builder) {
     const MaterialSet& materials = builder.materials;
     GltfWriter& writer = builder.writer;
@@ -63,7 +63,7 @@ void addGlass(const Builder& builder) {
     writer.addMeshNode("Pedestal, right", pedestal, {{0.92F, 0.65F, -3.1F}});
     builder.show("Frosted orb", orb, kPlain, materials.frostedGlass, {{0.92F, 1.30F + kRadius, -3.1F}});
 
-    // A disc that faces +Y, its image seen from there with -Z up.
+    // A disc that faces +Y; its image is seen from there with -Z up.
     const std::array<glm::vec2, 2> rim{{{0.0F, 0.0F}, {0.36F, 0.0F}}};
     MeshData roundel = lathe(rim, false, 48, 2);
     for (std::size_t vertex = 0; vertex < roundel.positions.size(); ++vertex) {
@@ -83,7 +83,7 @@ void addShield(const Builder& builder) {
                  {{-3.25F, 2.75F, kBackWallZ + 0.15F}, turn(90.0F, kX)});
 }
 
-// Lit from within: what the near side shows has passed the paper.
+// The shade is lit from within: light that the near side shows has passed the paper.
 void addPaperShade(const Builder& builder) {
     const std::array<glm::vec2, 4> dome{{{0.05F, 0.24F}, {0.22F, 0.16F}, {0.33F, 0.0F}, {0.38F, -0.20F}}};
     builder.show("Paper shade", lathe(dome, true, 64, 4), kTextured, builder.materials.paper, {kPaperShade});

@@ -29,7 +29,7 @@ constexpr std::array<Face, 6> kFaces{{
     {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
 }};
 
-// A vertex of a flat face: u to the right, v down.
+// Adds a vertex of a flat face: u to the right, v down.
 void addVertex(MeshData& mesh, const Face& face, const glm::vec3& position, const glm::vec2& metres,
                const glm::vec2& unit) {
     mesh.positions.push_back(position);
@@ -49,7 +49,7 @@ void addQuad(MeshData& mesh, const Face& face, const glm::vec3& centre, const gl
     mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2, base, base + 2, base + 3});
 }
 
-// Where the ray from `from` along `direction` leaves the rectangle.
+// Returns where the ray from `from` along `direction` leaves the rectangle.
 glm::vec2 rectangleExit(const glm::vec2& from, const glm::vec2& direction, const glm::vec2& low,
                         const glm::vec2& high) {
     float distance = 1e30F;
@@ -62,7 +62,7 @@ glm::vec2 rectangleExit(const glm::vec2& from, const glm::vec2& direction, const
     return glm::clamp(from + direction * distance, low, high);
 }
 
-// Angles about `centre` at which a wall is cut: evenly, and at the rectangle's corners.
+// The angles about `centre` at which a wall is cut: evenly spaced, and at the rectangle's corners.
 std::vector<float> gateAngles(const glm::vec2& centre, const glm::vec2& low, const glm::vec2& high) {
     constexpr int kSteps = 96;
     std::vector<float> angles;
@@ -98,14 +98,14 @@ MeshData panel(const glm::vec2& size) {
 }
 
 MeshData roundedBox(const glm::vec3& size, float radius, int segments) {
-    // Steps of the cube's coordinate within one edge; the tangent spaces them evenly by angle.
+    // The steps of the cube's coordinate within one edge. The tangent spaces them evenly by angle.
     std::vector<float> steps;
     for (int step = 0; step <= segments; ++step) {
         const float angle =
             glm::quarter_pi<float>() * static_cast<float>(step) / static_cast<float>(segments);
         steps.push_back(std::tan(angle));
     }
-    // One face as a surface whose parameter picks a line of that spacing.
+    // One face as a surface whose parameter selects a line of that spacing.
     const auto coordinate = [&](float parameter, float half) {
         const auto lines = 2 * (segments + 1);
         const int line = std::clamp(static_cast<int>(std::lround(parameter * static_cast<float>(lines - 1))),
@@ -178,7 +178,7 @@ MeshData gem(float radius, int sides) {
                                         radius * ringRadius * std::cos(angle));
         }
     };
-    // Table, crown, girdle, pavilion, in proportions near those of a brilliant.
+    // Table, crown, girdle and pavilion, with proportions near those of a brilliant.
     ring(0.55F, 0.35F, 0.0F);
     ring(0.85F, 0.20F, 0.5F);
     ring(1.00F, 0.00F, 0.0F);
@@ -210,7 +210,7 @@ MeshData gem(float radius, int sides) {
 MeshData rosette(int count, float length) {
     MeshData mesh;
     for (int leaf = 0; leaf < count; ++leaf) {
-        // The golden angle spreads leaves as plants do; inner leaves stand steeper and are shorter.
+        // The golden angle spreads leaves as plants do. Inner leaves are steeper and shorter.
         const float age = static_cast<float>(leaf) / static_cast<float>(count);
         const float size = length * (0.65F + 0.35F * age);
         const float lean = 0.25F + 0.95F * age;

@@ -17,7 +17,7 @@ glm::vec4 rgb(float r, float g, float b) {
     return {r, g, b, 1.0F};
 }
 
-// 1 along thin wandering lines, 0 elsewhere.
+// Returns 1 along thin wandering lines and 0 elsewhere.
 float veins(const glm::vec2& uv, int period, std::uint32_t seed) {
     const float wander = fractalNoise(uv, glm::ivec2(period * 2), 4, seed + 10);
     const float field = fractalNoise(uv, glm::ivec2(period), 3, seed) + 0.35F * wander;
@@ -40,7 +40,7 @@ Tile floorTile(const glm::vec2& uv) {
     return {cell, inside, ((cell.x + cell.y) & 1) == 0, std::min(fromEdge.x, fromEdge.y) < 0.008F};
 }
 
-// Each tile is cut from another place of the stone.
+// Each tile is cut from a different place of the stone.
 float floorVeins(const Tile& tile) {
     const auto seed = static_cast<std::uint32_t>(100 + tile.cell.x * 7 + tile.cell.y * 31);
     return veins(tile.inside, 2, seed);
@@ -61,7 +61,7 @@ Brick brickAt(const glm::vec2& uv) {
     const float along = moved.x * kColumns + shift;
     const float column = std::floor(along);
     const glm::vec2 inside(along - column, moved.y * kRows - row);
-    // Distance to the brick's edge, in units of the image.
+    // The distance to the brick's edge, in units of the image.
     const glm::vec2 fromEdge =
         glm::min(inside, 1.0F - inside) / glm::vec2(kColumns, kRows) - glm::vec2(0.006F);
     const float profile = glm::smoothstep(-0.001F, 0.007F, std::min(fromEdge.x, fromEdge.y));
@@ -104,7 +104,7 @@ Image floorMetallicRoughness() {
             return rgb(0.7F, 0.05F, 0.0F);
         }
         const float vein = floorVeins(tile);
-        // Dark tiles are black glass on a metal back: they mirror more than stone can.
+        // Dark tiles are black glass on a metal back, so they reflect more than stone can.
         return rgb(1.0F, 0.012F + 0.03F * vein, tile.dark ? 0.85F : 0.0F);
     });
 }

@@ -1,4 +1,4 @@
-// The images of the scene. Colours come sRGB-encoded; metallic-roughness images hold occlusion in red,
+// The images of the scene. Colours are sRGB-encoded; metallic-roughness images hold occlusion in red,
 // roughness in green and metalness in blue.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace gallery {
 
-// Surfaces (surface_textures.cpp); all of them repeat.
+// Surfaces (surface_textures.cpp). All of them repeat.
 Image floorColor();  // four tiles a side, chequered
 Image floorMetallicRoughness();
 Image brickColor();
@@ -23,14 +23,14 @@ Image brushedNormal();
 Image hammeredNormal();
 Image canvasNormal();
 
-// Motifs (motif_textures.cpp): pictures with an up and a right.
+// Motifs (motif_textures.cpp): pictures with an up and a right direction.
 Image vaseColor();
 Image vaseMetallicRoughness();
 Image globeColor();
 Image globeMetallicRoughness();
 Image globeEmissive();
-Image screenColor();   // alpha cuts leaves out
-Image lanternColor();  // alpha cuts round holes out
+Image screenColor();   // alpha cuts out leaves
+Image lanternColor();  // alpha cuts out round holes
 Image lanternEmissive();
 Image lampColor();
 Image signColor();
@@ -38,10 +38,10 @@ Image signEmissive();
 Image paintingColor();
 Image footOcclusion();  // darker towards the foot and the edges
 
-// Of material extensions (layered_textures.cpp). Channels as the extensions name them.
+// Textures of material extensions (layered_textures.cpp). The channels are those of the extensions.
 Image carbonNormal();
 Image lacquerCoat();          // factor in red, roughness in green
-Image peelNormal();           // of an orange
+Image peelNormal();           // the peel of an orange
 Image velvetSheen();          // colour, roughness in alpha
 Image amberThickness();       // in green
 Image roundelColor();         // coloured glass in lead
