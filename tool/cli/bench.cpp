@@ -1,4 +1,4 @@
-// glint bench: what each setting costs in time, and what it brings in accuracy.
+// glint bench: what each setting costs in time, and what it gains in accuracy.
 #include "bench/advice.h"
 #include "bench/sweep.h"
 #include "cli/bench_arguments.h"
@@ -39,7 +39,7 @@ BenchPoint makePoint(PointKind kind, bench::Configuration configuration) {
     return point;
 }
 
-// All of the work between the scene and the files.
+// Does all the work between reading the scene and writing the files.
 class Bench {
 public:
     Bench(const Console& console, const BenchArguments& arguments, BenchBed& bed, CacheStore* store,
@@ -96,7 +96,7 @@ private:
         return arguments_.depth != "search" ? 0 : arguments_.quick ? 1 : kSearches;
     }
 
-    // The reference, and what it tells of the scene's light; then which settings there are.
+    // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
     Status makeTruth(const PlanOptions& plan) {
         bench::Facts facts = factsOf(arguments_.render, bed_.scene(), plan);
         const std::uint32_t tracers = bed_.context().handles().tracers;
@@ -148,7 +148,7 @@ private:
         return checkValidation(console_, bed_.context());
     }
 
-    // Of the points that the tool makes; errors are of a kind that adds up.
+    // Rates the points that the tool makes itself; errors are of a kind that adds up.
     std::vector<bench::Rated> rated() const {
         std::vector<bench::Rated> all;
         const auto add = [&](const BenchPoint& point) {

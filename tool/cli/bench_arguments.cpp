@@ -20,8 +20,8 @@ constexpr std::int64_t kReferenceSamples = 16384;
 constexpr std::int64_t kQuickReferenceSamples = 768;
 constexpr const char* kQuickSize = "80x45";
 
-// What decides about the picture but is swept by no bench: of these a point's command has those that were
-// given.
+// These options decide about the picture, but no bench sweeps them. A point's command includes those that
+// were given.
 bool isView(const CLI::Option& option) {
     constexpr std::string_view kViews[] = {"--size",
                                            "--camera",
@@ -42,7 +42,7 @@ bool isView(const CLI::Option& option) {
     return std::ranges::find(kViews, option.get_name()) != std::end(kViews);
 }
 
-// NAME=DIR of --candidate.
+// Parses NAME=DIR of --candidate.
 Candidate parseCandidate(const std::string& text) {
     const std::size_t sign = text.find('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size()) {
@@ -62,7 +62,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
             "calibration.json")
         .required();
     addSceneOptions(command, arguments.render);
-    // checkCalibrateOptions() asks for it where there is no --calibrate.
+    // Without --calibrate, checkCalibrateOptions() requires it.
     command.get_option("SCENE")->required(false)->description(
         "the scene, .gltf or .glb; none with --calibrate");
     const std::string sweep = "Sweep";

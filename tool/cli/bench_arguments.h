@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// A package that is measured beside the configurations.
+// A package that is measured in addition to the configurations.
 struct Candidate {
     std::string name;
     std::string folder;
@@ -41,7 +41,8 @@ struct BenchArguments {
 };
 
 void addBenchOptions(CLI::App& command, BenchArguments& arguments);
-// Fills in what follows from the parsed `command`. Throws a CLI::ParseError where options disagree.
+// Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
+// each other.
 void settleBench(const CLI::App& command, BenchArguments& arguments);
 
 }  // namespace glint

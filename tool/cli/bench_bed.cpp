@@ -20,8 +20,8 @@ namespace glint {
 
 namespace {
 
-// The device with as many of its optional features as it has: those that the default needs, and those that
-// the sweep could use.
+// Opens the device with as many of its optional features as possible: those that the default needs, and those
+// that the sweep could use.
 Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, DeviceOptions& features) {
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
@@ -29,7 +29,7 @@ Result<std::unique_ptr<Context>> openDevice(const RenderArguments& arguments, De
     Result<std::unique_ptr<Context>> context = Diagnostic{};
     for (const DeviceOptions tried :
          {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
-        // Where shaders can be compiled for it, and the layers know it.
+        // It is used if shaders can be compiled for it and the validation layers know it.
         options.positionFetch =
             arguments.tracing.positionFetch || (tried.positionFetch && supportsPositionFetch());
         options.shaderFloat16 = arguments.accuracy.halves() || tried.float16;
@@ -55,7 +55,7 @@ SceneSize sizeOf(const SceneViewData& data) {
     return size;
 }
 
-// The settings that `decides` picks, as words.
+// Returns as words the settings for which `decides` is true.
 template <typename Decides>
 std::string decided(const RenderArguments& arguments, const Decides& decides) {
     bench::Configuration configuration = configurationOf(arguments);
@@ -63,7 +63,7 @@ std::string decided(const RenderArguments& arguments, const Decides& decides) {
     return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
 }
 
-// A pass of a case counts with those of the others.
+// The passes of all cases count together.
 std::string nameOfPass(const std::string& name) {
     const bool isCase = name.starts_with("shade ") && name != "shade miss";
     return isCase ? std::string(kShadeCases) : name;
@@ -116,8 +116,8 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
     return exposure;
 }
 
-// Pass by pass, of a sample more, as many times as there are: what measures that keeps passes from
-// overlapping.
+// Adds the times of passes, measured on one more sample and multiplied by the number of samples. Measuring
+// each pass keeps passes from overlapping.
 Status Mount::addSplit(FrameOptions frame, Exposure& exposure) const {
     frame.timing = Timing::Passes;
     if (Status rendered = renderer_->renderSamples(frame, 1); !rendered) {
@@ -179,7 +179,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     return bed;
 }
 
-// A bench compares with one strategy: with --strategy auto that which it takes for this scene.
+// A bench compares with one strategy. With --strategy auto that is the strategy chosen for this scene.
 Status BenchBed::settleStrategy() {
     if (base_.tracing.strategies.front() != kAutoStrategy) {
         return okStatus();
@@ -239,7 +239,7 @@ Result<Mount> BenchBed::mount(const bench::Configuration& configuration, const s
     arguments.package = package;
     const std::string key =
         fmt::format("{} {}", package, decided(arguments, [](std::string_view setting) {
-                        // Of --effects auto the limit of roughness decides, too.
+                        // With --effects auto, the limit of roughness decides too.
                         return bench::stageOf(setting) == bench::Stage::Compile || setting == "max-roughness";
                     }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();

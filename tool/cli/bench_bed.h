@@ -1,4 +1,4 @@
-// What a bench renders on: one device and scene, and a renderer for each configuration that is mounted.
+// Renders for a bench: one device and scene, and a renderer for each mounted configuration.
 #pragma once
 
 #include "bench/hit_times.h"
@@ -29,30 +29,30 @@ struct Exposure {
     LinearImage image;
     double milliseconds = 0.0;  // device time of all samples
     double hitMs = 0.0;  // of that, what strategies differ in: from the list of rays to their shaded hits
-    // Pass by pass, of one sample that was measured so, times their number: passes that overlap otherwise do
-    // not here, and the sum is more.
+    // Times by pass, from one sample measured that way, times the number of samples. Passes that otherwise
+    // overlap do not overlap here, so their sum is larger.
     std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
     bench::HitTimes hits;                  // of those, what strategies differ in
     FrameCounters counters;                // of the last sample
 };
 
-// Of the stretches of one sample (Timing::Frame) those of a name.
+// Returns the time of the stretches with that name in one sample (Timing::Frame).
 double stretchMs(std::span<const PassTiming> stretches, std::string_view name);
-// Of the passes of one sample (Timing::Passes) those that strategies differ in.
+// Returns the passes of one sample (Timing::Passes) in which strategies differ.
 bench::HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
-// A package with the scene on the device as it wants it.
+// A package, and the scene on the device in the form that the package needs.
 struct MountedPackage {
     std::unique_ptr<Package> package;
     std::unique_ptr<GpuScene> scene;
 };
 
-// A configuration that can render.
+// A configuration that is ready to render.
 class Mount {
 public:
-    // Error as Renderer::render().
+    // Has the errors of Renderer::render().
     Result<Exposure> expose(std::uint32_t seed) const;
-    // The same with other samples, without its times.
+    // Renders with other samples and without measuring times.
     Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
 
     const Renderer& renderer() const {
@@ -76,7 +76,7 @@ private:
     bool ordersHits_ = false;
 };
 
-// What some devices have.
+// Optional features of a device.
 struct DeviceOptions {
     bool positionFetch = false;  // and the compiler
     bool float16 = false;
@@ -89,14 +89,15 @@ struct SceneSize {
 
 class BenchBed {
 public:
-    // Reads the environment map, chooses the camera and the device. Messages go to `console`, which, like
-    // `cache` (may be null) and `scene`, must outlive it. Errors of Context::createHeadless() and of files.
+    // Reads the environment map, and chooses the camera and the device. Messages go to `console`. `console`,
+    // `scene` and `cache`, which may be null, must outlive the result. Errors of Context::createHeadless()
+    // and of files.
     static Result<std::unique_ptr<BenchBed>> create(const Console& console, const RenderArguments& base,
                                                     const Scene& scene, ModuleCache* cache);
 
-    // `configuration` over the base. `package`: a folder with a package of the scene, used instead of
-    // compiling one; empty: none. Compiles, uploads and makes pipelines, as far as no mount that still is
-    // there has the same. Errors of each.
+    // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
+    // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
+    // ones. Has the errors of each of these steps.
     Result<Mount> mount(const bench::Configuration& configuration, const std::string& package = {});
 
     Context& context() {
@@ -142,7 +143,7 @@ private:
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;
-    // By what decides about them.
+    // The keys hold everything that decides about the values.
     std::map<std::string, std::weak_ptr<MountedPackage>> packages_;
     std::map<std::string, std::weak_ptr<Renderer>> renderers_;
 };

@@ -15,7 +15,7 @@ namespace glint {
 
 namespace {
 
-// What stands behind "model name" in Linux's list of processors; empty where there is none.
+// Returns the text behind "model name" in Linux's list of processors, or an empty text if there is none.
 std::string processorName() {
     std::ifstream list("/proc/cpuinfo");
     for (std::string line; std::getline(list, line);) {

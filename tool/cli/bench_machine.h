@@ -1,4 +1,4 @@
-// What every report of a bench says alike: where it was measured, and intervals as JSON.
+// The parts that every report of a bench shares: where it was measured, and intervals as JSON.
 #pragma once
 
 #include "bench/statistics.h"
@@ -21,16 +21,16 @@ struct BenchMachine {
     std::string system;
 };
 
-// The device of the context, and the host.
+// Describes the context's device and the host.
 BenchMachine machineOf(Context& context);
 
 bool isOnCpu(const Context& context);
 
 Json toJson(const BenchMachine& machine);
-// With null for what is no number.
+// Numbers that are not finite become null.
 Json toJson(const bench::Interval& interval);
 
-// Now, ISO 8601.
+// Returns the current time in ISO 8601.
 std::string utcNow();
 
 }  // namespace glint

@@ -22,7 +22,8 @@ bool sameBits(const LinearImage& a, const LinearImage& b) {
     return a.pixels == b.pixels;
 }
 
-// Of all pictures, the first of which is the default's, on all cores. Those that are the same have the same.
+// Returns the errors of all pictures, using all cores. The first picture is the default's. A picture that
+// equals the default's gets its errors.
 std::vector<ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth) {
     std::vector<ImageErrors> errors(images.size());
     std::atomic<std::size_t> next{0};
@@ -48,7 +49,7 @@ std::vector<ImageErrors> errorsOf(std::span<const LinearImage* const> images, co
     return errors;
 }
 
-// Of x over y, where nothing over nothing is no change.
+// Returns x / y. If both are 0, the ratio is 1, which means no change.
 double ratio(double x, double y) {
     return x == y ? 1.0 : x / std::max(y, 1e-300);
 }
@@ -71,7 +72,7 @@ Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
     if (!mount) {
         return mount.error();
     }
-    // Drivers may compile when a pipeline first runs.
+    // Drivers may compile a pipeline when it first runs.
     if (const Result<LinearImage> first = mount->exposeSamples(0, 1); !first) {
         return first.error();
     }
@@ -85,7 +86,7 @@ Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
 }
 
 Status Measurer::measure(std::span<BenchPoint> points) {
-    // At least once, for the default.
+    // The loop runs at least once, for the default.
     for (std::size_t begin = 0; begin < std::max<std::size_t>(points.size(), 1); begin += options_.batch) {
         std::vector<Entry> entries;
         const std::size_t end = std::min(begin + options_.batch, points.size());

@@ -1,4 +1,5 @@
-// Times and errors of configurations: rounds in which each renders one picture, in random order.
+// Measures times and errors of configurations in rounds, in each of which every configuration renders one
+// picture, in random order.
 #pragma once
 
 #include "cli/bench_bed.h"
@@ -20,25 +21,25 @@ struct MeasureOptions {
     ErrorMetric metric = ErrorMetric::RelMse;
 };
 
-// The picture that errors are measured against.
+// The picture against which errors are measured.
 struct Truth {
     const LinearImage& image;
     double exposure = 0.0;  // stops
 };
 
-// Measures in batches that each have the default in every round: ratios are to that, in the same round, so
-// that a machine that slows down or a clock that drifts bends neither. Before its rounds a configuration
-// renders once for its pipelines to be ready, and before each picture on a GPU for a few milliseconds for its
-// clocks to be up.
+// Measures in batches that each have the default in every round. Ratios are relative to the default in the
+// same round, so a machine that slows down or a clock that drifts does not distort them. Before its rounds a
+// configuration renders once, so that its pipelines are ready. On a GPU it also renders for a few
+// milliseconds before each picture, so that clocks are up.
 class Measurer {
 public:
-    // `base`: the default, to which every batch adds times, and the first its errors. All of them must
-    // outlive it. Errors of BenchBed::mount().
+    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. All arguments
+    // must outlive the result. Has the errors of BenchBed::mount().
     static Result<Measurer> create(const Console& console, BenchBed& bed, const MeasureOptions& options,
                                    const Truth& truth, BenchPoint& base);
 
-    // Fills in what is measured of `points`. One that fails to be mounted is reported as a warning,
-    // "bench-point", and left without measurements.
+    // Fills in the measurements of `points`. A point that can't be mounted is reported as the warning
+    // "bench-point" and has no measurements.
     Status measure(std::span<BenchPoint> points);
 
 private:
@@ -46,7 +47,7 @@ private:
              BenchPoint& base)
         : console_(console), bed_(bed), options_(options), truth_(truth), base_(base) {}
 
-    // A configuration on the device, with what it rendered in the current round.
+    // A configuration on the device, and its picture of the current round.
     struct Entry {
         BenchPoint* point = nullptr;
         Mount mount;

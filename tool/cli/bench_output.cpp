@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kImages = "images";
 
-// Files, and what the page has of them.
+// The files, and their content for the page.
 struct Pictures {
     std::vector<PageImage> files;
     std::vector<PageImage> ofPage;
 };
 
-// Means over `factor` x `factor` pixels; what is left over at the right and below is cut off.
+// Returns means over `factor` x `factor` pixels. The remainder at the right and the bottom is cut off.
 DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
     const std::uint32_t area = std::max(1U, factor * factor);
     DisplayImage small{image.width / factor, image.height / factor, {}};
@@ -93,7 +93,7 @@ Result<Pictures> picturesOf(const BenchReport& report) {
     return added ? Result(std::move(pictures)) : Result<Pictures>(added.error());
 }
 
-// Of an earlier bench that had more configurations.
+// Removes pictures of an earlier bench that had more configurations.
 void removeOthers(const fs::path& folder, const std::vector<PageImage>& pictures) {
     std::set<std::string> names;
     for (const PageImage& picture : pictures) {

@@ -1,4 +1,4 @@
-// A configuration of a bench and what was measured of it.
+// A configuration of a bench, and its measurements.
 #pragma once
 
 #include "bench/hit_times.h"
@@ -16,7 +16,7 @@
 
 namespace glint {
 
-// The error that points are ordered by, a member of ImageErrors.
+// The error by which points are ordered, a member of ImageErrors.
 enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };
 std::string_view nameOf(ErrorMetric metric);  // as the JSON has it: "relMse"
 ErrorMetric metricNamed(std::string_view name);
@@ -25,10 +25,10 @@ double valueOf(ErrorMetric metric, const ImageErrors& errors);
 enum class PointKind { Default, Single, Pair, Search, Package };
 std::string_view nameOf(PointKind kind);
 
-// The name under which passes of all cases count: "shade <case>".
+// The name under which the passes of all cases count together: "shade <case>".
 inline constexpr std::string_view kShadeCases = "shade cases";
 
-// One entry a round in each list, in order of the rounds; times are milliseconds of the device.
+// Each list has one entry for each round, in the order of rounds. Times are milliseconds of the device.
 struct BenchPoint {
     PointKind kind = PointKind::Single;
     bench::Configuration configuration;  // what differs from the default
@@ -51,10 +51,10 @@ struct BenchPoint {
     std::string ordering;  // empty where hits are not ordered
 };
 
-// In units of the default's median: free of drifts of the machine between batches.
+// Times relative to the default's median, so that drifts of the machine between batches do not matter.
 bench::Interval timeRatio(const BenchPoint& point);
 bench::Interval errorOf(const BenchPoint& point, ErrorMetric metric);
-// The interval of the ratio has 1.
+// Returns whether the interval of the ratio contains 1.
 bool isTimeTie(const BenchPoint& point);
 bool isErrorTie(const BenchPoint& point);
 

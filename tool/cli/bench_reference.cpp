@@ -20,13 +20,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kKind = "reference";
-// Samples of a block: enough for their sequence to spread over a pixel, few enough for blocks to be many.
+// The samples of a block: enough for their sequence to cover a pixel, and few enough to have many blocks.
 constexpr std::uint32_t kBlock = 32;
 constexpr std::uint32_t kFewestBlocks = 4;
-// Seeds of blocks, far from those of rounds.
+// The seeds of blocks are far from those of rounds.
 constexpr std::uint32_t kFirstSeed = 0x51EED000U;
 
-// Everything that decides about the picture.
+// Returns everything that decides about the picture.
 Result<std::string> keyOf(BenchBed& bed, const bench::Configuration& configuration) {
     const RenderArguments& base = bed.base();
     Packer packer;
@@ -93,7 +93,7 @@ std::optional<MeanImage> findKept(CacheStore* store, const std::string& key, std
     return MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks));
 }
 
-// Fills in the picture and how certain it is.
+// Fills in the picture and its uncertainty.
 void judge(const MeanImage& sum, const ReferenceOptions& options, Reference& reference) {
     reference.image = sum.mean();
     reference.samples = sum.blocks() * kBlock;

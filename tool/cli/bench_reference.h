@@ -1,4 +1,5 @@
-// The picture that a bench measures errors against: no approximation, and samples until it is certain.
+// The picture against which a bench measures errors: it has no approximation, and as many samples as its
+// accuracy needs.
 #pragma once
 
 #include "cache/store.h"
@@ -10,8 +11,8 @@
 namespace glint {
 
 struct ReferenceOptions {
-    // The reference's own relative error at most: 0.003 is 0.3 % of a pixel's light. Work ends at maxSamples
-    // whatever it is then.
+    // The target for the reference's own relative error: 0.003 is 0.3 % of a pixel's light. Rendering stops
+    // at maxSamples even if the target is not reached.
     double target = 0.003;
     std::uint32_t maxSamples = 16384;
 };
@@ -22,8 +23,8 @@ struct Reference {
     std::uint32_t samples = 0;           // a pixel
     double exposure = 0.0;               // stops: automatic, for every measure and picture of the bench
     ImageErrors noise;                   // of the reference itself
-    // Root of noise.trimmed: a light that few rays find leaves outliers after any number of samples, which
-    // would decide alone.
+    // The root of noise.trimmed. A light that few rays find leaves outliers after any number of samples, and
+    // these would otherwise dominate the error.
     double relativeError = 0.0;
     double target = 0.0;   // that was asked for
     bool reached = false;  // the target
@@ -31,9 +32,9 @@ struct Reference {
     double seconds = 0.0;  // wall clock
 };
 
-// Renders blocks of samples with random numbers of their own, whose spread says how certain their mean is.
-// What `store` keeps of an earlier run of the same program on the same scene, view and device is continued;
-// null: nothing is kept.
+// Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
+// mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
+// device, it continues from them. With a null `store` nothing is kept.
 Result<Reference> makeReference(const Console& console, BenchBed& bed, const bench::Facts& facts,
                                 const ReferenceOptions& options, CacheStore* store);
 

@@ -32,7 +32,7 @@ Json settingsToJson(const bench::Configuration& configuration) {
     return object;
 }
 
-// Over the rounds of a point.
+// Returns the interval over the rounds of a point.
 Interval intervalOf(const BenchPoint& point, double ImageErrors::*member) {
     std::vector<double> values;
     for (const ImageErrors& errors : point.errors) {
@@ -126,7 +126,7 @@ Json referenceToJson(const BenchReport& report) {
             {"exposure", reference.exposure}};
 }
 
-// Values of the base and the point that are decided at `stage`.
+// Returns the values of the base and the point that are decided at `stage`.
 Json decidedAt(const BenchReport& report, const BenchPoint& point, bench::Stage stage) {
     bench::Configuration values;
     for (const auto& [name, value] : report.base) {
@@ -206,7 +206,7 @@ std::uint32_t pictureScale(const BenchReport& report) {
 std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
     std::vector<std::string> words{"glint", "render", report.scene.file, "-o", "picture.png"};
     words.insert(words.end(), report.viewWords.begin(), report.viewWords.end());
-    // The picture of the first round, to the bit.
+    // With these options the command renders the picture of the first round exactly.
     words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
                                fmt::format("{:.9g}", report.reference.exposure)});
     bench::Configuration given;

@@ -1,4 +1,4 @@
-// What glint bench found, as JSON and as text.
+// The results of glint bench, as JSON and as text.
 #pragma once
 
 #include "bench/settings.h"
@@ -56,19 +56,19 @@ struct BenchReport {
     std::optional<BenchAdvice> advice;
 };
 
-// Milliseconds of a picture: the point's ratio in units of the default's median.
+// Returns milliseconds of a picture: the point's ratio times the default's median.
 bench::Interval timeOf(const BenchReport& report, std::size_t point);
 
-// A picture's file below the output folder: "images/007.png".
+// Returns a picture's file relative to the output folder: "images/007.png".
 std::string imageName(std::size_t point);
 std::string errorImageName(std::size_t point);
 inline constexpr const char* kReferenceImage = "images/reference.png";
 
-// The page holds pictures that are smaller by this in width and height, so that it stays one that can be
-// sent: those of the folder are whole.
+// Returns the factor by which the page's pictures are smaller in width and height, so that the page can still
+// be sent. The pictures in the folder have full size.
 std::uint32_t pictureScale(const BenchReport& report);
 
-// A command line that renders a point: "glint render scene.gltf -o picture.png --spp 4".
+// Returns a command line that renders a point: "glint render scene.gltf -o picture.png --spp 4".
 std::string renderCommand(const BenchReport& report, const BenchPoint& point);
 
 Json toJson(const BenchReport& report);

@@ -18,7 +18,7 @@ namespace glint {
 namespace {
 
 using List = std::vector<std::string>;
-// Where an argument is kept.
+// The variable that holds an argument.
 using Place = std::variant<std::string*, std::int64_t*, double*, bool*, List*>;
 
 struct Argument {
@@ -100,7 +100,7 @@ void setText(const Place& place, const std::string& text) {
     std::visit(Visitor{text}, place);
 }
 
-// Whether hits of any primitive lose a lobe where they keep those of the base alone.
+// Returns whether hits of any primitive lose a lobe if they keep only those of the base.
 bool losesLobes(const Scene& scene, const PlanOptions& plan) {
     PlanArguments base;
     base.hitLobes = {"base"};

@@ -1,4 +1,4 @@
-// The settings of a bench as the arguments of glint render, and back.
+// Converts the settings of a bench to the arguments of glint render, and back.
 #pragma once
 
 #include "bench/settings.h"
@@ -13,24 +13,24 @@
 
 namespace glint {
 
-// Those of glint render where nothing is given.
+// Returns the arguments of glint render if no option is given.
 RenderArguments usualArguments();
 
-// The value of every setting of bench::settingNames().
+// Returns the value of every setting of bench::settingNames().
 bench::Configuration configurationOf(const RenderArguments& arguments);
 
-// `arguments` with the values of `configuration`, which are those of bench::Setting::values or of
+// Returns `arguments` with the values of `configuration`, which come from bench::Setting::values or
 // configurationOf().
 RenderArguments withSettings(RenderArguments arguments, const bench::Configuration& configuration);
 
-// What of the scene and of what is asked decides which values are worth trying; what the device has is left
-// out.
+// Returns the facts of the scene and the request on which the values worth trying depend. Facts of the device
+// are left out.
 bench::Facts factsOf(const RenderArguments& arguments, const Scene& scene, const PlanOptions& plan);
 
-// As words of a command line: {"--spp", "4"}; a switch that is off is left out.
+// Returns the words of a command line: {"--spp", "4"}. A switch that is off is left out.
 std::vector<std::string> wordsOf(const bench::Configuration& configuration);
 
-// Whether a setting is given by a bare word, such as --position-fetch.
+// Returns whether a setting is given by a single word, such as --position-fetch.
 bool isSwitch(std::string_view setting);
 
 }  // namespace glint

@@ -30,14 +30,14 @@ StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string&
     row.hitRatio = bench::intervalOf(point.hitRatios);
     row.traceMs = overRounds(point, [](const Hits& hits) { return hits.trace; }).median;
     row.orderMs = overRounds(point, [](const Hits& hits) { return hits.order; }).median;
-    // The rest, as passes that shade overlap where nothing is measured between them.
+    // Shading gets the rest, because its passes overlap if they are not measured one by one.
     row.shadeMs = std::max(row.hits.median - row.traceMs - row.orderMs, 0.0);
     row.commonMs = std::max(bench::intervalOf(point.times).median - row.hits.median, 0.0);
     row.rays = point.counters.rays;
     return row;
 }
 
-// Cases that `wave` hits in random order have on average.
+// Returns the average number of cases among `wave` hits in random order.
 double casesIn(std::span<const std::uint32_t> hits, double wave) {
     const double all = std::accumulate(hits.begin(), hits.end(), 0.0);
     double cases = 0.0;
@@ -61,7 +61,7 @@ void countHits(std::span<const std::uint32_t> buckets, StrategyReport& report) {
     report.casesInWave = casesIn(hits, kWave);
 }
 
-// Of the row's time, whole per cent.
+// Returns the share of the row's time, in whole per cent.
 double percent(double part, const StrategyRow& row) {
     return 100.0 * part / std::max(row.commonMs + row.traceMs + row.orderMs + row.shadeMs, 1e-12);
 }

@@ -1,4 +1,4 @@
-// Which strategy is fastest on a scene and a device, and what in the measured run says why.
+// Says which strategy is fastest for a scene and a device, and which measurements explain it.
 #pragma once
 
 #include "cli/bench_point.h"
@@ -11,12 +11,12 @@
 
 namespace glint {
 
-// Milliseconds of a picture, medians.
+// Times in milliseconds for a picture; they are medians.
 struct StrategyRow {
     std::string strategy;
     std::size_t point = 0;  // index
     bench::Interval ratio;  // of time, to the default
-    // Of the passes that strategies differ in, from the list of rays to their shaded hits.
+    // The time of the passes in which strategies differ, from the list of rays to their shaded hits.
     bench::Interval hits;
     bench::Interval hitRatio;  // of those, to the default's in the same round
     double traceMs = 0.0;      // of hits that are traced by a pass of their own
@@ -29,17 +29,18 @@ struct StrategyRow {
 struct StrategyReport {
     std::vector<StrategyRow> rows;     // those that were measured, of the default's other settings
     std::vector<std::string> fastest;  // several: a tie
-    // Of hits, in the last sample of a strategy that counts them by case; zeros where none was measured.
+    // Counts of hits in the last sample of a strategy that counts them by case; zeros if no such strategy was
+    // measured.
     std::uint32_t cases = 0;
     std::uint32_t filledCases = 0;  // that any hit has
     double largestShare = 0.0;      // of hits in the case that has most
-    // How many cases 32 hits in random order have on average: what an uber shader runs one after another in
-    // a subgroup of that size, at most.
+    // The average number of cases among 32 hits in random order. An uber shader runs at most that many one
+    // after another in a subgroup of that size.
     double casesInWave = 0.0;
     std::vector<std::string> why;  // sentences
 };
 
-// `base`: the strategy of the default, the first of `points`.
+// `base` is the strategy of the default, which is the first of `points`.
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// What glint bench prints.
+// The text that glint bench prints.
 #include "cli/bench_report.h"
 #include "cli/bench_settings.h"
 #include "cli/table.h"
@@ -61,7 +61,7 @@ std::string pointsTable(const BenchReport& report) {
 }
 
 std::string frontTable(const BenchReport& report) {
-    // Names of many settings stand below, where they widen no column.
+    // Names with many settings are listed below the table, because they would widen a column.
     constexpr std::size_t kLongest = 40;
     Rows rows = headed(report);
     std::string names;
@@ -78,7 +78,7 @@ std::string frontTable(const BenchReport& report) {
     return formatTable(rows) + names;
 }
 
-// A line for each reason, with the settings that it keeps from being tried.
+// Returns a line for each reason, with the settings that are not tried for it.
 std::string skippedText(const BenchReport& report) {
     std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
     for (const bench::Setting& setting : report.settings) {
@@ -108,7 +108,7 @@ std::string adviceText(const BenchReport& report) {
     return text;
 }
 
-// Of the passes that strategies differ in; nothing where no ray was sent.
+// Returns a table of the passes in which strategies differ, or an empty text if no ray was sent.
 std::string strategiesTable(const StrategyReport& report) {
     Rows rows{{"strategy", "ms of hits", "ratio", "trace", "order", "shade"}};
     for (const StrategyRow& row : report.rows) {

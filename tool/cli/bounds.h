@@ -5,7 +5,7 @@
 
 namespace glint {
 
-// An axis-aligned box in world space; empty where any min is above its max.
+// An axis-aligned box in world space. It is empty if any min is above its max.
 struct Bounds {
     std::array<double, 3> min{};
     std::array<double, 3> max{};

@@ -14,12 +14,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whatever the values of these, a command writes the same; and diagnostics are judged when they are reported.
+// These options do not change what a command writes. Diagnostics are judged when they are reported.
 constexpr std::array<std::string_view, 13> kWithoutEffect = {
     "--cache",          "--cache-size",       "--color", "--depfile", "--depfile-target", "--jobs", "--json",
     "--pipeline-cache", "--pipeline-threads", "--quiet", "--verbose", "--werror",         "-W"};
 
-// Empty where it is not set.
+// Returns an empty text if the variable is not set.
 std::string variable(const char* name) {
     const char* const value = std::getenv(name);
     return value == nullptr ? std::string() : value;
@@ -46,7 +46,7 @@ std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {
     if (!folder.empty()) {
         return folder;
     }
-    // A relative one is to be ignored: XDG Base Directory Specification, 0.8.
+    // The specification says to ignore a relative path: XDG Base Directory Specification, 0.8.
     const fs::path caches = variable("XDG_CACHE_HOME");
     if (caches.is_absolute()) {
         return caches / "glint";

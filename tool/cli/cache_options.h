@@ -1,4 +1,4 @@
-// Where compiled modules are kept: --cache and --cache-size.
+// The folder of compiled modules: --cache and --cache-size.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@
 
 namespace glint {
 
-// What stands for no folder.
+// The value that means no folder.
 inline constexpr std::string_view kNoCache = "none";
 
 struct CacheArguments {
@@ -20,15 +20,15 @@ struct CacheArguments {
 };
 void addCacheOptions(CLI::App& command, CacheArguments& arguments);
 
-// --cache, else GLINT_CACHE, else glint in XDG_CACHE_HOME, else in ~/.cache. Nothing where it is "none", or
-// where there is no home.
+// Returns the folder of --cache, else of GLINT_CACHE, else glint in XDG_CACHE_HOME, else glint in ~/.cache.
+// Returns nothing if it is "none", or if there is no home folder.
 std::optional<std::filesystem::path> cacheFolder(const CacheArguments& arguments);
 
-// Whether a command may write something else for the option.
+// Returns whether the option may change what a command writes.
 bool hasEffect(const CLI::Option& option);
 
-// The options that are given and can change what a command does or says: all but those of the cache, the
-// number of jobs, and how to report.
+// Returns the given options that can change what a command does or prints: all but those about the cache, the
+// number of jobs, and reporting.
 std::string describeOptions(const CLI::App& command);
 
 }  // namespace glint

@@ -83,8 +83,8 @@ public:
             chosen(given.coherences, {synthetic::Coherence::Coherent, synthetic::Coherence::Incoherent});
     }
 
-    // Compiles everything first, as that takes the whole host. Then group by group, the report written after
-    // each: what a run that is cut short has measured stays.
+    // Compiles everything first, because that uses all cores of the host. Then it measures group by group and
+    // writes the report after each group, so that an interrupted run keeps its measurements.
     Status run() {
         std::vector<Result<CompiledGroup>> groups = compileGroups();
         report_.compileSeconds = secondsSinceStart();
@@ -110,7 +110,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - start_).count();
     }
 
-    // Of each group the options of its scenes.
+    // Returns the options of the scenes of each group.
     std::vector<std::vector<synthetic::CasesOptions>> planGroups() const {
         std::vector<std::vector<synthetic::CasesOptions>> groups;
         for (const synthetic::Cost cost : costs_) {
@@ -131,8 +131,8 @@ private:
         return groups;
     }
 
-    // Packages with the most cases have modules that compile alone for long: several packages at a time fill
-    // the cores meanwhile.
+    // Packages with many cases have modules that take long to compile alone. Several packages are compiled at
+    // a time, to use the other cores meanwhile.
     std::vector<Result<CompiledGroup>> compileGroups() const {
         constexpr std::size_t kCoresPerPackage = 4;
         const std::vector<std::vector<synthetic::CasesOptions>> plans = planGroups();
@@ -142,7 +142,7 @@ private:
         std::atomic<std::size_t> next{0};
         const auto work = [&] {
             for (std::size_t i = next++; i < plans.size(); i = next++) {
-                // The largest first: nothing waits for it in the end.
+                // The largest group is started first, so that nothing has to wait for it in the end.
                 const std::size_t group = plans.size() - 1 - i;
                 groups[group] = compileGroup(arguments_, tracers, plans[group], cache_);
             }
@@ -261,8 +261,8 @@ Status measureAll(const Console& console, const BenchArguments& arguments, Calib
     return done;
 }
 
-// From the measurements as the file has them: as scripts/fit_strategy_costs.py fits them, too. Too few are no
-// error: the measurements stand.
+// Fits to the measurements in the file, as scripts/fit_strategy_costs.py does. Too few measurements are not
+// an error; the file stays.
 Result<std::string> fit(const Console& console, const fs::path& folder) {
     Result<CalibrationPoints> read = readCalibrationPoints(folder / kCalibrationFile);
     if (!read) {

@@ -1,4 +1,4 @@
-// glint bench --calibrate: which strategy is fastest on this device, measured on generated scenes.
+// glint bench --calibrate: measures on generated scenes which strategy is fastest on this device.
 #pragma once
 
 #include "cli/bench_arguments.h"
@@ -8,7 +8,7 @@ namespace glint {
 
 inline constexpr const char* kCalibrationFile = "calibration.json";
 
-// Measures and writes; returns the exit code.
+// Measures and writes the results. Returns the exit code.
 int calibrate(const Console& console, const BenchArguments& arguments);
 
 }  // namespace glint

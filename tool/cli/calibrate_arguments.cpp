@@ -17,10 +17,11 @@ constexpr const char* kGroup = "Calibration";
 constexpr std::uint64_t kThousand = 1000;
 constexpr std::uint64_t kMillion = 1000000;
 constexpr std::uint64_t kMinRays = 1024;
-// Of the picture that sends them: that of checkImageSize().
+// The limit is that of checkImageSize() for the picture that sends the rays.
 constexpr std::uint64_t kMaxRays = 64 * kMillion;
 
-// Options that a calibration takes: those of these groups, and these. Everything else it decides itself.
+// A calibration takes the options of these groups, and the options listed below. It decides everything else
+// itself.
 constexpr std::string_view kTakenGroups[] = {kGroup, "Device", "Output", "Report"};
 constexpr std::string_view kTaken[] = {
     "--quick",       "--rounds",    "--output",     "--seed",
@@ -28,7 +29,7 @@ constexpr std::string_view kTaken[] = {
     "--texture-lod", "--precision", "--hit-record", "--position-fetch",
     "--shadows"};
 
-// "250", "16k", "1M"; nothing for what is no such number.
+// Parses "250", "16k" or "1M". Returns nothing for other text.
 std::optional<std::uint64_t> parseCount(std::string_view text) {
     std::uint64_t factor = 1;
     if (text.ends_with('k') || text.ends_with('M')) {
@@ -41,7 +42,7 @@ std::optional<std::uint64_t> parseCount(std::string_view text) {
     return whole && count <= kMaxRays ? std::optional(count * factor) : std::nullopt;
 }
 
-// Ascending, each once; nothing unless all are within [min, max].
+// Returns the numbers in ascending order without duplicates, or nothing unless all are within [min, max].
 std::optional<std::vector<std::uint64_t>> parseCounts(const std::string& text, std::uint64_t min,
                                                       std::uint64_t max) {
     std::vector<std::uint64_t> counts;

@@ -13,7 +13,7 @@ namespace glint {
 
 struct CalibrateArguments {
     bool enabled = false;
-    // As given; "auto": by the device and --quick.
+    // The words as given. "auto" depends on the device and --quick.
     std::string caseWords = "auto";
     std::string rayWords = "auto";
     std::vector<std::string> costs{"cheap", "expensive"};
@@ -25,13 +25,13 @@ struct CalibrateArguments {
 };
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments);
-// Throws a CLI::ParseError where options disagree.
+// Throws a CLI::ParseError if options contradict each other.
 void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& arguments);
 
-// "1,4,16", or `usual` for "auto". The text is one that addCalibrateOptions() has let pass.
+// Parses "1,4,16"; "auto" gives `usual`. The text must have passed the checks of addCalibrateOptions().
 std::vector<std::uint32_t> casesOf(const CalibrateArguments& arguments,
                                    const std::vector<std::uint32_t>& usual);
-// "16k,1M" likewise: k is a thousand, M a million.
+// Parses "16k,1M" in the same way; k is a thousand, M a million.
 std::vector<std::uint64_t> raysOf(const CalibrateArguments& arguments,
                                   const std::vector<std::uint64_t>& usual);
 

@@ -22,7 +22,7 @@ CompileSettings settingsOf(const BenchArguments& arguments, std::uint32_t tracer
     tracing.apply(settings, tracers);
     arguments.render.accuracy.apply(settings);
     settings.plan.merge = MergePolicy::None;
-    // All that scenes of the two kinds of rays need, so that they can share a package.
+    // The settings cover scenes with both kinds of rays, so that they can share a package.
     settings.effects = {false, package::kEffectReflection | package::kEffectIndirectDiffuse};
     if (arguments.calibrate.shadows) {
         settings.effects.named |= package::kEffectShadow;
@@ -31,7 +31,7 @@ CompileSettings settingsOf(const BenchArguments& arguments, std::uint32_t tracer
     return settings;
 }
 
-// What each case's own shader holds.
+// Returns the size of the code of each case's own shader.
 std::vector<bench::CaseWork> workOf(const CompiledPackage& compiled) {
     std::vector<bench::CaseWork> work(compiled.plan.cases.size());
     for (const CompiledModule& module : compiled.modules) {

@@ -20,7 +20,7 @@ namespace glint {
 
 class ModuleCache;
 
-// A scene whose rays are of one effect.
+// A scene whose rays belong to one effect.
 struct CalibrationScene {
     synthetic::CasesOptions options;
     std::unique_ptr<GpuScene> scene;
@@ -28,7 +28,7 @@ struct CalibrationScene {
     package::Effect effect{};
 };
 
-// The same on the host alone.
+// The same, but only on the host.
 struct CompiledGroup {
     std::vector<synthetic::CasesOptions> options;  // of each scene
     std::vector<Scene> scenes;
@@ -41,15 +41,15 @@ struct CalibrationGroup {
     std::vector<bench::CaseWork> work;  // by shader ID; no shares
 };
 
-// The strategies that a device with these Tracer bits can run, uber first.
+// Returns the strategies that a device with these Tracer bits can run, uber first.
 std::vector<std::string> strategiesFor(std::uint32_t tracers);
 
-// A scene for each of `options`, which differ in coherence alone, and their package with the strategies of
-// strategiesFor(). Errors of compilePackage().
+// Makes a scene for each of `options`, which differ in coherence alone, and compiles their package with the
+// strategies of strategiesFor(). Has the errors of compilePackage().
 Result<CompiledGroup> compileGroup(const BenchArguments& arguments, std::uint32_t tracers,
                                    std::vector<synthetic::CasesOptions> options, ModuleCache* cache);
 
-// Errors of each step.
+// Has the errors of each step.
 Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled);
 
 }  // namespace glint

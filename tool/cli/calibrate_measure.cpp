@@ -22,12 +22,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
-// So many samples that uber takes this long, within limits: the clock of a GPU ticks in microseconds at
-// worst, and a sample of 10⁶ rays takes about one millisecond.
+// The number of samples is chosen so that uber takes this long, within limits. The clock of a GPU ticks in
+// microseconds at worst, and a sample of 10⁶ rays takes about one millisecond.
 constexpr double kLeastMs = 10.0;
 constexpr std::uint32_t kMaxSamples = 16;
-// Relative to the greater of the pixel and 1, the white of the scenes' light: strategies add the same numbers
-// in the same order, so that all but rounding is a defect.
+// Relative to the larger of the pixel and 1, which is the white of the scenes' light. Strategies add the same
+// numbers in the same order, so every difference beyond rounding is a defect.
 constexpr double kVisible = 1e-3;
 
 constexpr std::uint32_t kTile = 8;
@@ -45,7 +45,7 @@ PictureDifference differenceOf(const LinearImage& image, const LinearImage& refe
             const double a = image.pixels[i][c];
             const double b = reference.pixels[i][c];
             const double error = std::abs(a - b) / std::max(1.0, std::abs(b));
-            // What is no number is wrong, too.
+            // A value that is not a number counts as wrong too.
             largest = error <= largest ? largest : std::isfinite(error) ? error : 1e30;
         }
         difference.largest = std::max(difference.largest, largest);
@@ -109,7 +109,8 @@ private:
         return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(kMaxSamples)));
     }
 
-    // What strategies differ in of the last sample of `renderer`, in milliseconds.
+    // Returns the time of the passes in which strategies differ, for the last sample of `renderer`, in
+    // milliseconds.
     static Result<double> hitMs(Renderer& renderer) {
         const Result<std::vector<PassTiming>> timings = renderer.timings();
         if (!timings) {
@@ -129,7 +130,7 @@ private:
         return okStatus();
     }
 
-    // The first is uber.
+    // The first runner is uber.
     Status makeRunner(std::size_t index) {
         StrategyMeasure& measure = entry_.strategies[index];
         if (index > 0 && runners_.empty()) {
@@ -183,7 +184,7 @@ private:
                 return written;
             }
         }
-        // Again, as the first one may have compiled.
+        // It renders again, because the first sample may have included compilation.
         if (Status again = renderer.renderSamples(frame_, 1); !again) {
             return again;
         }
@@ -192,7 +193,7 @@ private:
         return milliseconds ? okStatus() : Status(milliseconds.error());
     }
 
-    // Of any strategy; shares from one that counts hits by case.
+    // Any strategy gives the number of hits; a strategy that counts hits by case also gives the shares.
     void countHits(const FrameCounters& counters) {
         const EffectCounters effect = counters.of(scene_.effect);
         bench::CalibrationPoint& point = entry_.point;
@@ -253,7 +254,7 @@ private:
         return rendered ? measureSplit(runner, frame) : rendered;
     }
 
-    // Pass by pass, of a sample more: what measures that keeps passes from overlapping.
+    // Measures the passes one by one on one more sample. Measuring each pass keeps passes from overlapping.
     Status measureSplit(Runner& runner, FrameOptions frame) {
         frame.timing = Timing::Passes;
         if (Status rendered = runner.renderer->renderSamples(frame, 1); !rendered) {

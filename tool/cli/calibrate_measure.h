@@ -1,4 +1,4 @@
-// Times of the strategies at one point: one scene, one number of rays.
+// Measures the strategies at one point: one scene, and one number of rays.
 #pragma once
 
 #include "cli/calibrate_group.h"
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Pixels, 2 : 1 and whole tiles of the passes: each sends a ray.
+// Chooses a picture of 2 : 1 in whole tiles of the passes, in which each pixel sends a ray.
 void sizeFor(std::uint64_t rays, std::uint32_t& width, std::uint32_t& height);
 
 struct PointOptions {
@@ -19,10 +19,11 @@ struct PointOptions {
     std::string picture{};  // .png of uber's; empty: none
 };
 
-// Every strategy renders once, for its pipelines to be ready and its picture to be compared with that of
-// uber; then in each round, in random order. Before a round, and before each strategy, a GPU renders for a
-// while, as its clocks fall where it waits. A strategy that can't run is left out with its reason; where that
-// is uber, so are all others. Errors: of the device once it has begun, of the picture's file.
+// Every strategy first renders once, so that its pipelines are ready and its picture can be compared with
+// that of uber. Then it renders in each round, in random order. Before a round, and before each strategy, a
+// GPU renders for a while, because its clocks fall while it waits. A strategy that can't run is left out with
+// its reason; if that is uber, all others are left out too. Errors: of the device once measuring has begun,
+// and of the picture's file.
 Result<CalibrationEntry> measurePoint(Context& context, CalibrationGroup& group,
                                       const CalibrationScene& scene, const BenchArguments& arguments,
                                       const PointOptions& options);

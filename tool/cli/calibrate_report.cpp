@@ -17,7 +17,7 @@ using bench::Interval;
 
 constexpr double kMega = 1e6;
 
-// Of the cases by their shares of hits, as an average hit runs.
+// Returns the mean over the cases, weighted by their shares of hits: what an average hit runs.
 double meanOf(const std::vector<bench::CaseWork>& work, double bench::CaseWork::*member) {
     return std::accumulate(work.begin(), work.end(), 0.0, [&](double sum, const bench::CaseWork& one) {
         return sum + one.share * one.*member;
@@ -89,7 +89,7 @@ Json entryToJson(const CalibrationEntry& entry) {
             {"fastest", entry.fastest}};
 }
 
-// The names of all strategies that any entry has, in their order.
+// Returns the names of all strategies that any entry has, in their order.
 std::vector<std::string> strategiesOf(const CalibrationReport& report) {
     std::vector<std::string> names;
     for (const CalibrationEntry& entry : report.entries) {
@@ -117,7 +117,7 @@ std::string cellOf(const CalibrationEntry& entry, const std::string& strategy) {
     return fmt::format("{:.2f} ({:.2f}–{:.2f})", ratio.median, ratio.q1, ratio.q3);
 }
 
-// Code points: what a terminal and a Markdown source are wide.
+// Counts code points, which is the width in a terminal and in Markdown source.
 std::size_t widthOf(const std::string& text) {
     return static_cast<std::size_t>(
         std::ranges::count_if(text, [](char byte) { return (byte & 0xC0) != 0x80; }));
@@ -155,7 +155,7 @@ void settleEntry(CalibrationEntry& entry) {
     entry.point.times.clear();
     entry.fastest.clear();
     std::vector<std::pair<std::string, Interval>> ratios;
-    // What ratios are to: the first that was measured.
+    // Ratios are relative to the first strategy that was measured.
     const auto base = std::ranges::find_if(
         entry.strategies, [](const StrategyMeasure& measure) { return !measure.times.empty(); });
     const double baseMs = base != entry.strategies.end() ? bench::intervalOf(base->times).median : 0.0;

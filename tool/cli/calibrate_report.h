@@ -1,4 +1,4 @@
-// What glint bench --calibrate found, as JSON and as text.
+// The results of glint bench --calibrate, as JSON and as text.
 #pragma once
 
 #include "bench/calibration_point.h"
@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// How far a picture is from that of uber: how hits are shaded must not change it.
+// How far a picture is from that of uber. The way in which hits are shaded must not change it.
 struct PictureDifference {
     double largest = 0.0;         // |a - b| / max(1, |b|) over all channels
     std::uint64_t differing = 0;  // pixels that differ by more than 0.001 of that
@@ -20,7 +20,7 @@ struct PictureDifference {
     bool isWrong() const;         // more than 1 in 1000
 };
 
-// A strategy at one point; times of one sample.
+// A strategy at one point, with its times for one sample.
 struct StrategyMeasure {
     std::string strategy;
     std::string skipped;  // why it did not run; empty: it did
@@ -46,7 +46,7 @@ struct CalibrationEntry {
     std::uint64_t hits = 0;     // a sample
     std::uint32_t filledCases = 0;
     std::vector<StrategyMeasure> strategies;
-    // Those whose intervals of the ratio overlap with that of the least; empty where nothing ran.
+    // The strategies whose interval of the ratio overlaps with that of the fastest; empty if nothing ran.
     std::vector<std::string> fastest;
 };
 
@@ -63,11 +63,11 @@ struct CalibrationReport {
     std::vector<CalibrationEntry> entries;
 };
 
-// Fills in what follows from the measurements: point.times, fastest.
+// Fills in what follows from the measurements: point.times and fastest.
 void settleEntry(CalibrationEntry& entry);
 
 Json toJson(const CalibrationReport& report);
-// A table in Markdown.
+// Returns a table in Markdown.
 std::string toText(const CalibrationReport& report);
 
 }  // namespace glint

@@ -10,7 +10,7 @@ namespace glint {
 
 namespace {
 
-// 256 cases take some 25 kilobytes a point.
+// 256 cases take some 25 kilobytes for each point.
 constexpr std::uint64_t kMaxBytes = 1ULL << 28;
 constexpr std::uint64_t kMaxCases = 1ULL << 20;
 constexpr double kAny = std::numeric_limits<double>::max();
@@ -37,8 +37,9 @@ DeviceCosts readMachine(JsonReader& reader, const Json& json) {
     return device;
 }
 
-// Adds the time of a strategy that was measured, and drew the picture that uber drew: of another one it would
-// say nothing. `baseMs`: of the first that was measured, to which ratios are; 0 before.
+// Adds the time of a strategy if it was measured and drew the same picture as uber; otherwise its time would
+// mean nothing. `baseMs` is the time of the first measured strategy, to which ratios are relative; it is 0
+// before.
 void readTime(JsonReader& reader, const Json& json, const std::string& place, double& baseMs,
               bench::CalibrationPoint& point) {
     if (json.is_object() && json.contains("skipped")) {
@@ -67,7 +68,7 @@ bench::CalibrationPoint readPoint(JsonReader& reader, const Json& json, const st
     point.rays = reader.number(json, place, "rays", 0.0, kAny);
     point.hitShare = reader.number(json, place, "hitShare", 0.0, 1.0);
     point.coherentShare = reader.number(json, place, "coherentShare", -1.0, 1.0);
-    // Below what random draws have is no more than noise of a sample.
+    // A value below that of random order is noise of the sample.
     point.coherentShare = std::max(0.0, point.coherentShare);
     reader.each(json, place, "work", [&](const Json& work, const std::string& there) {
         point.work.push_back({reader.number(work, there, "share", 0.0, 1.0),

@@ -1,4 +1,4 @@
-// The measurements that `glint bench --calibrate` leaves in calibration.json, read again for another fit.
+// Reads the measurements that `glint bench --calibrate` wrote to calibration.json, for another fit.
 #pragma once
 
 #include "bench/calibration_point.h"
@@ -16,9 +16,9 @@ struct CalibrationPoints {
     std::vector<bench::CalibrationPoint> points;
 };
 
-// Reads what docs/schemas/calibration.json describes, without strategies that were skipped or drew another
-// picture. `machine` may have a `subgroupSize`, which else is 8 of a CPU and 32 of a GPU. Errors "file-open",
-// "file-read", "calibration-format".
+// Reads the format of docs/schemas/calibration.json, without strategies that were skipped or drew another
+// picture. `machine` may have a `subgroupSize`; its default is 8 for a CPU and 32 for a GPU. Errors
+// "file-open", "file-read", "calibration-format".
 Result<CalibrationPoints> readCalibrationPoints(const std::filesystem::path& path);
 
 }  // namespace glint

@@ -33,7 +33,7 @@ Double3 sum(const Double3& a, const Double3& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
-// Nothing where the length is 0 or not finite.
+// Returns nothing if the length is 0 or not finite.
 std::optional<Double3> normalized(const Double3& a) {
     const double length = std::hypot(a[0], a[1], a[2]);
     if (!(length > 0.0) || !std::isfinite(length)) {
@@ -64,7 +64,7 @@ Double3 corner(const Bounds& bounds, unsigned number) {
     return point;
 }
 
-// Of each mesh in its own space; by mesh number.
+// Returns the bounds of each mesh in its own space, by mesh number.
 std::vector<Bounds> meshBounds(const SceneViewData& scene) {
     std::vector<Bounds> bounds;
     for (const PrimitiveView& primitive : scene.primitives) {
@@ -95,7 +95,7 @@ bool isFinite(const Bounds& bounds) {
            std::all_of(bounds.max.begin(), bounds.max.end(), [](double v) { return std::isfinite(v); });
 }
 
-// Some extent, whatever the scene holds.
+// Returns a box that has some extent, whatever the scene contains.
 Bounds withExtent(const Bounds& bounds) {
     const Bounds box = bounds.empty() ? Bounds{} : bounds;
     if (box.min != box.max) {
@@ -104,9 +104,9 @@ Bounds withExtent(const Bounds& bounds) {
     return {sum(box.min, {-0.5, -0.5, -0.5}), sum(box.min, {0.5, 0.5, 0.5})};
 }
 
-// Where the viewer of a box of this extent stands: in front, on +Z (glTF 2.0, section 3.4), a little above
-// and to the right. What is flat, such as a board or a floor, shows its face: thinner than kFlat of its next
-// larger extent.
+// Returns the direction to the viewer of a box with this extent: in front, on +Z (glTF 2.0, section 3.4), a
+// little above and to the right. A flat object, such as a board or a floor, shows its face. An object is flat
+// if it is thinner than kFlat times its next larger extent.
 Double3 directionToViewer(const Double3& extent) {
     constexpr double kFlat = 0.25;
     const auto thin = [&](std::size_t axis) {
@@ -124,8 +124,8 @@ Double3 directionToViewer(const Double3& extent) {
     return *normalized({0.4, 0.35, 1.0});
 }
 
-// Where a camera that looks against `backward` sees the box between two planes through itself that open by
-// `slope` along `axis`, both of which touch the box.
+// The place of a camera that looks against `backward`, from which two planes through the camera enclose the
+// box. The planes open by `slope` along `axis`, and both touch the box.
 struct Fit {
     double offset;    // along axis from the box's centre
     double distance;  // along backward
@@ -137,7 +137,7 @@ Fit fit(const Bounds& box, const Double3& axis, const Double3& backward, double 
     double high = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
         const Double3 point = sum(corner(box, number), scaled(centre, -1.0));
-        // Inside is |point·axis - offset| <= slope (distance - point·backward).
+        // A point is inside if |point·axis - offset| <= slope (distance - point·backward).
         low = std::max(low, slope * dot(point, backward) - dot(point, axis));
         high = std::max(high, slope * dot(point, backward) + dot(point, axis));
     }
@@ -230,7 +230,7 @@ Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
                 extend(own, point);
             }
         }
-        // Skinned vertices are in the world already.
+        // Skinned vertices are already in world space.
         const Bounds placed = own.empty() || !joints.empty() ? own : transformed(own, instance.objectToWorld);
         bounds = isFinite(placed) ? united(bounds, placed) : bounds;
     }
@@ -253,7 +253,7 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     for (unsigned number = 0; number < 8; ++number) {
         nearest = std::max(nearest, dot(sum(corner(box, number), scaled(centre, -1.0)), backward));
     }
-    // A box may be no more than a line towards the viewer: then it is looked at from a hundredth of its size.
+    // Seen from the viewer, a box may be no more than a line. It is then viewed from a hundredth of its size.
     const double clearance = 0.01 * std::hypot(extent[0], extent[1], extent[2]);
     const double distance = std::max({across.distance, upright.distance, nearest + clearance});
 
@@ -264,7 +264,7 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     view.up = toFloat(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
     view.halfWidth = static_cast<float>(kHalfHeight * aspect);
-    // Nothing is nearer than the box; the plane stays off its face, which may be seen head-on.
+    // Nothing is nearer than the box. The plane keeps off the box's face, which may be seen head-on.
     view.near = static_cast<float>(0.99 * (distance - nearest));
     return view;
 }

@@ -51,7 +51,7 @@ int refuse(const Slip& slip) {
     return kExitUsage;
 }
 
-// Runs the work; fails if a warning counts as an error, or if its results could not be written.
+// Runs the work. It fails if a warning counts as an error, or if its results could not be written.
 int act(const Action& chosen, const ReportArguments& report) {
     const Console console(report.options());
     int code = chosen(console);
@@ -100,7 +100,7 @@ int runCommandLine(int argc, const char* const* argv) {
         return kExitFailed;
     }
     try {
-        // CLI11 takes words from the back.
+        // CLI11 takes the words in reverse order.
         std::vector<std::string> words(line->words.rbegin(), line->words.rend());
         app.parse(words);
         report.check();

@@ -1,4 +1,4 @@
-// The subcommands. Each declares its options and, when the command line names it, sets `chosen` to its work.
+// The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
 #pragma once
 
 #include "cli/options.h"
@@ -16,7 +16,7 @@ void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
 void addBench(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
-// After all others and their options, of which it makes the script.
+// Call this after all other commands are added, because the script is made from their options.
 void addCompletion(CLI::App& app, Action& chosen);
 
 }  // namespace glint

@@ -1,12 +1,12 @@
-// Which sources the program was built from.
+// The sources from which the program was built.
 #pragma once
 
 #include <string_view>
 
 namespace glint {
 
-// The commit, abbreviated, with "-dirty" where files were changed since; "unknown" for sources without a
-// repository.
+// Returns the abbreviated commit, with "-dirty" if files were changed since, or "unknown" for sources without
+// a repository.
 std::string_view sourceCommit();
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// glint compare: how far two images are apart.
+// glint compare: measures how far two images differ.
 #include "image/compare.h"
 
 #include "cli/command_line.h"
@@ -32,14 +32,14 @@ Json toJson(const LargestError& error) {
     return {{"value", error.value}, {"x", error.x}, {"y", error.y}, {"channel", kChannels[error.channel]}};
 }
 
-// Pixels as a display shows them: those of a PNG are that already.
+// Returns the pixels as a display shows them. A PNG already has them in that form.
 LinearImage shown(const std::string& path, const LinearImage& image, double exposure) {
     const Result<ImageFormat> format = imageFormat(path);
     return format && *format == ImageFormat::Png ? image : displayedImage(image, exposure);
 }
 
-// Both under the exposure that `glint render` would choose for the reference, or, where that is a PNG, for
-// the image.
+// Measures FLIP with the exposure that `glint render` would choose for the reference, or for the image if the
+// reference is a PNG.
 double measureFlip(const CompareArguments& arguments, const LinearImage& image,
                    const LinearImage& reference) {
     const Result<ImageFormat> format = imageFormat(arguments.reference);
@@ -49,7 +49,7 @@ double measureFlip(const CompareArguments& arguments, const LinearImage& image,
         flipMap(shown(arguments.image, image, exposure), shown(arguments.reference, reference, exposure)));
 }
 
-// PSNR of equal images is infinite, which JSON can't say: null.
+// The PSNR of equal images is infinite. JSON has no infinity, so it is null.
 Json toJson(const ImageDifference& difference, double flip, const LinearImage& image) {
     return {{"width", image.width},
             {"height", image.height},
@@ -88,7 +88,7 @@ std::string toText(const ImageDifference& difference, double flip, const LinearI
           fmt::format("{} in A, {} in B", difference.nonFinite, difference.referenceNonFinite)}});
 }
 
-// Nothing if the images are near enough.
+// Returns nothing if the images are near enough.
 std::optional<Diagnostic> judge(const CompareArguments& arguments, const ImageDifference& difference) {
     if (!arguments.maxError) {
         return std::nullopt;

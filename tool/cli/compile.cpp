@@ -1,4 +1,4 @@
-// glint compile: a scene's materials into a package.
+// glint compile: compiles a scene's materials into a package.
 #include "emit/compile.h"
 
 #include "base/files.h"
@@ -37,7 +37,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What there is to tell at the end. The package is absent after a dry run, and after planning.
+// The facts to report at the end. The package is absent after a dry run, and after planning.
 struct Outcome {
     const CompileArguments& arguments;
     const SceneList& scenes;
@@ -118,7 +118,7 @@ std::string chosenEffects(const EffectPlan& effects) {
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-// The package's folder and the source, those that are written.
+// Names those of the package's folder and the source that are written.
 std::string outputsOf(const CompileArguments& arguments) {
     const bool both = !arguments.output.empty() && !arguments.embed.empty();
     return arguments.output + (both ? ", " : "") + arguments.embed;
@@ -166,7 +166,7 @@ int fail(const Console& console, const Diagnostic& error) {
     return kExitFailed;
 }
 
-// Writes the plan of what would be compiled. The plan settles shader IDs, so that the lock file is of now.
+// Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
 int planOnly(const Console& console, const CompileArguments& arguments, std::span<const Scene> scenes,
              const PlanOptions& options, const LockChoice& lock, std::span<const std::string> dependencies,
              Clock::time_point start) {
@@ -200,7 +200,7 @@ int dryRun(const Console& console, Outcome outcome, const PlanOptions& options, 
     return kExitDone;
 }
 
-// What a run that did the same said, if there is nothing to do.
+// If nothing has to be done, repeats the output of an earlier run that did the same.
 std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
                                  CompileCache& cache, Clock::time_point start) {
     const std::optional<ActionRecord> earlier = cache.findUpToDate();
@@ -220,7 +220,7 @@ std::optional<int> repeatEarlier(const Console& console, const CompileArguments&
     return kExitDone;
 }
 
-// The files that a run has written.
+// Adds the files that a run has written.
 bool addOutputs(const CompiledPackage& package, const CompileArguments& arguments, ActionRecord& run) {
     if (!arguments.output.empty()) {
         run.outputs = filesOf(package, arguments.output);
@@ -284,7 +284,7 @@ int compile(const Console& console, const CompileArguments& given) {
         const Plan made = makePlan(list.materials(), list.primitives(), plan->options);
         return dryRun(console, Outcome{arguments, list, made}, plan->options, start);
     }
-    // The files of scenes come first, each as it was when it was read.
+    // The files of scenes come first, each in the state in which it was read.
     const std::vector<FileState> sceneFiles = filesOf(*scenes);
     run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
     std::vector<std::string> dependencies = pathsOf(sceneFiles);
@@ -311,7 +311,7 @@ int compile(const Console& console, const CompileArguments& given) {
         return fail(console, written.error());
     }
     CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});
-    // A run that changes its own input may find other things to say next time.
+    // A run that changes its own input may report other things next time, so it is not kept.
     if (known && !lock->text && addOutputs(*package, arguments, run)) {
         run.summary = pack(summary);
         cache.keep(run);

@@ -36,7 +36,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
         .group("Shaders");
 }
 
-// Compilation by other processes.
+// Options for compilation by other processes.
 void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option& dry) {
     CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly, "DIR",
                                 "compile nothing: write each module's source into this\n"
@@ -101,7 +101,7 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
                                                                 : planFile(arguments)};
     }
     arguments.options = describeOptions(command);
-    // What the file of settings says stands among the words.
+    // The words already contain what the settings file says.
     constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules, "--settings"};
     constexpr std::string_view kReport[] = {"--werror", "-W"};
     for (const CLI::Option* const option : command.get_options()) {
@@ -116,7 +116,7 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
         }
     }
     if (!arguments.modules.empty()) {
-        // Nothing is compiled, and Ninja knows what is up to date.
+        // Nothing is compiled, and Ninja knows what is up to date, so the cache is not used.
         arguments.cache.folder = kNoCache;
     }
 }

@@ -46,16 +46,17 @@ struct CompileArguments {
 };
 
 void addCompileOptions(CLI::App& command, CompileArguments& arguments);
-// Fills in what follows from the parsed `command`. Throws a CLI::ParseError where options disagree.
+// Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
+// each other.
 void settleCompile(const CLI::App& command, CompileArguments& arguments);
 
 CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan);
 
-// The build file of --plan-only.
+// Returns the build file of --plan-only.
 std::string planFile(const CompileArguments& arguments);
-// The files that stand for the whole output: the manifest, and those of --embed.
+// Returns the files that stand for the whole output: the manifest, and those of --embed.
 std::vector<std::string> mainOutputs(const CompileArguments& arguments);
-// What is read besides scenes.
+// Returns the files that are read besides scenes.
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments);
 
 }  // namespace glint

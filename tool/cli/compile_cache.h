@@ -1,4 +1,4 @@
-// What `compile` keeps from run to run: modules, and whole runs that need not be done again.
+// Keeps data of `compile` from run to run: modules, and whole runs that need not be repeated.
 #pragma once
 
 #include "cache/action.h"
@@ -17,25 +17,25 @@
 
 namespace glint {
 
-// Without a folder nothing is found and nothing kept.
+// Without a folder nothing is found and nothing is kept.
 class CompileCache {
 public:
-    // `options`: as describeOptions(); with the program and the working folder they decide what a run does
-    // with its inputs.
+    // `options` comes from describeOptions(). Together with the program and the working folder it decides
+    // what a run does with its inputs.
     CompileCache(const CacheArguments& arguments, const std::string& options);
 
-    // Null without a folder.
+    // Returns null without a folder.
     ModuleCache* modules() {
         return modules_.get();
     }
-    // Likewise.
+    // Returns null without a folder.
     CacheStore* store() {
         return store_.get();
     }
-    // An earlier run with these options, if its inputs and its outputs are as it left them.
+    // Returns an earlier run with these options if its inputs and its outputs have not changed since.
     std::optional<ActionRecord> findUpToDate();
     void keep(const ActionRecord& record);
-    // Keeps the folder within its bounds, and notes what could not be stored.
+    // Trims the folder to its bounds, and reports what could not be stored.
     void close(const Console& console);
 
 private:
@@ -44,11 +44,11 @@ private:
     std::string action_;
 };
 
-// Every file that the scenes were read from, as it was then.
+// Returns every file from which the scenes were read, in the state at that time.
 std::vector<FileState> filesOf(std::span<const Scene> scenes);
-// Adds each of `paths` as it is now. False where one can't be read.
+// Adds each of `paths` in its current state. Returns false if one can't be read.
 bool addFiles(std::vector<FileState>& files, std::span<const std::filesystem::path> paths);
-// The package's files below `folder`.
+// Returns the package's files below `folder`.
 std::vector<FileState> filesOf(const CompiledPackage& package, const std::filesystem::path& folder);
 
 std::vector<std::string> pathsOf(std::span<const FileState> files);

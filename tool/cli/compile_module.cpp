@@ -1,4 +1,4 @@
-// glint compile-module: one module of a plan.
+// glint compile-module: compiles one module of a plan.
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"

@@ -12,7 +12,7 @@ namespace glint {
 
 namespace {
 
-// The files outside the package's folder, in the order in which they take their places.
+// The files outside the package's folder, in the order in which they are moved into place.
 class Staging {
 public:
     Status addEmbedded(const SceneList& scenes, const CompiledPackage& package,
@@ -65,7 +65,7 @@ Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, con
             return staged;
         }
     }
-    // Last, as it tells Make and Ninja that the others are there.
+    // The dependency file comes last, because it tells Make and Ninja that the others exist.
     if (!outputs.depfile.file.empty()) {
         const Result<std::string> text = makeDepfile(outputs.depfile.targets, outputs.dependencies);
         if (!text) {

@@ -1,4 +1,5 @@
-// All that glint compile writes, as one step: all of it is on disk before any of it takes its place.
+// Writes all results of glint compile as one step: all files are complete on disk before any of them is moved
+// into place.
 #pragma once
 
 #include "cli/depfile.h"
@@ -14,7 +15,7 @@
 
 namespace glint {
 
-// What is empty is not written.
+// Members that are empty are not written.
 struct CompileOutputs {
     std::filesystem::path folder;  // of the package
     std::filesystem::path embed;   // a C++ source
@@ -24,8 +25,8 @@ struct CompileOutputs {
     std::span<const std::string> dependencies;
 };
 
-// A full disk leaves everything as it was, and so does an interruption: it waits. Errors of writePackage(),
-// stageEmbeddedSource() and makeDepfile(); "file-write".
+// A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
+// writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
 Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, const CompileOutputs& outputs);
 
 }  // namespace glint

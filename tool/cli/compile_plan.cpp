@@ -25,7 +25,7 @@ fs::path moduleFolder(const CompileArguments& arguments) {
     return fs::path(arguments.planOnly) / kModuleFolder;
 }
 
-// Whether nameModuleTexts() may have made the name, whatever the suffix.
+// Returns whether nameModuleTexts() may have made the name, whatever the suffix is.
 bool isModuleName(const std::string& stem) {
     return stem.size() >= kHashDigits && stem.find_first_not_of("0123456789abcdef") >= kHashDigits &&
            (stem.size() == kHashDigits || stem[kHashDigits] == '-');
@@ -48,7 +48,7 @@ Status checkFolder(const CompileArguments& arguments) {
                            "choose another folder for --plan-only");
 }
 
-// What Ninja would not know any more.
+// Removes files that the new Ninja file does not know.
 void removeOthers(const fs::path& folder, const std::set<std::string>& kept) {
     std::error_code error;
     std::vector<fs::path> gone;
@@ -61,7 +61,7 @@ void removeOthers(const fs::path& folder, const std::set<std::string>& kept) {
         }
     }
     for (const fs::path& path : gone) {
-        // One that stays is in nobody's way.
+        // An error is ignored, because a file that stays does no harm.
         fs::remove(path, error);
     }
 }
@@ -101,7 +101,7 @@ NinjaPlan describe(const CompileArguments& arguments, const PackagePlan& plan) {
         again.push_back("--launcher=" + arguments.launcher);
     }
     ninja.plan = commandWords(arguments.words, again, arguments.scenes);
-    // Planning has said what there is to say.
+    // This run is quiet, because planning has already reported everything.
     const std::vector<std::string> take{"--modules=" + moduleFolder(arguments).string(),
                                         "--depfile=" + ninja.packageDepfile, "--quiet"};
     ninja.package = commandWords(arguments.words, take, arguments.scenes);

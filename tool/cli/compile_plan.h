@@ -1,4 +1,4 @@
-// glint compile --plan-only: what is to be compiled, as files for Ninja.
+// glint compile --plan-only: writes what is to be compiled as files for Ninja.
 #pragma once
 
 #include "cli/compile_arguments.h"
@@ -11,9 +11,9 @@
 
 namespace glint {
 
-// Writes a text for each module and the build file into arguments.planOnly, only what changed, and removes
-// the modules of an earlier plan. `dependencies`: what was read. Errors "output-not-a-plan" where the folder
-// has another build.ninja, "ninja-name", "depfile-name", "file-write".
+// Writes a text for each module and the build file into arguments.planOnly, but only files that changed, and
+// removes the modules of an earlier plan. `dependencies` are the files that were read. Errors:
+// "output-not-a-plan" if the folder has another build.ninja, "ninja-name", "depfile-name", "file-write".
 Status writePlan(const CompileArguments& arguments, const PackagePlan& plan,
                  std::span<const std::string> dependencies);
 

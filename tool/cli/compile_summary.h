@@ -1,4 +1,4 @@
-// What `compile` tells at the end of a run, and again of a run that had nothing to do.
+// The text that `compile` prints at the end of a run, and again if a run has nothing to do.
 #pragma once
 
 #include "cli/console.h"
@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// NOLINTNEXTLINE(bugprone-exception-escape): the move of Json, which throws nothing that can be thrown here.
+// Moving the Json can't throw here. NOLINTNEXTLINE(bugprone-exception-escape)
 struct CompileSummary {
     Json json;
     std::vector<std::vector<std::string>> fields;  // name and value; the last is the output
@@ -20,7 +20,7 @@ struct CompileSummary {
     int modules = 0;                               // of the package
 };
 
-// Of the modules of a package; absent after a dry run.
+// The numbers of a package's modules; absent after a dry run.
 struct ModuleCounts {
     int compiled = 0;
     int cached = 0;  // or with the text of another
@@ -28,14 +28,14 @@ struct ModuleCounts {
 
 ModuleCounts countModules(const CompiledPackage& package);
 
-// Adds `milliseconds`, `modules` and `upToDate`, and prints. The members have their places in the JSON
-// already.
+// Adds `milliseconds`, `modules` and `upToDate`, and prints the summary. The JSON already has places for
+// these members.
 void tell(const Console& console, CompileSummary summary, const std::optional<ModuleCounts>& modules,
           bool upToDate, double milliseconds);
 
 std::string pack(const CompileSummary& summary);
-// Nothing where `bytes` is no summary. Without `withJson`, which takes time that grows with the scene, the
-// JSON stays empty.
+// Returns nothing if `bytes` is not a summary. Without `withJson` the JSON stays empty; parsing it takes time
+// that grows with the scene.
 std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson);
 
 }  // namespace glint

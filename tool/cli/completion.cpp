@@ -1,4 +1,4 @@
-// glint completion: a script that completes glint's command line in a shell.
+// glint completion: prints a script that completes glint's command line in a shell.
 #include "cli/completion.h"
 
 #include "cli/command_line.h"

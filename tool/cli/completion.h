@@ -1,4 +1,4 @@
-// Shell completion scripts, made from the command line's own description.
+// Makes shell completion scripts from the description of the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// What a shell offers after an option, or in place of a positional argument.
+// The words that a shell offers after an option, or for a positional argument.
 struct ArgumentModel {
     std::vector<std::string> choices;  // empty: none that are known
     bool isList = false;               // of choices, separated by commas
@@ -30,10 +30,10 @@ struct CommandModel {
     ArgumentModel positional;  // of all positionals together
 };
 
-// The commands of `app`, in order, as they are declared.
+// Returns the commands of `app` in the order of their declarations.
 std::vector<CommandModel> describeCommands(CLI::App& app);
 
-// The whole script; `options` are those of glint itself.
+// Returns the whole script. `options` are those of glint itself.
 std::string bashCompletion(const std::vector<CommandModel>& commands);
 std::string zshCompletion(const std::vector<CommandModel>& commands);
 std::string fishCompletion(const std::vector<CommandModel>& commands);

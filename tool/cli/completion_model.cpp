@@ -12,7 +12,8 @@ bool mentions(const std::string& text, const char* word) {
     return text.find(word) != std::string::npos;
 }
 
-// What the text says first, in one line: details, defaults and the meanings of values follow it.
+// Returns the beginning of the text in one line. Details, defaults and the meanings of values follow it in
+// the text.
 std::string shortened(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     std::size_t end = text.size();

@@ -1,4 +1,4 @@
-// The same model as a script for each shell.
+// Writes the same model as a script for each shell.
 #include "cli/completion.h"
 #include "cli/words.h"
 
@@ -37,7 +37,7 @@ std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
 
 // --- bash ---------------------------------------------------------------------------------------
 
-// What fills COMPREPLY for one argument; empty where nothing is known of it.
+// Returns the code that fills COMPREPLY for one argument, or an empty text if nothing is known about it.
 std::string bashAction(const ArgumentModel& argument) {
     if (!argument.choices.empty()) {
         return fmt::format("{} {}", argument.isList ? "_glint_list" : "_glint_words",
@@ -68,8 +68,8 @@ std::string bashCommand(const CommandModel& command) {
                       positional.empty() ? ":" : positional);
 }
 
-// `current` is the word up to the cursor, `previous` the option that it belongs to: bash takes --merge=none
-// apart at the sign.
+// `current` is the word up to the cursor, and `previous` is the option that it belongs to, because bash
+// splits --merge=none at the sign.
 constexpr std::string_view kBashHelpers = R"(
 _glint_words() {
     mapfile -t COMPREPLY < <(compgen -W "$1" -- "$current")
@@ -107,7 +107,7 @@ _glint() {
 
 // --- zsh ----------------------------------------------------------------------------------------
 
-// Within _arguments brackets and colons have a meaning of their own.
+// Within _arguments, brackets and colons have a special meaning.
 std::string escaped(std::string_view text, std::string_view special) {
     std::string result;
     for (const char c : text) {

@@ -44,7 +44,7 @@ bool wantsColor(ColorChoice choice, bool terminal) {
 
 std::string colored(const Diagnostic& diagnostic) {
     std::string text = toString(diagnostic);
-    // The severity stands right after the place, up to the first colon.
+    // The severity follows the place, and ends at the first colon.
     const std::size_t begin = diagnostic.where.empty() ? 0 : diagnostic.where.size() + 2;
     const std::size_t end = text.find(':', begin);
     text.insert(end, kReset);

@@ -1,4 +1,4 @@
-// Where the command writes: results to stdout, diagnostics and progress to stderr.
+// The output of the command: results go to stdout, diagnostics and progress to stderr.
 #pragma once
 
 #include <glint/result.h>
@@ -17,13 +17,13 @@ namespace glint {
 
 enum class ColorChoice { Auto, Always, Never };
 
-// What becomes of diagnostics, by id. Errors stay errors whatever it says.
+// Decides how diagnostics are reported, by id. Errors always stay errors.
 struct DiagnosticPolicy {
     std::set<std::string, std::less<>> dropped;  // warnings and notes that are left out
     std::set<std::string, std::less<>> errors;   // warnings that count as errors
     bool allErrors = false;                      // all of them do
 
-    // Nothing where it is left out.
+    // Returns nothing if the diagnostic is left out.
     std::optional<Severity> judge(Severity severity, std::string_view id) const;
 };
 
@@ -35,7 +35,7 @@ struct ConsoleOptions {
     ColorChoice color = ColorChoice::Auto;
 };
 
-// Its functions are const as they change nothing that a command decides by.
+// Its functions are const because they change nothing that affects a command's decisions.
 class Console {
 public:
     explicit Console(ConsoleOptions options = {});
@@ -46,21 +46,21 @@ public:
     bool isJson() const;
     const DiagnosticPolicy& policy() const;
 
-    // A result as text; it ends with a line break where one is wanted. Silent with --quiet.
+    // Prints a result as text, which must contain its own line breaks. Silent with --quiet.
     void print(std::string_view text) const;
-    // A result as an object, which finish() writes with the diagnostics.
+    // Stores a result as an object. finish() writes it together with the diagnostics.
     void result(const nlohmann::ordered_json& object) const;
     void report(const Diagnostic& diagnostic) const;
     void report(std::span<const Diagnostic> diagnostics) const;
-    // Whether a warning was reported that counts as an error.
+    // Returns whether a warning was reported that counts as an error.
     bool refused() const;
-    // What is being done now: one line that the next message replaces, or with --verbose one that stays.
-    // Silent unless stderr is a terminal, or with --verbose. Empty text clears it.
+    // Shows the current activity in a line that the next message replaces; with --verbose the line stays.
+    // Silent unless stderr is a terminal, or with --verbose. An empty text clears the line.
     void progress(std::string_view text) const;
-    // What was read, decided or made; only with --verbose.
+    // Reports what was read, decided or made; only with --verbose.
     void detail(std::string_view text) const;
-    // Writes the JSON, and what is buffered. Error "output" where stdout can't take it, for instance on a
-    // full disk.
+    // Writes the JSON and all buffered text. Error "output" if stdout can't take it, for instance on a full
+    // disk.
     Status finish() const;
 
 private:

@@ -1,4 +1,4 @@
-// The picture of --coverage: how each pixel came to its reflection.
+// The picture of --coverage: it shows how each pixel got its reflection.
 #pragma once
 
 #include "image/png.h"
@@ -9,9 +9,9 @@
 
 namespace glint {
 
-// Colours after Okabe and Ito, "Color Universal Design" (2008), which colour-blind people tell apart, and
-// which differ in lightness: orange, found in screen space; blue, by a ray that hit; light blue, by a ray
-// that left the scene; grey, no ray; black, no surface. `paths` has width * height pixels.
+// The colours are those of Okabe and Ito, "Color Universal Design" (2008). Colour-blind people can tell them
+// apart, and they differ in lightness. Orange: found in screen space. Blue: a ray that hit. Light blue: a ray
+// that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
 DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width, std::uint32_t height);
 
 }  // namespace glint

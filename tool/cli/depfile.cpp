@@ -13,11 +13,12 @@ namespace glint {
 
 namespace {
 
-// Syntax of Make or Ninja, which both take literally after a backslash.
+// These characters have a meaning in Make or Ninja, and both take them literally after a backslash.
 constexpr std::string_view kEscaped = " #:";
-// Ninja ends a name here (its depfile parser knows the characters of names), Make at some of them.
+// Ninja ends a name at these characters (its depfile parser has a list of the characters of names), and Make
+// at some of them.
 constexpr std::string_view kImpossible = "\"&'*;<>?^`|\t\n\r";
-// Make takes a line with a '=' for an assignment, one with a '%' left of the colon for a pattern.
+// Make reads a line with a '=' as an assignment, and one with a '%' left of the colon as a pattern.
 constexpr std::string_view kNotInTargets = "=%";
 
 bool isAmong(char c, std::string_view characters) {
@@ -47,7 +48,7 @@ Result<std::string> escape(std::string_view name, bool isTarget) {
         text += c == '$' ? "$" : isAmong(c, kEscaped) ? "\\" : "";
         text += c;
     }
-    // Make takes a leading ~ for a home folder.
+    // Make expands a leading ~ to a home folder.
     if (text.starts_with('~')) {
         text.insert(0, "./");
     }
@@ -79,7 +80,7 @@ Result<std::string> makeDepfile(std::span<const std::string> targets,
         text += *escaped;
     }
     text += ':';
-    // Make takes what follows the colon for an assignment if the first name has a '='.
+    // Make reads what follows the colon as an assignment if the first name contains a '='.
     std::vector<std::string_view> names(dependencies.begin(), dependencies.end());
     std::stable_partition(names.begin(), names.end(),
                           [](std::string_view name) { return !isAmong('=', name); });

@@ -17,14 +17,15 @@ struct DepfileArguments {
 };
 void addDepfileOptions(CLI::App& command, DepfileArguments& arguments);
 
-// "targets: dependencies", each dependency once. Error "depfile-name" for a name that the syntax of Make and
-// Ninja can't both hold: with a quote or one of &*;<>?^`| or a control character, a colon at the end, or a
-// backslash at the end or before a space, '#' or ':'; a target with '=' or '%'; dependencies that all have a
-// '='.
+// Returns "targets: dependencies", with each dependency once. Error "depfile-name" for a name that can't be
+// written in a syntax that both Make and Ninja read: with a quote or one of &*;<>?^`| or a control character,
+// a colon at the end, or a backslash at the end or before a space, '#' or ':'; a target with '=' or '%';
+// dependencies that all contain a '='.
 Result<std::string> makeDepfile(std::span<const std::string> targets,
                                 std::span<const std::string> dependencies);
 
-// Writes the file if it changes; does nothing without one. Errors of makeDepfile(); "file-write".
+// Writes the file if its content changes. Does nothing if no file is named. Has the errors of makeDepfile(),
+// and "file-write".
 Status writeDepfile(const DepfileArguments& arguments, std::span<const std::string> dependencies);
 
 }  // namespace glint

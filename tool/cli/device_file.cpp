@@ -16,10 +16,10 @@ namespace {
 
 constexpr const char* kFormat = "glint-device";
 constexpr int kVersion = 1;
-// A file has a few kilobytes.
+// A device file has a few kilobytes.
 constexpr std::uint64_t kMaxBytes = 1ULL << 20;
 constexpr std::uint64_t kMaxPoints = 1ULL << 32;
-// No constant is a year of its unit; errors and regrets are factors.
+// No constant reaches a year of its unit. Errors and regrets are factors.
 constexpr double kMostOfUnit = 1e12;
 constexpr double kMaxSubgroup = 1024.0;
 
@@ -27,7 +27,7 @@ std::string percent(double share) {
     return fmt::format("{:.1f} %", 100.0 * share);
 }
 
-// "launches" in milliseconds is "launchesMs".
+// Returns the JSON name of a constant: "launches" in milliseconds is "launchesMs".
 std::string memberOf(const CostTermInfo& info) {
     const std::string unit = info.unit == "ms" ? "Ms" : info.unit == "ns" ? "Ns" : "Ps";
     return std::string(info.name) + unit;

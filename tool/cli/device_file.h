@@ -1,4 +1,4 @@
-// The device file: what `glint bench --calibrate` has found of a device, and `--calibration` reads.
+// The device file: `glint bench --calibrate` writes it, and `--calibration` reads it.
 #pragma once
 
 #include "bench/strategy_fit.h"
@@ -18,15 +18,16 @@ struct DeviceFile {
     bench::FitQuality quality;
 };
 
-// Fits the constants of a device to what was measured on it. `device`: everything of it but its strategies.
-// Notes "calibration-points" of what was left out; an error of that id where no strategy could be fitted.
+// Fits the constants of a device to measurements on it. `device` holds everything except its strategies. Adds
+// notes "calibration-points" about points that were left out. Returns an error with that id if no strategy
+// could be fitted.
 Result<DeviceFile> fitDevice(DeviceCosts device, std::span<const bench::CalibrationPoint> points,
                              std::vector<Diagnostic>& notes);
 
-// For people: the constants, how far estimates are off, and what a choice by them costs.
+// Describes for people the constants, how far estimates are off, and the cost of choosing by them.
 std::string describe(const DeviceFile& file);
 
-// JSON as docs/schemas/device.json has it.
+// Returns JSON in the format of docs/schemas/device.json.
 std::string toText(const DeviceFile& file);
 
 // Errors "file-open", "file-read", "calibration-format".

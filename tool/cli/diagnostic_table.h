@@ -18,10 +18,10 @@ struct DiagnosticInfo {
     std::string_view meaning;     // one sentence
 };
 
-// Sorted by id.
+// Returns the table, sorted by id.
 std::span<const DiagnosticInfo> diagnosticTable();
 
-// Null where there is none of that id.
+// Returns null if there is no diagnostic with that id.
 const DiagnosticInfo* findDiagnostic(std::string_view id);
 
 }  // namespace glint

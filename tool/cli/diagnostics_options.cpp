@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kNoPrefix = "no-";
 constexpr std::string_view kErrorWord = "error";
 constexpr std::string_view kErrorPrefix = "error=";
-// What CLI11 makes of a flag without a value.
+// The value that CLI11 gives to a flag without a value.
 constexpr std::string_view kAll = "true";
 
 std::vector<std::string> idsOf(std::uint8_t severities) {
@@ -26,7 +26,7 @@ std::vector<std::string> idsOf(std::uint8_t severities) {
     return ids;
 }
 
-// Empty where `id` names a diagnostic of one of the severities, else why it does not.
+// Returns an empty text if `id` names a diagnostic of one of the severities, else the reason why it does not.
 std::string checkId(const std::string& id, std::uint8_t severities) {
     const DiagnosticInfo* const info = findDiagnostic(id);
     if (info == nullptr) {

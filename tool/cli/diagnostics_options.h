@@ -1,5 +1,5 @@
-// Which diagnostics count, by id, and how a command reports: --json, --quiet, --verbose, --color, --werror,
-// -W.
+// Options that decide which diagnostics count, by id, and how a command reports: --json, --quiet, --verbose,
+// --color, --werror, -W.
 #pragma once
 
 #include "cli/console.h"
@@ -20,12 +20,12 @@ struct ReportArguments {
     std::vector<std::string> warnings;  // of -W: "no-ID", "error", "error=ID"
 
     ConsoleOptions options() const;
-    // Throws a CLI::ParseError where they contradict each other.
+    // Throws a CLI::ParseError if the options contradict each other.
     void check() const;
 };
 
-// Adds the options that every command has; `arguments` must outlive the command. A --json that the command
-// has declared itself, with words of its own, stays.
+// Adds the options that every command has; `arguments` must outlive the command. If the command has declared
+// --json with its own help text, that stays.
 void addReportOptions(CLI::App& command, ReportArguments& arguments);
 
 }  // namespace glint

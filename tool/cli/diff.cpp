@@ -1,4 +1,4 @@
-// glint diff: what is different between two packages.
+// glint diff: shows the differences between two packages.
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/diff_compare.h"

@@ -31,7 +31,7 @@ std::vector<SettingChange> compareSettings(const DiffPackage& before, const Diff
     return changes;
 }
 
-// Shaders of both packages that have keys in common, directly or by way of others.
+// Shaders of both packages that have keys in common, directly or through other shaders.
 struct Group {
     std::set<int> before;
     std::set<int> after;
@@ -72,7 +72,8 @@ private:
         }
     }
 
-    // Follows keys from shader to shader; `open`: whether of the package before, and the ID.
+    // Follows keys from shader to shader. Each element of `open` says whether the shader is of the earlier
+    // package, and its ID.
     Group follow(std::vector<std::pair<bool, int>> open) {
         Group group;
         while (!open.empty()) {
@@ -102,7 +103,7 @@ private:
     std::set<int> seenAfter_;
 };
 
-// Nothing where the shaders are the same.
+// Returns nothing if the shaders are the same.
 std::optional<ShaderChangeKind> kindOf(const Group& group, const DiffPackage& before,
                                        const DiffPackage& after) {
     if (group.before.empty()) {
@@ -135,8 +136,8 @@ ShaderChange toChange(const Group& group, ShaderChangeKind kind) {
     return change;
 }
 
-// The shaders of a group that are compared: one with one, else those of one ID. Each is in one pair, maybe
-// alone.
+// Pairs the shaders of a group that are to be compared: if each side has one, these two, otherwise those with
+// the same ID. Each shader is in one pair, maybe without a partner.
 std::vector<std::pair<std::optional<int>, std::optional<int>>> pairsOf(const Group& group) {
     if (group.before.size() == 1 && group.after.size() == 1) {
         return {{*group.before.begin(), *group.after.begin()}};
@@ -195,7 +196,7 @@ void compareShaders(const DiffPackage& before, const DiffPackage& after, Package
         diff.shaders, {}, [&](const ShaderChange& change) { return std::tuple(change.kind, idOf(change)); });
 }
 
-// The scene's name counts only where there are several.
+// The scene's name is part of the key only if there are several scenes.
 std::map<DiffMaterial, std::set<int>> materialsOf(const DiffPackage& package, bool named) {
     std::map<DiffMaterial, std::set<int>> materials;
     for (const auto& [material, shaderIds] : package.materials) {
@@ -226,7 +227,7 @@ void compareMaterials(const DiffPackage& before, const DiffPackage& after, Packa
     std::ranges::sort(diff.materials, {}, &MaterialChange::material);
 }
 
-// Cases by ID, then passes, in the order of the package.
+// Cases come first, by ID, then passes, in the order of the package.
 auto orderOf(const ModuleChange& change) {
     const std::optional<int> id = change.idBefore ? change.idBefore : change.idAfter;
     return std::tuple(!id, id.value_or(0), change.key);

@@ -1,4 +1,4 @@
-// What is different between two packages.
+// The differences between two packages.
 #pragma once
 
 #include "cli/diff_package.h"
@@ -27,7 +27,7 @@ enum class ShaderChangeKind : std::uint8_t {
     Regrouped,  // several became several others
 };
 
-// Shaders that have keys in common, directly or by way of others.
+// Shaders that have keys in common, directly or through other shaders.
 struct ShaderChange {
     ShaderChangeKind kind{};
     std::vector<int> before;  // shader IDs, ascending
@@ -36,8 +36,8 @@ struct ShaderChange {
     std::vector<std::vector<std::string>> keysRemoved;
 };
 
-// A module of both packages whose SPIR-V differs, or one that only one has. Modules of cases belong together
-// where their cases do.
+// A module of both packages whose SPIR-V differs, or one that only one package has. Modules of cases are
+// compared if their cases are.
 struct ModuleChange {
     package::ModuleKey key;       // index 0 for those of cases
     std::optional<int> idBefore;  // of cases
@@ -65,7 +65,7 @@ struct PackageDiff {
     std::vector<MaterialChange> materials;
     std::vector<TotalChange> totals;
     bool tablesDiffer = false;
-    // What both have alike.
+    // The numbers of things that are equal in both.
     std::size_t sameShaders = 0;
     std::size_t sameModules = 0;
     std::size_t sameMaterials = 0;
@@ -75,7 +75,7 @@ struct PackageDiff {
     }
 };
 
-// Valid as long as the packages.
+// The result is valid as long as the packages are.
 PackageDiff comparePackages(const DiffPackage& before, const DiffPackage& after);
 
 }  // namespace glint

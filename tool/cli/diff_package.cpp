@@ -13,7 +13,7 @@ namespace glint {
 
 namespace {
 
-// "a, b" of a list, "none" of null, else the value as it stands.
+// Returns "a, b" for a list, "none" for null, and otherwise the value as it is.
 std::string valueText(const Json& value) {
     if (value.is_array()) {
         std::vector<std::string> words;
@@ -25,7 +25,7 @@ std::string valueText(const Json& value) {
     return value.is_null() ? "none" : value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// What decides how the package was made. Throws where the manifest lacks one.
+// Returns the settings that decided how the package was made. Throws if the manifest lacks one.
 std::vector<std::pair<std::string, std::string>> settingsOf(const Json& manifest) {
     std::vector<std::pair<std::string, std::string>> settings;
     for (const char* name : {"toolVersion", "strategies", "tracers", "merge", "maxShaders", "alpha"}) {

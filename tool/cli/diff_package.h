@@ -1,5 +1,5 @@
-// What `glint diff` compares of a package: from manifest.json, and from tables.bin and the modules as the
-// runtime's loader gives them.
+// The parts of a package that `glint diff` compares: from manifest.json, and from tables.bin and the modules
+// as the runtime's loader reads them.
 #pragma once
 
 #include "spirv/statistics.h"
@@ -29,13 +29,13 @@ struct DiffCase {
     std::map<package::ModuleKey, DiffModule> modules{};  // with index 0
 };
 
-// A material outlives its index: this says which it is.
+// Identifies a material, whose index may change from package to package.
 struct DiffMaterial {
     std::string scene;
     std::string name;
     int sameNamed = 0;  // materials of that scene and name with lower indices
 
-    // NOLINTNEXTLINE(modernize-use-nullptr): a comparison against 0 that the compiler writes.
+    // The compiler generates a comparison with 0 here. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const DiffMaterial&, const DiffMaterial&) = default;
 };
 
@@ -49,7 +49,7 @@ struct DiffPackage {
     std::string tables;  // hash of tables.bin
 };
 
-// Errors of Package::load() and readFile(), and "manifest-format".
+// Has the errors of Package::load() and readFile(), and "manifest-format".
 Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder);
 
 }  // namespace glint

@@ -12,7 +12,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// A scene may have a hundred thousand: a page of them is enough to read.
+// A scene may have a hundred thousand materials, and nobody reads more than a page of them.
 constexpr std::size_t kMaxMaterials = 40;
 
 std::string_view nameOf(ShaderChangeKind kind) {
@@ -25,7 +25,7 @@ std::string_view changeOf(bool before, bool after) {
     return before && after ? "changed" : after ? "added" : "removed";
 }
 
-// Of modules that come several times: the ordering, the tracer.
+// Names the ordering, or the tracer, of a module that exists several times.
 std::string orderingOf(const package::ModuleKey& key) {
     const bool ordered = package::findRole(key.role)->repeated == package::Repeated::ByOrdering;
     return ordered ? std::string(package::nameOf(static_cast<package::Ordering>(key.index))) : std::string();
@@ -36,13 +36,13 @@ std::string tracerOf(const package::ModuleKey& key) {
                            : std::string();
 }
 
-// "1 Pbr"; empty beyond the end of the list.
+// Returns "1 Pbr", or an empty text beyond the end of the list.
 std::string shaderAt(const std::vector<int>& ids, std::size_t place, const DiffPackage& package) {
     return place < ids.size() ? fmt::format("{} {}", ids[place], package.cases.at(ids[place]).name)
                               : std::string();
 }
 
-// "+1: normals" of one key, "+3" of several.
+// Returns "+1: normals" for one key, "+3" for several.
 std::string keyCount(char sign, const std::vector<std::vector<std::string>>& keys) {
     if (keys.empty()) {
         return {};
@@ -74,7 +74,7 @@ std::string moduleName(const ModuleChange& change) {
     return name;
 }
 
-// "12 -> 14", "12" where it stays.
+// Returns "12 -> 14", or "12" if the value is the same.
 std::string step(std::uint64_t before, std::uint64_t after) {
     return before == after ? fmt::format("{}", before) : fmt::format("{} -> {}", before, after);
 }
@@ -97,7 +97,7 @@ std::string shaderTable(const PackageDiff& diff, const DiffSides& sides) {
                             i == 0 ? keyChanges(change) : ""});
         }
     }
-    // Not as a table of numbers, though cells begin with IDs.
+    // It is not formatted as a table of numbers, although cells begin with IDs.
     return rows.size() > 1 ? formatFields(rows) + "\n" : std::string();
 }
 

@@ -1,4 +1,4 @@
-// What `glint diff` prints.
+// The text that `glint diff` prints.
 #pragma once
 
 #include "cli/diff_compare.h"
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// What `diff` is of, and what they are called.
+// The two packages that are compared, and their names.
 struct DiffSides {
     std::string nameBefore;  // folders, as given
     std::string nameAfter;
@@ -16,7 +16,7 @@ struct DiffSides {
     const DiffPackage& after;
 };
 
-// Tables of what differs, and a line that counts what does not.
+// Returns tables of the differences, and a line that counts what is equal.
 std::string diffText(const PackageDiff& diff, const DiffSides& sides);
 Json diffJson(const PackageDiff& diff, const DiffSides& sides);
 

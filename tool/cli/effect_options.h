@@ -1,4 +1,4 @@
-// Options of effects: which a package has, and how a renderer runs them.
+// Options of effects: which effects a package has, and how a renderer runs them.
 #pragma once
 
 #include "cli/options.h"
@@ -12,26 +12,26 @@
 
 namespace glint {
 
-// What a package has.
+// The effects of a package.
 struct EffectArguments {
     std::vector<std::string> effects{"auto"};
     double maxRoughness = 0.3;
     void apply(CompileSettings& settings) const;
 };
-// --effects, --max-roughness. Returns --effects.
+// Adds --effects and --max-roughness. Returns --effects.
 CLI::Option& addEffectOptions(CLI::App& command, EffectArguments& arguments);
-// Throws a CLI::ParseError where "none" or "all" stands among others.
+// Throws a CLI::ParseError if "none" or "all" stands among others.
 void checkEffects(const EffectArguments& arguments);
 
-// One for each effect that is asked for and that the scenes can't use.
+// Returns a warning for each effect that is asked for although the scenes can't use it.
 std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings);
 
-// The decisions of --effects auto, with the lights that the scenes have.
+// Returns the decisions of --effects auto, for the lights that the scenes have.
 EffectPlan automaticEffects(const SceneList& scenes);
-// A line for each effect: whether it is chosen, and why.
+// Returns a line for each effect: whether it is chosen, and why.
 std::string effectsText(const EffectPlan& plan);
 
-// What a renderer chooses.
+// The settings that a renderer chooses.
 struct EffectFrameArguments {
     double skipBelow = 0.0;
     std::int64_t shadowSamples = 1;
@@ -47,7 +47,7 @@ struct EffectFrameArguments {
     void apply(SceneViewData& scene) const;
 };
 void addEffectFrameOptions(CLI::App& command, EffectFrameArguments& arguments);
-// Throws a CLI::ParseError where options disagree.
+// Throws a CLI::ParseError if options contradict each other.
 void checkEffectFrame(const EffectFrameArguments& arguments);
 
 }  // namespace glint

@@ -15,7 +15,7 @@ constexpr const char* kMap = "--environment";
 constexpr const char* kRotation = "--environment-rotation";
 constexpr const char* kMapIntensity = "--environment-intensity";
 
-// Warnings of the file, and notes of what becomes of it.
+// Returns warnings about the file, and notes about how it is used.
 std::vector<Diagnostic> describe(const std::string& file, const LinearImage& image,
                                  const Environment::Statistics& statistics) {
     std::vector<Diagnostic> notes;

@@ -1,4 +1,4 @@
-// The environment map of glint render: options, file, what there is to say of it.
+// The environment map of glint render: its options, its file, and messages about it.
 #pragma once
 
 #include "cli/options.h"
@@ -19,11 +19,11 @@ struct EnvironmentArguments {
     void apply(FrameOptions& frame) const;
 };
 void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments);
-// Throws a CLI::ParseError where an option of the map is given without one.
+// Throws a CLI::ParseError if an option of the map is given without a map.
 void checkEnvironmentOptions(const CLI::App& command);
 
-// Reads a .hdr or .exr file and makes the map; appends warnings and notes. Errors of readRadiance() and
-// Environment::create(), with the file as their place.
+// Reads a .hdr or .exr file and makes the map. Appends warnings and notes. Has the errors of readRadiance()
+// and Environment::create(), with the file as their place.
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
                                                      std::vector<Diagnostic>& notes);
 

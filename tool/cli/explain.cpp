@@ -1,4 +1,4 @@
-// glint explain: which key and which case each material gets, and why.
+// glint explain: shows which key and which case each material gets, and why.
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -37,7 +37,7 @@ struct ExplainArguments {
     LockArguments lock;
 };
 
-// The scene, and what planning makes of it.
+// The scene, and its plan.
 struct Planned {
     const SceneList& scenes;
     PlanOptions options;
@@ -46,7 +46,7 @@ struct Planned {
 
 using Drop = std::pair<std::string, std::string>;  // feature, reason
 
-// What a material asks for and does not get, over all of its primitives.
+// Returns the features that a material asks for and does not get, over all of its primitives.
 std::set<Drop> dropsOf(const Planned& planned, int material) {
     std::set<Drop> drops;
     for (const PrimitiveInputs& inputs : planned.scenes.primitives()) {
@@ -70,7 +70,7 @@ std::vector<const Key*> keysOf(const Planned& planned, int material) {
     return keys;
 }
 
-// The primitives of one material that have this key, as JSON pointers.
+// Returns JSON pointers of the primitives of one material that have this key.
 std::vector<std::string> primitivesOf(const Planned& planned, const Key& key, int material) {
     std::vector<std::string> pointers;
     for (const int index : key.primitives) {
@@ -86,8 +86,8 @@ const Case& caseOf(const Planned& planned, const Key& key) {
     return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
 }
 
-// The masks of primary surfaces of one material whose hits have this key; only its own where hits keep all
-// lobes.
+// Returns the masks of primary surfaces of one material whose hits have this key. If hits keep all lobes, it
+// is only the key itself.
 std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int material) {
     std::set<FeatureMask> masks;
     for (const int index : key.primitives) {
@@ -180,7 +180,7 @@ std::string toText(const Planned& planned, int material) {
     return text + formatFields(rows);
 }
 
-// Empty where the scene has no variants.
+// Returns an empty text if the scene has no variants.
 std::string variantsText(const Scene& scene) {
     if (scene.variants.empty()) {
         return {};
@@ -189,7 +189,7 @@ std::string variantsText(const Scene& scene) {
                          {"materials of", scene.variant.empty() ? "no variant (--variant)" : scene.variant}});
 }
 
-// Every material of that number, else of that name; all if none is asked for.
+// Returns every material with that number, else those with that name; all if none is asked for.
 Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::string& wanted) {
     const int count = static_cast<int>(scenes.materials().size());
     int number = -1;
@@ -215,7 +215,7 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
     return chosen;
 }
 
-// For a frame of the usual size, with the effects that the scene calls for.
+// Advises for a frame of the usual size, with the effects that the scene calls for.
 Result<StrategyAdvice> advise(const KnownCosts& costs, const Planned& planned, const EffectPlan& effects) {
     FrameShape shape;
     shape.effects = effects.effects;

@@ -29,7 +29,7 @@ constexpr std::string_view nameOf(AnimationPath path) {
     return "weights";
 }
 
-// Channels by what they move.
+// Counts the channels by what they move.
 std::map<AnimationPath, std::size_t> channelsOf(const Animation& animation) {
     std::map<AnimationPath, std::size_t> counts;
     for (const AnimationChannel& channel : animation.channels) {
@@ -46,7 +46,7 @@ std::size_t nodesOf(const Animation& animation) {
     return nodes.size();
 }
 
-// A mesh where a node draws it.
+// A mesh together with a node that draws it.
 struct Deformed {
     const Node* node = nullptr;
     std::size_t joints = 0;      // of its skin; 0: it follows none

@@ -1,4 +1,4 @@
-// What of a scene moves, as glint explain says it.
+// The output of glint explain about what moves in a scene.
 #pragma once
 
 #include "cli/report.h"
@@ -8,9 +8,9 @@
 
 namespace glint {
 
-// Animations, and the meshes that follow joints or morph targets.
+// Describes animations, and the meshes that follow joints or morph targets.
 Json motionToJson(const Scene& scene);
-// Empty where nothing moves.
+// Returns an empty text if nothing moves.
 std::string motionText(const Scene& scene);
 
 }  // namespace glint

@@ -30,7 +30,7 @@ std::string counted(std::size_t count, const std::string& what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-// The first names and how many more there are.
+// Returns the first names, and how many more there are.
 std::string materialsText(const PlannedScenes& planned, const std::vector<int>& materials) {
     constexpr std::size_t kShown = 3;
     std::vector<std::string> names;
@@ -94,7 +94,7 @@ std::string leavingText(const KeyCost& cost) {
                                   : fmt::format("apart it would cost {:.2f} more", cost.leavingAdds);
 }
 
-// Of a case of several keys.
+// Describes a case that has several keys.
 std::string mergedText(const PlannedScenes& planned, const CaseCost& entry) {
     const Case& shaderCase = caseOf(planned, entry.shaderId);
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
@@ -123,7 +123,7 @@ std::string mergedText(const PlannedScenes& planned, const CaseCost& entry) {
     return fmt::format("case {} {}\n{}", entry.shaderId, shaderCase.name, formatFields(rows));
 }
 
-// Cases of one key: what keeps each from sharing one.
+// Describes the cases with one key, and why each does not share a case.
 std::string singlesText(const PlannedScenes& planned, const PlanCost& cost) {
     Rows rows{{"case", "name", "nearest", "in vain", "spared", "materials"}};
     for (const CaseCost& entry : cost.cases) {

@@ -1,4 +1,5 @@
-// glint explain --plan: the cases of a plan, what each costs by the cost model, and why there are no fewer.
+// glint explain --plan: shows the cases of a plan, the cost of each by the cost model, and why there are no
+// fewer.
 #pragma once
 
 #include "cli/report.h"
@@ -17,7 +18,7 @@ struct PlannedScenes {
 
 std::string planText(const PlannedScenes& planned);
 
-// What `explain --plan --json` has beside the plan's options: docs/cli.md has the members.
+// Returns the members that `explain --plan --json` adds to the plan's options: docs/cli.md lists them.
 Json planToJson(const PlannedScenes& planned);
 
 }  // namespace glint

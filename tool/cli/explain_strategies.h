@@ -1,4 +1,5 @@
-// What `glint explain` says of strategies: what each is expected to take, of what, and which to choose.
+// The output of `glint explain` about strategies: the expected time of each, its parts, and which one to
+// choose.
 #pragma once
 
 #include "plan/strategy_choice.h"
@@ -7,7 +8,7 @@
 
 namespace glint {
 
-// A table of milliseconds, the recommended strategy and why.
+// Returns a table of milliseconds, the recommended strategy and the reason.
 std::string strategiesText(const StrategyAdvice& advice);
 
 }  // namespace glint

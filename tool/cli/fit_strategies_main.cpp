@@ -1,5 +1,5 @@
-// glint_fit_strategies: fits a device file anew to what `glint bench --calibrate` has measured. For
-// scripts/fit_strategy_costs.py, and for whoever changes the model of plan/strategy_cost.h.
+// glint_fit_strategies: fits a device file again to the measurements of `glint bench --calibrate`. It is for
+// scripts/fit_strategy_costs.py, and for changes of the model in plan/strategy_cost.h.
 #include "base/files.h"
 #include "cli/calibration_points.h"
 #include "cli/device_file.h"

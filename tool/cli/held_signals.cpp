@@ -6,7 +6,7 @@ namespace glint {
 
 namespace {
 
-// A handler reaches nothing but what is global.
+// A signal handler can only reach global data.
 volatile std::sig_atomic_t heldSignal = 0;
 
 void hold(int signal) {

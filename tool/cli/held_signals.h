@@ -1,4 +1,4 @@
-// Holding back interruptions while files are half-way.
+// Delays interruptions while files are being replaced.
 #pragma once
 
 #include <array>
@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// While it lives, SIGINT, SIGTERM and SIGHUP wait; the last that came acts afterwards, as it would have. For
-// short stretches, and one at a time: the command acts on one thread.
+// While it lives, SIGINT, SIGTERM and SIGHUP wait. Afterwards the last one that came has its usual effect.
+// Use it for short stretches, and only one at a time: the command acts on one thread.
 class HeldSignals {
 public:
     HeldSignals();

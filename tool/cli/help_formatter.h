@@ -7,8 +7,8 @@
 
 namespace glint {
 
-// CLI11's, less what the texts of options say in words: which options they need and exclude, and that lists
-// may be repeated.
+// The formatter of CLI11, without details that the texts of options already give: which options they need and
+// exclude, and that lists may be repeated.
 class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_option_opts(const CLI::Option* option) const override;

@@ -1,4 +1,4 @@
-// glint inspect: what a package holds.
+// glint inspect: shows the contents of a package.
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/inspect_package.h"

@@ -26,7 +26,7 @@ bool isOfCase(const InspectedModule& module) {
     return package::findRole(module.entry->role)->repeated == package::Repeated::ByCase;
 }
 
-// What a module may be called, apart from its shader's ID.
+// Returns the names that select a module, apart from its shader's ID.
 std::vector<std::string> namesOf(const InspectedPackage& inspected, const InspectedModule& module) {
     const std::string file = inspected.file(module);
     std::vector<std::string> names{file, file.substr(0, file.rfind('.')),

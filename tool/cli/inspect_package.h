@@ -1,4 +1,4 @@
-// What glint inspect knows of a package, and how it says that.
+// The facts about a package that glint inspect knows, and their output.
 #pragma once
 
 #include "cli/manifest.h"
@@ -34,20 +34,20 @@ struct InspectedPackage {
     std::vector<InspectedModule> modules;
     std::map<std::uint32_t, std::set<MaterialPlace>> materials;  // by shader ID
 
-    // Those that are not retired.
+    // Returns the number of cases that are not retired.
     std::size_t caseCount() const;
-    // The modules of one case.
+    // Returns the modules of one case.
     std::vector<const InspectedModule*> modulesOf(std::uint32_t shaderId) const;
     std::string materialName(const MaterialPlace& material) const;
     std::string file(const InspectedModule& module) const;
-    // Empty: none.
+    // Returns an empty text if there is none.
     std::string variantOf(std::uint32_t scene) const;
-    // Modules that share a file count once.
+    // Returns the number of files; modules that share a file count once.
     std::size_t uniqueFiles() const;
     std::uint64_t spirvBytes() const;
 };
 
-// `package` and `manifest` must outlive the result. Errors of measureSpirv().
+// `package` and `manifest` must outlive the result. Has the errors of measureSpirv().
 Result<InspectedPackage> inspectPackage(const Package& package, const Manifest& manifest, std::string folder);
 
 Json toJson(const InspectedPackage& inspected);
@@ -59,8 +59,8 @@ struct Disassembly {
     std::string text;
 };
 
-// Of the modules of a shader ID, or of those of a role, a shader's name or a file. Error "module-unknown"
-// where there is none.
+// Disassembles the modules of a shader ID, of a role, of a shader's name or of a file. Error "module-unknown"
+// if there is none.
 Result<std::vector<Disassembly>> disassembleModules(const InspectedPackage& inspected,
                                                     const std::string& wanted);
 Json toJson(const InspectedPackage& inspected, const std::vector<Disassembly>& list);

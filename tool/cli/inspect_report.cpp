@@ -95,7 +95,7 @@ std::string sceneTable(const InspectedPackage& inspected) {
     return formatTable(rows);
 }
 
-// The first few names, and how many more there are.
+// Returns the first few names, and how many more there are.
 std::string materialsText(const InspectedPackage& inspected, std::uint32_t shaderId) {
     constexpr std::size_t kShown = 3;
     const auto found = inspected.materials.find(shaderId);
@@ -124,7 +124,7 @@ std::string shaderTable(const InspectedPackage& inspected) {
     return formatTable(rows);
 }
 
-// The shader's ID or the ordering, where a role has several.
+// Returns the shader's ID or the ordering, if a role has several modules.
 std::string whichText(const InspectedModule& module) {
     const bool isCase = package::findRole(module.entry->role)->repeated == package::Repeated::ByCase;
     const std::string ordering = orderingName(module.key());

@@ -21,7 +21,7 @@ Result<Json> JsonReader::read(std::uint64_t mostBytes) {
     } catch (const Json::parse_error& error) {
         fail("", fmt::format("is no JSON: byte {} is wrong", error.byte));
     } catch (const Json::exception&) {
-        // Not of the syntax: a number that no double holds.
+        // The syntax is right, but a double can't hold the number.
         fail("", "holds a number that is too large");
     }
     return error_;

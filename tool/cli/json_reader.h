@@ -1,4 +1,5 @@
-// Reads JSON files that Glint itself writes, member by member, and says where one is not as it should be.
+// Reads JSON files that Glint itself writes, member by member, and reports the place of the first member that
+// is wrong.
 #pragma once
 
 #include "cli/report.h"
@@ -12,14 +13,14 @@
 
 namespace glint {
 
-// The first thing that is wrong stays: what is read after it are empty values.
+// Keeps the first error. Everything read after it is an empty value.
 class JsonReader {
 public:
-    // `id` and `hint` of its errors.
+    // `id` and `hint` are those of its errors.
     JsonReader(const std::filesystem::path& path, std::string id, std::string hint)
         : path_(path.string()), id_(std::move(id)), hint_(std::move(hint)) {}
 
-    // The whole file, of at most `mostBytes`. Errors "file-open", "file-read" and that of the reader.
+    // Reads the whole file, of at most `mostBytes`. Errors "file-open", "file-read" and that of the reader.
     Result<Json> read(std::uint64_t mostBytes);
 
     bool ok() const {
@@ -28,10 +29,10 @@ public:
     const Diagnostic& error() const {
         return error_;
     }
-    // `pointer`: of the place in the file; empty: all of it.
+    // `pointer` is the place in the file; if it is empty, the error is about the whole file.
     void fail(const std::string& pointer, const std::string& message);
 
-    // Null, and an error, where `object` lacks the member.
+    // Returns null, and sets an error, if `object` lacks the member.
     const Json* member(const Json& object, const std::string& pointer, const char* name);
     std::string text(const Json& object, const std::string& pointer, const char* name);
     bool flag(const Json& object, const std::string& pointer, const char* name);
@@ -40,7 +41,7 @@ public:
                   double most);
     std::vector<std::string> texts(const Json& object, const std::string& pointer, const char* name);
 
-    // Calls use(element, its pointer) until one fails.
+    // Calls use(element, its pointer) for each element until one fails.
     template <typename Use>
     void each(const Json& object, const std::string& pointer, const char* name, const Use& use) {
         const Json* list = member(object, pointer, name);

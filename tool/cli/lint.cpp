@@ -1,4 +1,4 @@
-// glint lint: shapes of SPIR-V that are slow, and budgets.
+// glint lint: finds shapes of SPIR-V that are slow, and checks budgets.
 #include "spirv/lint.h"
 
 #include "base/files.h"
@@ -72,7 +72,7 @@ void checkBudgets(const LintArguments& arguments, LintedModule& module) {
     checkBudget(arguments.rayQueries, it.rayQueries, "budget-ray-queries", "ray queries", module.findings);
 }
 
-// `severity` in place of that of the error.
+// Makes a finding of an error, with `severity` instead of the error's own.
 LintFinding toFinding(const Diagnostic& error, Severity severity) {
     return {severity, error.id, {}, error.message, error.hint};
 }
@@ -103,7 +103,7 @@ LintedModule lintModule(const LintArguments& arguments, const LintReport& report
     return module;
 }
 
-// Of a folder's modules together: a pipeline with many closest-hit shaders.
+// Judges a folder's modules together: a pipeline with many closest-hit shaders.
 std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules) {
     // Mobile linkers inline the hit shaders of a pipeline up to about this number.
     constexpr std::ptrdiff_t kMaxClosestHits = 10;
@@ -120,7 +120,7 @@ std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules) {
              "merge cases (--merge family or all), or use ray queries"}};
 }
 
-// Leaves out what -W drops, and makes errors of what it and --werror say.
+// Removes the findings that -W drops, and turns those into errors that it and --werror name.
 void judge(const DiagnosticPolicy& policy, std::vector<LintFinding>& findings) {
     std::erase_if(findings, [&](LintFinding& finding) {
         const std::optional<Severity> severity = policy.judge(finding.severity, finding.rule);
@@ -136,7 +136,7 @@ void reportFindings(const Console& console, const std::vector<LintFinding>& find
     }
 }
 
-// Lints what `path` stands for into `report`.
+// Lints the files that `path` stands for, and adds the results to `report`.
 Status lintPath(const Console& console, const LintArguments& arguments, const std::string& path,
                 LintReport& report) {
     const Result<LintFiles> files = findLintFiles(path);

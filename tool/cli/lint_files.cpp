@@ -24,8 +24,8 @@ std::string textOf(const nlohmann::ordered_json& object, const char* member) {
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// Finds every object with a "file" that is SPIR-V, wherever the manifest has it, so that strategies yet to
-// come need no change here.
+// Finds every object with a "file" that is SPIR-V, wherever it is in the manifest, so that future strategies
+// need no change here.
 class ManifestWalk {
 public:
     explicit ManifestWalk(fs::path folder) : folder_(std::move(folder)) {}

@@ -1,4 +1,4 @@
-// Which SPIR-V modules a path stands for.
+// Finds the SPIR-V modules that a path stands for.
 #pragma once
 
 #include <glint/result.h>
@@ -19,9 +19,9 @@ struct LintFiles {
     std::vector<LintFile> files;
 };
 
-// A file: itself. A package: the modules that its manifest names, each file once, in its order. Another
-// folder: every .spv below it, by name. Errors: "lint-path" (nothing there, no module in the folder),
-// "manifest-format", and those of readFile() for the manifest.
+// A file stands for itself. A package stands for the modules that its manifest names, each file once, in its
+// order. Another folder stands for every .spv below it, sorted by name. Errors: "lint-path" (nothing there,
+// no module in the folder), "manifest-format", and those of readFile() for the manifest.
 Result<LintFiles> findLintFiles(const std::filesystem::path& path);
 
 }  // namespace glint

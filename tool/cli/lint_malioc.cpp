@@ -28,7 +28,7 @@ Diagnostic maliocError(const fs::path& where, const std::string& message) {
     return makeError("malioc", where.string(), message, kHint);
 }
 
-// Null if `value` has no member of that name.
+// Returns null if `value` has no member of that name.
 const Json& member(const Json& value, const char* name) {
     static const Json null;
     const auto found = value.is_object() ? value.find(name) : value.end();
@@ -50,7 +50,7 @@ std::optional<std::int64_t> integerOf(const Json& value) {
     return std::abs(number) < kLimit ? std::optional(std::llround(number)) : std::nullopt;
 }
 
-// Of a list of {"name", "value"}.
+// Returns the value of a name in a list of {"name", "value"}.
 const Json& property(const Json& properties, std::string_view name) {
     static const Json null;
     if (properties.is_array()) {
@@ -69,7 +69,7 @@ void readCycles(const Json& performance, MaliocReport& report) {
     const Json& counts = member(longest, "cycle_count");
     if (pipelines.is_array() && counts.is_array()) {
         for (std::size_t i = 0; i < std::min(pipelines.size(), counts.size()); ++i) {
-            // A path without a bound has null.
+            // A path without a bound is null.
             if (counts[i].is_number() && pipelines[i].is_string()) {
                 const auto cycles = counts[i].get<double>();
                 report.cycles[textOf(pipelines[i])] = cycles;
@@ -86,7 +86,7 @@ void readCycles(const Json& performance, MaliocReport& report) {
     }
 }
 
-// What `arguments` print, errors included.
+// The output of the program that `arguments` run, including its errors.
 struct ProgramOutput {
     int error = 0;  // errno, where it could not be run
     int status = 0;
@@ -144,7 +144,7 @@ std::optional<fs::path> findProgram(const std::string& program) {
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find(':', begin), path.size());
         const std::string folder = path.substr(begin, end - begin);
-        // An empty entry is the current folder (POSIX, 8.3).
+        // An empty entry stands for the current folder (POSIX, 8.3).
         if (fs::path file = fs::path(folder.empty() ? "." : folder) / program; isRunnable(file)) {
             return file;
         }
@@ -185,7 +185,7 @@ Result<MaliocReport> runMalioc(const fs::path& program, const std::string& core,
     if (!core.empty()) {
         arguments.insert(arguments.end(), {"--core", core});
     }
-    // So that no file is taken for an option.
+    // The path is absolute, so that no file is taken for an option.
     arguments.push_back(fs::absolute(spirv).string());
     const ProgramOutput output = runProgram(std::move(arguments));
     if (output.error != 0) {

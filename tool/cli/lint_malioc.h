@@ -1,4 +1,4 @@
-// Arm's Mali Offline Compiler, where it is installed: cycles, registers and spilling of a compute shader.
+// Runs Arm's Mali Offline Compiler if it is installed: cycles, registers and spilling of a compute shader.
 #pragma once
 
 #include <glint/result.h>
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// What its JSON report ("performance" schema) says; nothing where a version leaves a member out.
+// The contents of its JSON report ("performance" schema). Members that a version leaves out are absent.
 struct MaliocReport {
     std::string core;                         // "Mali-G710"
     std::map<std::string, double> cycles;     // of the longest path, by pipeline
@@ -25,15 +25,15 @@ struct MaliocReport {
     std::optional<std::int64_t> spillBytes;  // of stack, a thread
 };
 
-// `program` as given where it has a slash, else the first file of that name in PATH that can be run; nothing
-// if there is none.
+// Returns `program` as given if it contains a slash, else the first executable file of that name in PATH.
+// Returns nothing if there is none.
 std::optional<std::filesystem::path> findProgram(const std::string& program);
 
-// Error "malioc": can't be run, fails (with what it says), or prints no report. An empty `core` is the
+// Error "malioc" if it can't be run, fails (with its message), or prints no report. An empty `core` means the
 // program's default.
 Result<MaliocReport> runMalioc(const std::filesystem::path& program, const std::string& core,
                                const std::filesystem::path& spirv);
-// Error "malioc" where `text` is no report; its errors, where it reports any.
+// Error "malioc" if `text` is no report, or if it reports errors.
 Result<MaliocReport> parseMalioc(std::string_view text);
 
 }  // namespace glint

@@ -93,7 +93,7 @@ std::vector<std::string> cyclesOf(const LintedModule& module) {
             it.workRegisters ? fmt::format("{}", *it.workRegisters) : "-", spills};
 }
 
-// "-" for none, so that what is there stands out.
+// Returns "-" for 0, so that other numbers stand out.
 std::string nonZero(std::size_t count) {
     return count == 0 ? "-" : fmt::format("{}", count);
 }
@@ -147,7 +147,7 @@ std::string toText(const LintReport& report) {
         if (hasNames) {
             row.push_back(module.file.name);
         }
-        // A package's files all stand in its folder.
+        // All files of a package are in its folder, so the file's name is enough.
         row.push_back(isNamed(module) ? module.file.path.filename().string() : module.file.path.string());
         std::ranges::move(countsOf(module), std::back_inserter(row));
         row.push_back(nonZero(countIn(module.findings, Severity::Error)));

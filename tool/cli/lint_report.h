@@ -1,4 +1,4 @@
-// What glint lint found, as a table and as JSON.
+// The results of glint lint, as a table and as JSON.
 #pragma once
 
 #include "cli/lint_files.h"
@@ -31,11 +31,11 @@ struct LintReport {
     std::size_t count(Severity severity) const;
 };
 
-// "file.spv: error: in main (word 214): message; hint [rule]"
+// Returns "file.spv: error: in main (word 214): message; hint [rule]".
 Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where);
 
 std::string toText(const LintReport& report);
-// docs/lint.md describes it.
+// Returns the JSON that docs/lint.md describes.
 Json toJson(const LintReport& report);
 
 }  // namespace glint

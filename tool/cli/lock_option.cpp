@@ -37,7 +37,7 @@ bool isToBeMade(const LockArguments& arguments) {
     return arguments.isWritten && !arguments.frozen && !std::filesystem::exists(arguments.file, ignored);
 }
 
-// Nothing in it where there is no file yet.
+// The result is empty if there is no file yet.
 Result<LockText> readLock(const LockArguments& arguments) {
     if (isToBeMade(arguments)) {
         if (Status possible = checkOutputFile(arguments.file); !possible) {
@@ -57,7 +57,7 @@ Result<LockText> readLock(const LockArguments& arguments) {
     return std::get<LockText>(std::move(parsed));
 }
 
-// "a; b; and 3 more" of what `describe` says of the elements.
+// Returns "a; b; and 3 more" from the texts of `describe` for the elements.
 template <typename List, typename Describe>
 std::string listSome(const List& list, const Describe& describe) {
     constexpr std::size_t kShown = 8;
@@ -72,7 +72,7 @@ std::string count(std::size_t number, std::string_view what) {
     return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
-// "clearcoat normals (Varnish)": as in the file, with a material that has it.
+// Returns "clearcoat normals (Varnish)": the key as in the file, with a material that has it.
 std::string describeKey(FeatureMask mask, const Plan& plan, const SceneList& scenes) {
     const auto key = std::ranges::find(plan.keys, mask, &Key::mask);
     const bool known = key != plan.keys.end() && !key->materials.empty();
@@ -80,7 +80,7 @@ std::string describeKey(FeatureMask mask, const Plan& plan, const SceneList& sce
            (known ? fmt::format(" ({})", scenes.materialName(key->materials.front())) : std::string());
 }
 
-// What changes in the file, and to whom it matters.
+// Reports what changes in the file, and which materials it affects.
 class Teller {
 public:
     Teller(const LockArguments& arguments, const SceneList& scenes, const Plan& plan, const LockText& before,

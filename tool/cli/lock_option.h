@@ -1,4 +1,4 @@
-// --lock FILE: shader IDs that stay the same from build to build, kept in a file.
+// --lock FILE: keeps shader IDs in a file, so that they stay the same from build to build.
 #pragma once
 
 #include "gltf/scene_list.h"
@@ -21,9 +21,9 @@ struct LockArguments {
     bool isWritten = false;  // by the command; else the file must be there
 };
 
-// --lock FILE, for commands that only read it.
+// Adds --lock FILE, for commands that only read it.
 void addLockInput(CLI::App& command, LockArguments& arguments);
-// --lock FILE, --locked and --lock-prune, for commands that write it.
+// Adds --lock FILE, --locked and --lock-prune, for commands that write it.
 void addLockOptions(CLI::App& command, LockArguments& arguments);
 
 struct LockChoice {
@@ -32,10 +32,10 @@ struct LockChoice {
     std::vector<Diagnostic> notes;
 };
 
-// Reads the file and hands its IDs to `options`; does nothing without one. Warns of keys whose IDs clash
-// ("lock-conflict"); notes tell of other IDs that change ("lock-moved") and of keys that no scene has
-// ("lock-stale"). Errors: of readFile() and checkOutputFile(); "lock-format" with the line; "lock-outdated"
-// where --locked and something would change.
+// Reads the file and stores its IDs in `options`; does nothing if no file is named. Warns of keys whose IDs
+// clash ("lock-conflict"). Notes report other IDs that change ("lock-moved") and keys that no scene has
+// ("lock-stale"). Errors: those of readFile() and checkOutputFile(); "lock-format" with the line;
+// "lock-outdated" with --locked if something would change.
 Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& scenes, PlanOptions& options);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// What manifest.json says beyond tables.bin.
+// The contents of manifest.json that tables.bin lacks.
 #pragma once
 
 #include <glint/result.h>
@@ -19,11 +19,11 @@ struct Manifest {
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
     std::string textureLod;
-    // By scene and index: of the materials that have one and that shaders list.
+    // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
 };
 
-// Errors of readFile(), and "manifest-format" where the file is not JSON or lacks a member.
+// Has the errors of readFile(), and "manifest-format" if the file is not JSON or lacks a member.
 Result<Manifest> readManifest(const std::filesystem::path& folder);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// What commands say of shader modules.
+// The output of commands about shader modules.
 #pragma once
 
 #include "cli/report.h"
@@ -13,11 +13,11 @@ namespace glint {
 // bytes, instructions, textureFetches, rayQueries, branches
 Json statisticsToJson(const SpirvStatistics& statistics);
 
-// The case's own modules by stage, as in the manifest; empty without a package, and for strategies that have
-// none.
+// Returns the case's own modules by stage, as in the manifest. Empty without a package, and for strategies
+// that have none.
 Json stagesToJson(const CompiledPackage* package, int shaderId);
 
-// Which of the modules of its role it is; empty where there is only one.
+// These name which of the modules of its role it is; empty if there is only one.
 std::string tracerName(const package::ModuleKey& key);    // "ray-query"
 std::string orderingName(const package::ModuleKey& key);  // "wave-ballot"
 

@@ -19,7 +19,7 @@ std::string animationName(const Scene& scene, std::size_t index) {
     return name.empty() ? std::to_string(index) : name;
 }
 
-// All of `text`, a number of [0, kMaxFrame].
+// Parses all of `text` as a number within [0, kMaxFrame].
 std::optional<std::int64_t> parseFrame(std::string_view text) {
     std::int64_t frame = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), frame);

@@ -1,4 +1,4 @@
-// Options of what moves: a sequence of frames, or one moment of an animation.
+// Options about movement: a sequence of frames, or one moment of an animation.
 #pragma once
 
 #include "cli/options.h"
@@ -24,21 +24,22 @@ struct MotionArguments {
 };
 void addMotionOptions(CLI::App& command, MotionArguments& arguments);
 
-// Frames of a sequence, first and last of which are rendered.
+// The frames of a sequence. The first and the last are rendered too.
 struct FrameRange {
     std::int64_t first = 0;
     std::int64_t last = 0;
 };
-// "7" or "0:23"; nothing for other text, for a last frame before the first, and above a million frames.
+// Parses "7" or "0:23". Returns nothing for other text, if the last frame is before the first, or above a
+// million frames.
 std::optional<FrameRange> parseFrames(const std::string& text);
 
-// A moment that is rendered.
+// A moment to render.
 struct Moment {
     std::int64_t frame = 0;
     double seconds = 0.0;
 };
 
-// What is played, and when it is looked at.
+// The animations that play, and the moments to render.
 struct Movement {
     std::vector<std::size_t> animations;  // into Scene::animations
     std::vector<Moment> moments;          // at least one
@@ -46,10 +47,10 @@ struct Movement {
     MotionView::Builds builds = MotionView::Builds::ByRule;
 };
 
-// Nothing where the scene is to be seen at rest. Errors: "animation-missing", "animation-unknown".
+// Returns nothing if the scene is rendered at rest. Errors: "animation-missing", "animation-unknown".
 Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene);
 
-// "out.png" and 7 give "out.0007.png".
+// Returns "out.0007.png" for "out.png" and 7.
 std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame);
 
 }  // namespace glint

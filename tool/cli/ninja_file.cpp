@@ -15,7 +15,7 @@ Diagnostic nameError(const std::string& name, const char* why) {
                      "rename it, or give another path");
 }
 
-// A path in a build statement; the manual's "Lexical syntax".
+// Escapes a path in a build statement (the manual's "Lexical syntax").
 std::string escapePath(std::string_view path) {
     std::string text;
     for (const char c : path) {
@@ -34,7 +34,7 @@ std::string escapePaths(std::span<const std::string> paths) {
     return text;
 }
 
-// The value of a variable.
+// Escapes the value of a variable.
 std::string escapeValue(std::string_view value) {
     std::string text;
     for (const char c : value) {
@@ -113,7 +113,7 @@ Result<std::string> makeNinjaFile(const NinjaPlan& plan) {
         "launcher = {}\n\n",
         kNinjaFirstWords, shellWord(plan.file), escapeValue(plan.folder), escapeValue(shellWord(plan.tool)),
         escapeValue(launcher));
-    // An output that would be the same keeps its time stamp: restat tells Ninja so.
+    // An output that would be the same keeps its time stamp, which restat tells Ninja.
     text += fmt::format(
         "rule plan\n"
         "  command = $glint{} > /dev/null\n"

@@ -1,4 +1,4 @@
-// A build file for Ninja that compiles the modules of a package one by one.
+// Writes a build file for Ninja that compiles the modules of a package one by one.
 #pragma once
 
 #include <glint/result.h>
@@ -29,14 +29,14 @@ struct NinjaPlan {
     std::string packageDepfile;        // what that run lists as read
 };
 
-// Paths and words may have any character but a line break, and paths no '|', which Ninja can't take: error
-// "ninja-name".
+// Paths and words may contain any character except a line break, and paths no '|', which Ninja can't handle:
+// error "ninja-name".
 Result<std::string> makeNinjaFile(const NinjaPlan& plan);
 
-// What a file of makeNinjaFile() begins with.
+// The beginning of each file from makeNinjaFile().
 inline constexpr std::string_view kNinjaFirstWords = "# Made by glint compile --plan-only";
 
-// A word of a POSIX shell that stands for `text`.
+// Returns `text` as one word of a POSIX shell.
 std::string shellWord(const std::string& text);
 
 }  // namespace glint

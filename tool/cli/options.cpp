@@ -17,7 +17,8 @@ namespace glint {
 
 namespace {
 
-// CLI11 shows a check's description beside the option's type; the help text says it already.
+// CLI11 shows a check's description beside the option's type. It is empty here, because the help text already
+// says it.
 CLI::Option& check(CLI::Option* option, const std::function<std::string(const std::string&)>& test) {
     option->check(CLI::Validator(test, ""));
     return *option;
@@ -35,7 +36,7 @@ std::string quoted(const std::string& text) {
     return "\"" + text + "\"";
 }
 
-// The name of a check that checks nothing: its description holds the choices, for choicesOf().
+// The name of a check that checks nothing. Its description holds the choices, for choicesOf().
 constexpr const char* kChoices = "choices";
 
 void keepChoices(CLI::Option* option, const std::vector<std::string>& choices) {
@@ -58,7 +59,7 @@ CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& ch
 constexpr FeatureMask kBaseLobes =
     bit(Feature::Unlit) | bit(Feature::SpecularGlossiness) | bit(Feature::Ior) | bit(Feature::Specular);
 
-// The lobes that one word of --hit-lobes stands for. Checked before: it is one of hitLobeChoices().
+// Returns the lobes for one word of --hit-lobes, which must be one of hitLobeChoices().
 FeatureMask lobesNamed(std::string_view word) {
     // Hits can't do without the base models.
     FeatureMask mask = bit(Feature::Unlit) | bit(Feature::SpecularGlossiness);
@@ -84,7 +85,7 @@ std::vector<std::string> hitLobeChoices() {
     return choices;
 }
 
-// Those that are not of the base, in lines that fit the help.
+// Lists the lobes that are not part of the base, in lines that fit the help.
 std::string furtherLobes() {
     constexpr std::size_t kColumns = 52;
     std::string text;
@@ -98,7 +99,7 @@ std::string furtherLobes() {
     return text;
 }
 
-// What follows the text of an option: on its last line, or on one of its own where that would be too long.
+// Appends a note to an option's text: on its last line, or on a new line if that would be too long.
 std::string withNote(const std::string& help, const std::string& note) {
     constexpr std::size_t kColumns = 58;
     const std::size_t lineBreak = help.rfind('\n');
@@ -108,10 +109,10 @@ std::string withNote(const std::string& help, const std::string& note) {
 
 constexpr MergePolicy kMergePolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
                                           MergePolicy::Auto, MergePolicy::Profile};
-// Policies that take hits.
+// The policies that use hits.
 constexpr std::string_view kTakesHits[] = {"auto", "profile"};
 
-// What stands before and behind the colon of POLICY:FILE; nothing where `text` is nothing of that kind.
+// Returns the parts before and behind the colon of POLICY:FILE, or nothing if `text` does not have that form.
 std::optional<std::pair<std::string, std::string>> splitPolicy(const std::string& text) {
     const std::size_t colon = text.find(':');
     const std::string policy = text.substr(0, colon);
@@ -122,7 +123,7 @@ std::optional<std::pair<std::string, std::string>> splitPolicy(const std::string
     return std::pair(policy, text.substr(colon + 1));
 }
 
-// A choice, or one with the file of its hits.
+// The value is a choice, or a choice with the file of its hits.
 CLI::Option& addMerge(CLI::App& command, std::string& value) {
     const std::vector<std::string> choices{"none", "family", "all", "auto", "profile"};
     CLI::Option* option =
@@ -184,13 +185,13 @@ std::vector<std::string> choicesOf(CLI::Option& option) {
     std::vector<std::string> choices;
     try {
         const CLI::Validator& known = *option.get_validator(kChoices);
-        // Inactive, it keeps out of the help, and describes itself as nothing.
+        // An inactive check is not shown in the help, and its description is empty.
         std::istringstream words(known.active(true).get_description());
         for (std::string word; words >> word;) {
             choices.push_back(word);
         }
     } catch (const CLI::OptionNotFound&) {
-        // CLI11 has no other way to ask.
+        // CLI11 has no other way to find out.
     }
     return choices;
 }

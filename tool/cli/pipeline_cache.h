@@ -1,4 +1,4 @@
-// What drivers keep of pipelines from run to run: --pipeline-cache and --pipeline-threads.
+// The pipelines that drivers keep from run to run: --pipeline-cache and --pipeline-threads.
 #pragma once
 
 #include "cli/cache_options.h"
@@ -19,31 +19,33 @@ struct PipelineArguments {
 };
 void addPipelineOptions(CLI::App& command, PipelineArguments& arguments);
 
-// --pipeline-cache, else the folder `pipelines` in that of the compiled shaders. Nothing where either is
-// "none".
+// Returns the folder of --pipeline-cache, else `pipelines` in the folder of compiled shaders. Returns nothing
+// if either is "none".
 std::optional<std::filesystem::path> pipelineCacheFolder(const PipelineArguments& arguments,
                                                          const CacheArguments& compiled);
 
-// A file for each device and driver. What is wrong with it is a note: pipelines are made without it.
+// A file for each device and driver. Problems with it are only notes, because pipelines can be made without
+// it.
 class PipelineCacheFile {
 public:
-    // Gives the device what is in its file. `console` and `context` must outlive it.
+    // Gives the device the contents of its file. `console` and `context` must outlive it.
     PipelineCacheFile(const Console& console, Context& context,
                       const std::optional<std::filesystem::path>& folder);
 
-    // Writes what the device knows by now, with what other processes wrote meanwhile, by a rename. A file
-    // that would be larger than kMostBytes is dropped instead, so that the next run starts anew.
+    // Writes the pipelines that the device has now, together with what other processes wrote meanwhile, by a
+    // rename. A file that would be larger than kMostBytes is removed instead, so that the next run starts
+    // anew.
     void save();
 
-    // Empty: none is kept.
+    // Empty if no file is kept.
     const std::filesystem::path& path() const {
         return path_;
     }
-    // Of the file when the device got it; 0: nothing was there, or nothing of use.
+    // Bytes of the file when the device got it; 0 if there was nothing usable.
     std::uint64_t loadedBytes() const {
         return loadedBytes_;
     }
-    // Of the file after save().
+    // Bytes of the file after save().
     std::uint64_t savedBytes() const {
         return savedBytes_;
     }

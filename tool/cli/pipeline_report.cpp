@@ -38,7 +38,7 @@ Json stagesToJson(VkShaderStageFlags stages) {
     return list;
 }
 
-// By the alternatives of PipelineStatistic::value.
+// The names match the alternatives of PipelineStatistic::value.
 constexpr std::array kFormats{"bool", "int64", "uint64", "float64"};
 static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
 
@@ -120,7 +120,7 @@ std::string toText(const StartReport& start) {
                        start.firstSampleMs);
 }
 
-// Names of NVIDIA's, Mesa's and AMD's drivers are among those that these words are from.
+// The words come from names that, among others, the drivers of NVIDIA, Mesa and AMD use.
 PipelineColumn columnOf(const std::string& statistic) {
     std::string name = statistic;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });

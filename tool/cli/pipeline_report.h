@@ -1,4 +1,4 @@
-// What is said of pipelines: how they were made and kept, and what the driver made of them.
+// The output about pipelines: how they were made and kept, and the driver's statistics about them.
 #pragma once
 
 #include "cli/report.h"
@@ -20,7 +20,7 @@ struct PipelineCacheReport {
     std::uint64_t savedBytes = 0;
 };
 
-// From nothing to a picture, wall clock.
+// The times from nothing to a picture, wall clock.
 struct StartReport {
     double deviceMs = 0.0;       // instance, device, the pipeline cache from its file
     double uploadMs = 0.0;       // the scene, with its acceleration structures
@@ -39,19 +39,19 @@ struct PipelineReport {
     std::optional<std::vector<PipelineStatistics>> statistics;  // absent: not asked for, or not to be had
 };
 
-// Null where there is none.
+// Returns null if there is none.
 Json cacheToJson(const PipelineReport& report);
 Json statisticsToJson(const PipelineReport& report);
-// "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it"
+// Returns "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it".
 std::string toText(const PipelineReport& report);
 
 Json toJson(const StartReport& start);
 std::string toText(const StartReport& start);
 
-// What a column of tableOf() gathers; drivers name their statistics as they like.
+// The kinds of statistics that a column of tableOf() collects. Drivers name their statistics as they like.
 enum class PipelineColumn { None, Registers, Spills, LocalMemory, Instructions, CodeBytes };
 PipelineColumn columnOf(const std::string& statistic);
-// A row an executable; a column has each statistic that columnOf() puts there.
+// Returns a table with a row for each executable. A column has each statistic that columnOf() assigns to it.
 std::string tableOf(std::span<const PipelineStatistics> pipelines);
 
 }  // namespace glint

@@ -12,7 +12,7 @@ namespace glint {
 
 namespace {
 
-// Nothing where this version of Glint lacks one of the features.
+// Returns nothing if this version of Glint lacks one of the features.
 std::optional<FeatureMask> maskOf(const std::vector<std::string>& features) {
     FeatureMask mask = 0;
     for (const std::string& name : features) {
@@ -26,7 +26,7 @@ std::optional<FeatureMask> maskOf(const std::vector<std::string>& features) {
     return mask;
 }
 
-// The first of the names, and how many more there are.
+// Returns the first names, and how many more there are.
 std::string someOf(const std::vector<std::string>& names) {
     constexpr std::size_t kShown = 5;
     const std::size_t shown = std::min(names.size(), kShown);
@@ -56,7 +56,7 @@ void checkSettings(const Profile& profile, const Profile& expected, const std::s
     warn("--hit-lobes", join(profile.hitLobes), join(expected.hitLobes));
 }
 
-// Whether a file that both have read is another one now.
+// Returns whether a file that both have read has changed.
 bool isStale(const Profile& profile, const Profile& expected) {
     return std::ranges::any_of(profile.sources, [&](const ProfileSource& source) {
         const auto now = std::ranges::find(expected.sources, source.file, &ProfileSource::file);
@@ -64,7 +64,7 @@ bool isStale(const Profile& profile, const Profile& expected) {
     });
 }
 
-// Compares the keys of the profile with those of the scene, and takes the hits over.
+// Compares the keys of the profile with those of the scene, and takes its hits over.
 void takeHits(const Profile& profile, const Profile& expected, const std::string& file, PlanChoice& choice) {
     std::vector<std::string> gone;
     std::uint64_t hits = 0;
@@ -97,7 +97,7 @@ void takeHits(const Profile& profile, const Profile& expected, const std::string
              fmt::format("counts {} keys that the scene does not have: {}", gone.size(), someOf(gone)), ""});
     }
     if (hits == 0 && !expected.keys.empty()) {
-        // Auto knows a better guess than that nothing is hit.
+        // Auto has a better estimate than that nothing is hit.
         const bool isAuto = choice.options.merge == MergePolicy::Auto;
         choice.options.hits.clear();
         choice.warnings.push_back(

@@ -1,4 +1,4 @@
-// From command line and files to the options of planning.
+// Makes the options of planning from the command line and files.
 #pragma once
 
 #include "cli/options.h"
@@ -17,8 +17,9 @@ struct PlanChoice {
     std::vector<Diagnostic> notes;
 };
 
-// The options of the command line, with the hits of its profile where it names one. Warns of keys that the
-// scene has and the profile lacks, and of a profile that was made otherwise. Errors of readProfile().
+// Returns the options of the command line, with the hits of its profile if it names one. Warns of keys that
+// the scene has and the profile lacks, and of a profile that was made with other settings. Has the errors of
+// readProfile().
 Result<PlanChoice> choosePlan(const PlanArguments& arguments, const SceneList& scenes);
 
 }  // namespace glint

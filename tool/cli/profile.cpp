@@ -17,7 +17,7 @@ constexpr const char* kFormat = "glint-profile";
 constexpr int kVersion = 1;
 // A key takes less than a kilobyte.
 constexpr std::uint64_t kMaxBytes = 1ULL << 26;
-// Sums of 2^16 keys stay below 2^64.
+// With this limit, sums of 2^16 keys stay below 2^64.
 constexpr std::uint64_t kMaxHits = 1ULL << 48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
 

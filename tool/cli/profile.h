@@ -1,4 +1,5 @@
-// Profiles: how many hits each key had, as `glint render --profile FILE` counts and `--merge profile` reads.
+// Profiles: the number of hits of each key. `glint render --profile FILE` counts them, and `--merge profile`
+// reads them.
 #pragma once
 
 #include "gltf/scene_list.h"
@@ -13,7 +14,7 @@
 
 namespace glint {
 
-// A key by the names of its features, which outlive versions of Glint that number them otherwise.
+// A key as the names of its features, which stay valid if a version of Glint numbers them differently.
 struct ProfileKey {
     std::vector<std::string> features;   // in order of bits
     std::vector<std::string> materials;  // that have the key; for people
@@ -33,13 +34,13 @@ struct Profile {
     std::vector<ProfileKey> keys;
 };
 
-// What the scenes and the plan give; without hits. Requires a plan that gives each key its own case, in the
+// Returns what scenes and plan give, without hits. Requires a plan that gives each key its own case, in the
 // order of the keys.
 Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options);
 
 std::string toText(const Profile& profile);
 
-// Errors of readFile(), and "profile-format" with the place where the file is no profile.
+// Has the errors of readFile(), and "profile-format" with the place if the file is not a profile.
 Result<Profile> readProfile(const std::filesystem::path& path);
 
 }  // namespace glint

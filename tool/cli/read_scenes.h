@@ -1,4 +1,4 @@
-// Scenes from the command line.
+// Reads the scenes of the command line.
 #pragma once
 
 #include "gltf/import.h"
@@ -11,11 +11,11 @@
 
 namespace glint {
 
-// Each file with `options`. A variant is used in the scenes that have it. Errors of importScene();
-// "variant-unknown" only where no scene has the variant.
+// Reads each file with `options`. A variant is used in the scenes that have it. Has the errors of
+// importScene(); "variant-unknown" only if no scene has the variant.
 Result<std::vector<Scene>> readScenes(std::span<const std::string> files, const ImportOptions& options);
 
-// The warnings of all.
+// Returns the warnings of all scenes.
 std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes);
 
 }  // namespace glint

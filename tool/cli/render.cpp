@@ -1,4 +1,4 @@
-// glint render: a picture of a scene through the runtime.
+// glint render: renders a picture of a scene with the runtime.
 #include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -39,7 +39,8 @@ double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// The package that is asked for, checked, or one that is made now; fills in what the report says of it.
+// Returns the package that was given, after checking it, or compiles one now. Fills in the report's members
+// about it.
 Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
                               const PlanOptions& plan, std::uint32_t tracers, const Scene& scene,
                               RenderReport& report) {
@@ -75,7 +76,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     options.positionFetch = arguments.tracing.positionFetch;
     options.shaderFloat16 = arguments.accuracy.halves();
     options.pipelineStatistics = arguments.pipelineStatistics;
-    // Of the package in a folder, if there is one. What is wrong with it is told when it is used.
+    // This only looks at the package in a folder, if there is one. Its errors are reported when it is used.
     if (!arguments.package.empty()) {
         if (const Result<Package> package = Package::load(arguments.package)) {
             options.positionFetch = package->positionFetch();
@@ -85,7 +86,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
     return Context::createHeadless(options);
 }
 
-// Null where none is asked for; fills in what the report says of it.
+// Returns null if no map is given. Fills in the report's members about it.
 Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
                                                        const RenderArguments& arguments, Context& context,
                                                        RenderReport& report) {
@@ -103,7 +104,7 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
     return environment;
 }
 
-// A number that is none says more of the scene's own numbers than of the shaders.
+// A value that is not a number points to the scene's own numbers rather than to the shaders.
 void warnOfNonFinite(const Console& console, const RenderReport& report) {
     console.report(makeWarning(
         "non-finite", report.scene,
@@ -131,7 +132,7 @@ Status settleStrategy(const Console& console, const PlanOptions& plan, const Con
     return okStatus();
 }
 
-// What follows the pictures.
+// Writes everything that comes after the pictures.
 Status writeResults(const RenderArguments& arguments, const RenderReport& report) {
     if (!arguments.coverage.empty()) {
         const DisplayImage map = coverageMap(report.paths, report.width, report.height);
@@ -142,8 +143,8 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
     return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
 }
 
-// Where the animated scene is looked at from: a camera that frames everything frames all that is to be seen
-// of it, and stands still.
+// Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
+// moment, and does not move.
 Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const RenderArguments& arguments,
                                 Scene& scene, SceneViewData& data, double aspect) {
     if (!movement) {
@@ -151,7 +152,7 @@ Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const R
     }
     Bounds bounds = Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
     if (framesEverything(scene, arguments.camera)) {
-        // Enough to see how far it goes.
+        // This many moments show well enough how far the scene moves.
         constexpr std::size_t kMostMoments = 64;
         const std::size_t step = (movement->moments.size() + kMostMoments - 1) / kMostMoments;
         for (std::size_t i = 0; i < movement->moments.size(); i += step) {
@@ -162,12 +163,12 @@ Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const R
     }
     applyPose(poseAt(scene, movement->animations, movement->moments.front().seconds), scene);
     Result<CameraChoice> camera = chooseCameraAround(scene, bounds, arguments.camera, aspect);
-    // The package does not depend on which frames are looked at.
+    // The package must not depend on which frames are rendered.
     applyPose(restPose(scene), scene);
     return camera;
 }
 
-// Everything between the scene and the files.
+// Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& given, Scene& scene, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
     RenderArguments arguments = given;
@@ -182,7 +183,7 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
         return camera.error();
     }
     report.camera = camera->name;
-    // Before the compilation, which takes longer than finding out that there is no device.
+    // This comes before the compilation, which takes longer than finding out that there is no device.
     const Clock::time_point begin = Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments);
     if (!context) {

@@ -48,7 +48,7 @@ struct RenderArguments {
     PipelineArguments pipelines;
     std::string calibration;  // a device file; empty: constants that are built in
 
-    // Whether the picture has a light that the scene lacks.
+    // Returns whether the picture gets a light that the scene lacks.
     bool addsSun(const Scene& given) const {
         const bool isUnlit = given.lights.empty() && environment.file.empty();
         return sun == "on" || (sun == "auto" && isUnlit);
@@ -56,19 +56,19 @@ struct RenderArguments {
 };
 
 package::Strategy strategyOf(const RenderArguments& arguments);
-// Absent: whichever there is.
+// Returns nothing if any tracer will do.
 std::optional<package::Tracer> tracerOf(const RenderArguments& arguments);
 
-// "960x540"; false unless it is two numbers that checkImageSize() takes.
+// Parses "960x540". Returns false unless it is two numbers that checkImageSize() accepts.
 bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
 
-// Declares what makes a picture, whatever becomes of it: the scene, size, effects, shaders, the device.
+// Declares the options that make a picture, whatever its use: the scene, size, effects, shaders, the device.
 // Returns the options that --package decides, --merge first.
 std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments);
-// Throws a CLI::ParseError where some of them disagree.
+// Throws a CLI::ParseError if some of them contradict each other.
 void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments);
 
-// Declares every option of glint render; once the line is parsed and found whole, `then` is called.
+// Declares every option of glint render. Calls `then` once the line is parsed and found valid.
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
                       const std::function<void()>& then);
 

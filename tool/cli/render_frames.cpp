@@ -30,7 +30,7 @@ public:
     FrameLoop(const FrameSetup& setup, Scene& scene, SceneViewData& data, RenderReport& report)
         : setup_(setup), scene_(scene), data_(data), report_(report), camera_(setup.camera) {}
 
-    // The scene goes to the device in the pose of the first moment.
+    // The scene is uploaded in the pose of the first moment.
     Status start(Context& context, const Package& package) {
         if (setup_.movement) {
             if (Status posed = pose(setup_.movement->moments.front()); !posed) {
@@ -75,7 +75,7 @@ public:
         return okStatus();
     }
 
-    // To a later moment; the scene is on the device.
+    // Moves the uploaded scene to a later moment.
     Status advance(const Moment& moment, FrameReport& frame) {
         const Clock::time_point begin = Clock::now();
         if (Status posed = pose(moment); !posed) {
@@ -100,7 +100,8 @@ public:
     Result<LinearImage> render(FrameReport& frame) {
         FrameOptions options = frameOptions(setup_.arguments, camera_, setup_.environment);
         options.timing = Timing::Passes;
-        // Costs time, which would count for the passes' own: only where the counts are asked for.
+        // Counting takes time that would be added to that of the passes, so it is on only if the counts are
+        // asked for.
         options.countsLight = !setup_.arguments.stats.empty();
         options.seed = report_.seed;
         const Clock::time_point begin = Clock::now();
@@ -149,7 +150,7 @@ private:
         return okStatus();
     }
 
-    // What the last sample took and counted.
+    // Collects the times and counts of the last sample.
     Status measure(FrameReport& frame) {
         Result<std::vector<PassTiming>> passes = renderer_->timings();
         if (!passes) {
@@ -213,7 +214,7 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
         if (!accepted || !*accepted) {
             return accepted ? okStatus() : Status(accepted.error());
         }
-        // A sequence keeps the exposure of its first picture: it would flicker otherwise.
+        // A sequence keeps the exposure of its first picture, because it would flicker otherwise.
         if (i == 0) {
             report.exposure = automaticExposure(*image);
             if (setup.arguments.exposure != "auto") {

@@ -1,4 +1,4 @@
-// The pictures of glint render: one, or a sequence in which the scene moves.
+// Renders the pictures of glint render: one picture, or a sequence in which the scene moves.
 #pragma once
 
 #include "cli/motion_options.h"
@@ -25,9 +25,9 @@ struct FrameSetup {
     double aspect = 1.0;                       // width / height
 };
 
-// Renders and writes every picture, and fills in what was measured. `scene` and `data`, which was made from
-// it, are left in the last pose. Before each picture is written, `accept` is asked: its error ends the work,
-// and so does its refusal, without one.
+// Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from
+// it, are left in the last pose. `accept` is called before each picture is written. Its error ends the work;
+// if it returns false, the work ends without an error.
 Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
                     SceneViewData& data, const std::function<Result<bool>()>& accept, RenderReport& report);
 

@@ -117,7 +117,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
 }
 
 Result<Package> loadTemporary(const CompiledPackage& compiled) {
-    // From here on an interruption waits until the folder is gone again: milliseconds.
+    // From here on an interruption waits until the folder is removed, which takes milliseconds.
     const HeldSignals held;
     const Result<TemporaryFolder> folder = TemporaryFolder::create();
     if (!folder) {

@@ -1,4 +1,4 @@
-// glint render --profile: the hits of every key, counted while rendering.
+// glint render --profile: counts the hits of every key while rendering.
 #pragma once
 
 #include "cli/options.h"
@@ -13,13 +13,14 @@
 
 namespace glint {
 
-// Hits are counted by case: every key needs one, in a strategy that orders hits. Chooses --merge none; throws
-// a CLI::ParseError where the command line asks for something else. Nothing to do where `file` is empty.
+// Hits are counted by case, so every key needs its own case, in a strategy that orders hits. Chooses --merge
+// none. Throws a CLI::ParseError if the command line asks for something else. Does nothing if `file` is
+// empty.
 void settleProfileOutput(const std::string& file, const std::string& package, const std::string& strategy,
                          bool mergeGiven, PlanArguments& plan);
 
-// `hits`: by shader ID of a plan with `options`, in which every key has its own case. Adds to `warnings` if
-// there is none. Errors of writeFile().
+// `hits` is indexed by shader ID of a plan with `options`, in which every key has its own case. Adds to
+// `warnings` if there are no hits. Has the errors of writeFile().
 Status writeProfile(const std::string& file, const SceneList& scenes, const PlanOptions& options,
                     std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings);
 

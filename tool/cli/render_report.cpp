@@ -73,7 +73,7 @@ std::string tableOf(const std::vector<FrameReport>& frames) {
     return formatTable(rows);
 }
 
-// The picture, or the first and last of a sequence.
+// Returns the picture, or the first and the last of a sequence.
 std::string filesOf(const RenderReport& report) {
     const std::vector<FrameReport>& frames = report.frames;
     if (frames.empty()) {
@@ -87,7 +87,7 @@ std::string milliseconds(double value) {
     return fmt::format("{:.3f} ms", value);
 }
 
-// The gates of an effect, with what each kept.
+// A gate of an effect, with the number of rays that it kept.
 struct Gate {
     const char* name;
     std::uint32_t EffectCounters::*count;

@@ -1,4 +1,4 @@
-// What glint render says of a picture: the JSON of --stats and --json, and the table.
+// The report of glint render about a picture: the JSON of --stats and --json, and the table.
 #pragma once
 
 #include "cli/memory_table.h"
@@ -71,7 +71,8 @@ struct RenderReport {
     void addHits(const FrameCounters& sample);
 };
 
-// Error "order-check" where hits are lost, doubled or misplaced; counted with RendererOptions::checkOrder.
+// Returns the error "order-check" if hits are lost, doubled or misplaced; RendererOptions::checkOrder counts
+// these.
 Status checkOrder(const RenderReport& report);
 
 Json toJson(const RenderReport& report);

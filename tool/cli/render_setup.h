@@ -1,4 +1,4 @@
-// What the arguments of glint render ask of the compiler and of the runtime.
+// Converts the arguments of glint render to settings of the compiler and of the runtime.
 #pragma once
 
 #include "cli/render_arguments.h"
@@ -11,10 +11,10 @@
 
 namespace glint {
 
-// The scene as it goes to the device, with the light that it may lack and the sizes of lights.
+// Returns the scene as it is uploaded, with the light that it may lack and the sizes of lights.
 SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene);
 
-// Of the package that is compiled where none is given. `tracers`: those of the device.
+// Returns the settings of the package that is compiled if none is given. `tracers` are those of the device.
 CompileSettings compileSettings(const RenderArguments& arguments, const PlanOptions& plan,
                                 std::uint32_t tracers, const Scene& scene);
 

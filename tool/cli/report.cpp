@@ -14,7 +14,7 @@ std::string toText(const Json& json) {
 
 namespace {
 
-// "/materials/3" of "scene.gltf#/materials/3"; empty where the place has no JSON pointer.
+// Returns "/materials/3" for "scene.gltf#/materials/3", or an empty text if the place has no JSON pointer.
 std::string pointerOf(const std::string& where) {
     const std::size_t begin = where.find("#/");
     return begin == std::string::npos ? std::string() : where.substr(begin + 1);

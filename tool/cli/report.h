@@ -1,4 +1,4 @@
-// What several commands say alike, as JSON and as text.
+// Output that several commands share, as JSON and as text.
 #pragma once
 
 #include "cli/console.h"
@@ -16,28 +16,29 @@
 
 namespace glint {
 
-// Keys keep the order in which they are written here.
+// Keys keep the order in which they are added.
 using Json = nlohmann::ordered_json;
 
-// Text that is not UTF-8 is replaced, so that the output is JSON whatever the input.
+// Text that is not UTF-8 is replaced, so that the output is always valid JSON.
 std::string toText(const Json& json);
 
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
 Json featuresToJson(FeatureMask mask);
-// The text, or null where it is empty.
+// Returns the text, or null if it is empty.
 Json textOrNull(const std::string& text);
-// [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
+// Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
 Json materialsToJson(const SceneList& scenes, std::span<const int> materials);
-// [{"feature", "reason", "materials"}]
+// Returns [{"feature", "reason", "materials"}].
 Json droppedToJson(const SceneList& scenes, const Plan& plan);
 
-// Names of the features of a mask, "a, b", or "-".
+// Returns the names of the features of a mask, "a, b", or "-".
 std::string featureList(FeatureMask mask);
-// One line for each feature and reason with the number of materials; empty if nothing was dropped.
+// Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const Plan& plan);
 
-// Error "output-folder" unless `file` could be made: its folder is there and it is no folder itself.
+// Returns the error "output-folder" unless `file` could be created: its folder must exist, and it must not be
+// a folder itself.
 Status checkOutputFile(const std::filesystem::path& file);
 
 }  // namespace glint

@@ -62,7 +62,7 @@ bool hasTriangles(const Primitive& primitive) {
     return primitive.indices.size() >= 3;
 }
 
-// For each mesh, whether a node places it.
+// Returns for each mesh whether a node places it.
 std::vector<bool> placedMeshes(const Scene& scene) {
     std::vector<bool> placed(scene.meshes.size(), false);
     for (const Node& node : scene.nodes) {
@@ -73,13 +73,13 @@ std::vector<bool> placedMeshes(const Scene& scene) {
     return placed;
 }
 
-// Of the linear part.
+// Returns the determinant of the linear part.
 double determinantOf(const Matrix4& m) {
     return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
            m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-// Whether the node's mesh follows its skin; the node's own transform then counts for nothing (glTF 2.0,
+// Returns whether the node's mesh follows its skin. The node's own transform then has no effect (glTF 2.0,
 // section 3.7.3.2).
 bool isSkinned(const Scene& scene, const Node& node) {
     const std::vector<Primitive>& primitives = scene.meshes[static_cast<std::size_t>(node.mesh)].primitives;
@@ -147,8 +147,9 @@ void poseSceneView(const Scene& scene, SceneViewData& data) {
         const Node& node = scene.nodes[data.nodes[i]];
         InstanceView& instance = data.instances[i];
         const bool skinned = isSkinned(scene, node);
-        // Of its transform only the sign counts, which says what the front of a triangle is (section 3.7.4):
-        // the instance mirrors X then, and so do its joints, before it.
+        // Only the sign of its transform's determinant counts, because it decides which side of a triangle is
+        // the front (section 3.7.4). If it is negative, the instance mirrors X, and so do its joints before
+        // that.
         const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
         instance.objectToWorld = skinned ? InstanceView{}.objectToWorld : toRows(node.world);
         data.joints[i].clear();

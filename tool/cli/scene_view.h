@@ -1,4 +1,4 @@
-// From the compiler's Scene to the runtime's SceneView.
+// Makes the runtime's SceneView from the compiler's Scene.
 #pragma once
 
 #include "gltf/scene.h"
@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// The arrays behind a SceneView. Spans point into the Scene, which must outlive it and stay as it is.
+// The arrays behind a SceneView. Spans point into the Scene, which must outlive it and must not change.
 struct SceneViewData {
     std::vector<PrimitiveView> primitives;  // sorted by (mesh, primitive)
     std::vector<InstanceView> instances;
@@ -22,7 +22,7 @@ struct SceneViewData {
     std::uint32_t packageScene = 0;  // as in SceneView
     bool moves = false;              // likewise
     std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
-    // What the spans of primitives and instances point into.
+    // The data to which the spans of primitives and instances point.
     std::vector<std::vector<MorphTargetView>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;
@@ -40,19 +40,19 @@ struct SceneViewData {
     ~SceneViewData() = default;
 };
 
-// Every mesh that a node places, with the numbers of mesh and primitive that the Scene has. Primitives
-// without a triangle are left out, and so are instances of meshes that have no other.
+// Returns every mesh that a node places, with the Scene's numbers of mesh and primitive. Primitives without a
+// triangle are left out, and so are instances of meshes that have no other primitives.
 SceneViewData makeSceneView(const Scene& scene);
 
-// Takes the pose of `scene`, from which `data` was made: instances, joints, weights and lights. Lights that
+// Applies the pose of `scene`, from which `data` was made: instances, joints, weights and lights. Lights that
 // were added after those of the scene stay.
 void poseSceneView(const Scene& scene, SceneViewData& data);
 
-// Three rows of four of a column-major matrix.
+// Returns three rows of four of a column-major matrix.
 std::array<float, 12> toRows(const Matrix4& matrix);
 
-// A warm light from the upper left, behind the default camera, for scenes without a light: 3 lux, which is a
-// few times the radiance of the default sky.
+// Returns a light for scenes without one: warm, from the upper left behind the default camera, 3 lux, which
+// is a few times the radiance of the default sky.
 LightView sunLight();
 
 }  // namespace glint

@@ -27,7 +27,7 @@ Diagnostic refusal(const std::filesystem::path& file, const std::string& pointer
                      message, hint);
 }
 
-// A number, a switch or a text as the command line has it; nothing for anything else.
+// Returns a number, a switch or a text as a word of the command line, or nothing for other values.
 std::optional<std::string> valueText(const Json& value) {
     if (value.is_string()) {
         return value.get<std::string>();
@@ -38,14 +38,14 @@ std::optional<std::string> valueText(const Json& value) {
     return value.is_number() ? std::optional(value.dump()) : std::nullopt;
 }
 
-// Null where there is none of that name.
+// Returns null if there is no command of that name.
 const CLI::App* findCommand(const CLI::App& app, std::string_view name) {
     const auto commands =
         app.get_subcommands([name](const CLI::App* command) { return command->get_name() == name; });
     return commands.empty() ? nullptr : commands.front();
 }
 
-// The value of an option as it is given, joined or apart; nothing where it is not.
+// Returns the value of an option, joined to it or as the next word; nothing if the option is not given.
 std::optional<std::string> given(std::span<const char* const> arguments, std::string_view option) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const std::string_view word = arguments[i];

@@ -23,7 +23,7 @@ std::vector<std::string> commandNames(const CLI::App& app) {
     return names;
 }
 
-// Null if there is none of that name.
+// Returns null if there is no command of that name.
 const CLI::App* findCommand(const CLI::App& app, const std::string& name) {
     for (const CLI::App* command : commandsOf(app)) {
         if (command->get_name() == name) {
@@ -47,7 +47,7 @@ std::string unknownOption(const CLI::App& app, const std::string& name) {
     return "unknown option " + name + suggestion(name, optionNames(app));
 }
 
-// The first unknown long option, and what may have been meant.
+// Returns the first unknown long option, with a suggestion.
 std::optional<std::string> findUnknownOption(const CLI::App& app, Arguments arguments) {
     for (const std::string_view argument : arguments) {
         if (argument == "--") {
@@ -61,7 +61,7 @@ std::optional<std::string> findUnknownOption(const CLI::App& app, Arguments argu
     return std::nullopt;
 }
 
-// Nothing where the list has an item between all of its commas, and no blank.
+// Returns nothing if the list has an item between all of its commas, and no blank.
 std::optional<std::string> checkList(const std::string& name, const std::string& value) {
     if (value.find_first_not_of(',') == std::string::npos) {
         return name + ": is empty";
@@ -75,7 +75,7 @@ std::optional<std::string> checkList(const std::string& name, const std::string&
     return std::nullopt;
 }
 
-// The first option whose value is empty, or is a list with an empty item.
+// Returns the first option whose value is empty, or is a list with an empty item.
 std::optional<std::string> findEmptyValue(const CLI::App& app, Arguments arguments) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const std::string_view argument = arguments[i];

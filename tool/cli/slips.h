@@ -1,4 +1,4 @@
-// Slips of the command line that CLI11 would report as something else, or not at all.
+// Finds typos in the command line that CLI11 would report as something else, or not at all.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,8 +14,9 @@ struct Slip {
     std::string message;
 };
 
-// Misspelt commands and options, and values that are empty: CLI11 would complain of what is missing because
-// of the former, and take the next argument in place of the latter. `arguments` without the program's name.
+// Finds misspelt commands and options, and empty values. For the former CLI11 would complain about something
+// that is missing; for the latter it would take the next argument as the value. `arguments` lack the
+// program's name.
 std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> arguments);
 
 }  // namespace glint

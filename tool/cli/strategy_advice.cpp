@@ -26,7 +26,7 @@ FrameShape shapeOf(const RenderArguments& arguments, std::uint32_t effects) {
             arguments.effectFrame.batch};
 }
 
-// Rounds of a scene whose cases are those of a package.
+// Returns the rounds of a scene whose cases are those of a package.
 std::vector<Round> roundsOf(const Package& package, const Scene& scene, const FrameShape& shape) {
     std::vector<CaseFeatures> cases;
     for (const package::CaseEntry& entry : package.cases()) {
@@ -67,7 +67,7 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
     for (const std::string_view name : kStrategyNames) {
         const package::Strategy strategy = strategyNamed(std::string(name));
         const bool has = package == nullptr || package->supports(strategy);
-        // hit-shaders has a pipeline, whatever the package's tracers are.
+        // hit-shaders needs ray tracing pipelines, whatever the package's tracers are.
         const std::uint32_t tracers = package::tracersOf(strategy, compiled);
         if (has && (tracers & wanted & deviceTracers) != 0) {
             names.emplace_back(name);
@@ -137,7 +137,7 @@ Result<StrategyAdvice> adviseRender(const RenderArguments& arguments, const Plan
     const FrameShape shape = shapeOf(arguments, package->shape().effects);
     std::vector<std::string> available = runnableStrategies(tracers, tracerOf(arguments), &*package);
     if (available.empty()) {
-        // What the device lacks is told when the package is used.
+        // What the device lacks is reported when the package is used.
         available = strategyNames(package->shape().strategies);
     }
     return adviseStrategy(*costs, roundsOf(*package, scene, shape), available, shape.pixels);

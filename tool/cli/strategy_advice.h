@@ -1,5 +1,5 @@
-// --strategy auto and --calibration: from scenes, a package and a device to the strategy that is expected to
-// be fastest.
+// --strategy auto and --calibration: chooses the strategy that is expected to be fastest, from scenes, a
+// package and a device.
 #pragma once
 
 #include "cli/render_arguments.h"
@@ -18,30 +18,33 @@
 
 namespace glint {
 
-// The constants that an estimate stands on.
+// The constants on which an estimate is based.
 struct KnownCosts {
     DeviceCosts device;
     bool builtIn = true;
 };
-// Of the file, else those that are built in for the type of device. Errors of readDeviceFile().
+// Returns the costs in the file, or the built-in costs for the type of device if no file is named. Has the
+// errors of readDeviceFile().
 Result<KnownCosts> knownCosts(const std::string& file, bool onCpu);
 
-// Those that can be chosen for a device with these tracers (bits), traced by `tracer` if it is given, of the
-// package if there is one. Names, in the order of kStrategyNames.
+// Returns the strategies that can be chosen for a device with these tracers (bits), traced by `tracer` if it
+// is given, and contained in the package if there is one. The names are in the order of kStrategyNames.
 std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
                                             std::optional<package::Tracer> tracer, const Package* package);
 
-// The rounds of a frame of each scene, of all of them. `plan`: of the scenes.
+// Returns the rounds of a frame of each scene, for all scenes together. `plan` is that of the scenes.
 std::vector<Round> roundsOf(const SceneList& scenes, const Plan& plan, const PlanOptions& options,
                             const FrameShape& shape);
 
-// The choice among `available`. Error "calibration-strategies" where the constants are of none of them.
+// Returns the choice among `available`. Error "calibration-strategies" if there are constants for none of
+// them.
 Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector<Round>& rounds,
                                       const std::vector<std::string>& available, double pixels);
 
-// For one scene, before anything is rendered: what the device can run, of the package that is named if there
-// is one, else of one that would be compiled by `plan`. Warns "calibration-device" where the calibration is
-// of another device. Errors of Package::load(), knownCosts(), adviseStrategy().
+// Advises for one scene, before anything is rendered. The candidates are what the device can run: of the
+// named package if there is one, else of a package that would be compiled by `plan`. Warns
+// "calibration-device" if the calibration is for another device. Has the errors of Package::load(),
+// knownCosts() and adviseStrategy().
 Result<StrategyAdvice> adviseRender(const RenderArguments& arguments, const PlanOptions& plan,
                                     const Context& context, const Scene& scene,
                                     std::vector<Diagnostic>& warnings);

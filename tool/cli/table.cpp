@@ -11,7 +11,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// Characters, not bytes, so that names in UTF-8 line up.
+// Counts characters, not bytes, so that names in UTF-8 line up.
 std::size_t displayWidth(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -1,4 +1,4 @@
-// A folder of our own that goes when we go.
+// A temporary folder that its owner removes on destruction.
 #pragma once
 
 #include <glint/result.h>
@@ -9,7 +9,8 @@ namespace glint {
 
 class TemporaryFolder {
 public:
-    // A new, empty, private folder below the system's folder for temporary files. Error "temporary-folder".
+    // Creates a new, empty, private folder below the system's folder for temporary files. Error
+    // "temporary-folder".
     static Result<TemporaryFolder> create();
 
     TemporaryFolder(TemporaryFolder&& other) noexcept;

@@ -38,7 +38,7 @@ std::vector<std::string> orderingNames() {
     return names;
 }
 
-// 0 where the text is "off"; -1 where it is neither that nor a number of steps.
+// Returns 0 if the text is "off", and -1 if it is neither that nor a number of steps.
 std::int64_t screenSteps(const std::string& text) {
     if (text == "off") {
         return 0;

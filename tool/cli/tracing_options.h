@@ -1,5 +1,5 @@
-// Options of how rays are traced and shaded: what a package is compiled for, and what a renderer chooses at
-// run time.
+// Options that decide how rays are traced and shaded: those that a package is compiled with, and those that a
+// renderer chooses at run time.
 #pragma once
 
 #include "cli/options.h"
@@ -12,10 +12,11 @@
 
 namespace glint {
 
-// The value of --strategy that a cost model replaces by one of the others (cli/strategy_advice.h).
+// The value of --strategy that a cost model replaces by a real strategy (cli/strategy_advice.h).
 inline constexpr const char* kAutoStrategy = "auto";
 
-// What a package can do. Strategies and tracers are lists for `compile`, and one value each for `render`.
+// The capabilities of a package. Strategies and tracers are lists for `compile`, and one value each for
+// `render`.
 struct TracingArguments {
     std::vector<std::string> strategies;
     std::vector<std::string> tracers;
@@ -23,22 +24,22 @@ struct TracingArguments {
     std::string hitRecord = "full";
     bool positionFetch = false;
     std::optional<StrategyAdvice> advice{};  // where a strategy was auto, which has been resolved
-    // `available`: Tracer bits among which "auto" chooses, ray queries first.
+    // `available` has the Tracer bits among which "auto" chooses, ray queries first.
     void apply(CompileSettings& settings, std::uint32_t available = package::kTracerRayQuery) const;
 };
-// --strategy and --tracer of lists, --shadows, --hit-record, --position-fetch.
+// Adds --strategy and --tracer as lists, --shadows, --hit-record, --position-fetch.
 void addTracingLists(CLI::App& command, TracingArguments& arguments);
-// --strategy and --tracer of one value, --shadows, --hit-record, --position-fetch. Returns what a package
-// decides: all but the first.
+// Adds --strategy and --tracer with one value, --shadows, --hit-record, --position-fetch. Returns the options
+// that a package decides: all but the first.
 std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& arguments);
 
-// --calibration: the device file that --strategy auto chooses by; `file` is empty without.
+// Adds --calibration: the device file by which --strategy auto chooses. `file` is empty if it is not given.
 void addCalibration(CLI::App& command, std::string& file);
 
-// Throws a CLI::ParseError where the tracer can't run the strategy.
+// Throws a CLI::ParseError if the tracer can't run the strategy.
 void checkTracingChoice(const TracingArguments& arguments);
 
-// What a renderer chooses.
+// The settings that a renderer chooses.
 struct FrameArguments {
     std::string ordering = "auto";
     std::string binning = "none";
@@ -51,7 +52,7 @@ struct FrameArguments {
 };
 void addFrameOptions(CLI::App& command, FrameArguments& arguments);
 
-// Of one name that --strategy or --tracer takes.
+// These convert a name that --strategy or --tracer takes.
 package::Strategy strategyNamed(const std::string& name);
 package::Tracer tracerNamed(const std::string& name);
 

@@ -1,4 +1,4 @@
-// What the Vulkan validation layers said.
+// The messages of the Vulkan validation layers.
 #pragma once
 
 #include "cli/console.h"
@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Error "validation" with the number of messages, each of which is reported as a warning; none without
-// --validate.
+// Returns the error "validation" with the number of messages, each of which is reported as a warning. Without
+// --validate there are none.
 Status checkValidation(const Console& console, const Context& context);
 
 }  // namespace glint

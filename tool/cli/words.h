@@ -1,4 +1,4 @@
-// Command lines as text.
+// Converts command lines to text.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,12 +9,12 @@
 
 namespace glint {
 
-// Appends a parsed option as it would be given again, a word a value.
+// Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);
 
-// In single quotes, as bash and zsh take them.
+// Returns the text in single quotes, as bash and zsh accept them.
 std::string shellQuoted(std::string_view text);
-// As a shell takes them: quoted where one has a character that means something to it.
+// Returns the words as a shell accepts them. Words with characters that have a meaning in a shell are quoted.
 std::string shellWords(const std::vector<std::string>& words);
 
 }  // namespace glint
