@@ -1,5 +1,5 @@
-// That glint bench can fail: what is wrong with a package shows as an error above its interval, what is slow
-// as time, and what is neither as a tie.
+// Checks that glint bench can fail: a fault in a package shows as an error above its interval, slow code
+// shows as time, and a change that is neither shows as a tie.
 #include "cli/command.h"
 #include "cli/planted.h"
 #include "cli/tiny_scene.h"
@@ -15,20 +15,20 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Nothing else approximates, so that what is planted is all there is besides noise.
+// Nothing else approximates, so that the planted fault is the only difference besides noise.
 const std::vector<std::string> kExactPackage{"--texture-lod", "mip0", "--alpha", "tested"};
 const std::vector<std::string> kExactFrame{"--max-roughness", "1", "--mirror-roughness", "0"};
 
 class PlantedFaults : public CommandTest {
 protected:
-    // The tiny scene with a rough, coated floor that reflects a wall with a checkerboard.
+    // Writes the tiny scene with a rough, coated floor that reflects a wall with a checkerboard.
     void SetUp() override {
         CommandTest::SetUp();
         TinyScene options;
         options.variants = true;
         const std::filesystem::path file = writeTinyScene(path(""), options);
         Json gltf = Json::parse(readText(file));
-        // Texture coordinates are the first two of each position.
+        // The texture coordinates are the first two coordinates of each position.
         Json& attributes = gltf["meshes"][1]["primitives"][0]["attributes"];
         Json view = gltf["bufferViews"]
                         [gltf["accessors"][attributes["POSITION"].get<int>()]["bufferView"].get<int>()];
@@ -60,7 +60,7 @@ protected:
         ASSERT_TRUE(written.ok());
     }
 
-    // A package of its own.
+    // Compiles a package with that name.
     void compile(const std::string& name) const {
         std::vector<std::string> arguments{"compile",    "scene.gltf", "-o",     name,
                                            "--strategy", "visibility", "--emit", "glsl"};
@@ -68,7 +68,7 @@ protected:
         const Outcome outcome = run(arguments);
         ASSERT_EQ(outcome.exit, 0) << outcome.err;
     }
-    // The points of the packages, by name.
+    // Returns the points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {
         std::vector<std::string> arguments{"bench",  "scene.gltf", "-o",      "out",   "--quick",
                                            "--size", "64x36",      "--spp",   "16",    "--only",
@@ -97,14 +97,15 @@ TEST_F(PlantedFaults, ShowAsErrorsOrAsTime) {
     for (const char* const name : {"sound", "level", "lobe", "sampling", "slow"}) {
         ASSERT_NO_FATAL_FAILURE(compile(name));
     }
-    // Textures six levels too coarse, no clearcoat, reflections that keep to the middle of their lobe.
+    // The faults are textures six levels too coarse, no clearcoat, and reflections that keep to the middle of
+    // their lobe.
     plant(path("level"), "lighting.comp", "textureLod(GLINT_SAMPLER(record), uv, 0.0)",
           "textureLod(GLINT_SAMPLER(record), uv, 6.0)");
     plant(path("lobe"), "lighting.comp", "GLINT_MATERIAL(hit).clearcoatFactor",
           "0.0 * GLINT_MATERIAL(hit).clearcoatFactor");
     plant(path("sampling"), "lighting.comp", "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {",
           "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {\n    u.y *= 0.25;");
-    // Work that no picture shows, but that no compiler can leave out.
+    // This work changes no picture, but no compiler can leave it out.
     plant(path("slow"), "compose.comp", "    RunningMean mean = RunningMean(radiance, vec3(0.0));",
           "    float work = radiance.x;\n"
           "    for (int i = 0; i < 100000; ++i) {\n        work = fract(work * 1.7 + float(i));\n    }\n"
@@ -123,7 +124,7 @@ TEST_F(PlantedFaults, ShowAsErrorsOrAsTime) {
         EXPECT_TRUE(points.at(name).at("sameImage").get<bool>()) << name;
         EXPECT_TRUE(points.at(name).at("errorTie").get<bool>()) << name;
     }
-    // Not a bound on a time: that many instructions a pixel are more than all else.
+    // This is not a bound on a time: that many instructions a pixel take more than all else.
     EXPECT_FALSE(points.at("slow").at("timeTie").get<bool>()) << points.at("slow").at("ratio").dump(1);
     EXPECT_GT(points.at("slow").at("ratio").at("low").get<double>(), 1.0);
 }

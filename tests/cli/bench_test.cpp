@@ -1,4 +1,4 @@
-// glint bench on the tiny scene: its files, that it repeats itself, and what it refuses.
+// Tests glint bench on the tiny scene: its files, that it repeats itself, and what it refuses.
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 
@@ -49,7 +49,7 @@ TEST_F(Bench, WritesWhatItMeasured) {
         EXPECT_TRUE(std::filesystem::exists(path("out/" + one.at("image").get<std::string>())));
         EXPECT_TRUE(std::filesystem::exists(path("out/" + one.at("errorImage").get<std::string>())));
     }
-    // How hits are shaded changes nothing of the picture; the number of samples does.
+    // How hits are shaded does not change the picture; the number of samples does.
     for (const char* const strategy : {"uber", "sorted-uber", "hit-shaders"}) {
         const Json* const one = point(report, std::string("strategy ") + strategy);
         ASSERT_NE(one, nullptr);
@@ -63,11 +63,11 @@ TEST_F(Bench, WritesWhatItMeasured) {
     EXPECT_EQ(report.at("strategies").at("rows").size(), 4U);
     for (const Json& row : report.at("strategies").at("rows")) {
         EXPECT_GT(row.at("hits").at("low"), 0.0) << row;
-        // What all are compared with is like itself.
+        // The strategy with which all are compared equals itself.
         EXPECT_TRUE(row.at("point") != 0 || row.at("hitRatio").at("high") == 1.0) << row;
     }
 
-    // The front is in order, and nothing that was measured beats it by more than a tie.
+    // The front is in order, and no measured point beats it by more than a tie.
     double error = 1e300;
     double time = 0.0;
     for (const Json& id : report.at("front")) {
@@ -116,11 +116,11 @@ TEST_F(Bench, RepeatsItsErrorsAndKeepsItsReference) {
     for (std::size_t i = 0; i < first.at("points").size(); ++i) {
         EXPECT_EQ(first.at("points")[i].at("error"), second.at("points")[i].at("error"));
     }
-    // Another view is another truth.
+    // Another view has another reference.
     std::vector<std::string> other = options;
     other.insert(other.end(), {"--sun", "off"});
     EXPECT_FALSE(bench(other).json().at("reference").at("cached").get<bool>());
-    // One that is asked to be more certain goes on from what is kept.
+    // A reference that must be more accurate continues from what is stored.
     other = options;
     other[1] = "spp";
     std::vector<std::string> arguments{"bench",   scene_,

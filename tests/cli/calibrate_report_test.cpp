@@ -1,4 +1,4 @@
-// What a calibration concludes from its measurements.
+// Tests what a calibration concludes from its measurements.
 #include "cli/calibrate_report.h"
 
 #include "cli/calibrate_measure.h"
@@ -41,7 +41,7 @@ TEST(CalibrationEntry, NamesTheFastest) {
 }
 
 TEST(CalibrationEntry, DoesNotCountWrongPictures) {
-    // 1 in 1000 is let pass, as a ray that grazes an edge may differ; more is wrong.
+    // 1 in 1000 is accepted, because a ray that grazes an edge may differ; more is wrong.
     const CalibrationEntry right = entryOf({measured("uber", 1.0), measured("visibility", 0.5, 100)});
     EXPECT_EQ(right.fastest, Names{"visibility"});
     const CalibrationEntry wrong = entryOf({measured("uber", 1.0), measured("visibility", 0.5, 101)});
@@ -73,7 +73,7 @@ TEST(CalibrationPicture, HasAsManyPixelsAsRays) {
         EXPECT_EQ(width, 2 * height);
         EXPECT_EQ(height % 8, 0U);
         EXPECT_LE(width, 16384U);
-        // Within half a tile of the height.
+        // The height is rounded to half a tile.
         const double exact = static_cast<double>(rays);
         EXPECT_NEAR(static_cast<double>(width) * height, exact, exact * 0.19);
     }

@@ -1,4 +1,4 @@
-// glint bench --calibrate on few cases and tiny pictures: its file, and what it refuses.
+// Tests glint bench --calibrate with few cases and tiny pictures: its file, and what it refuses.
 #include "cli/command.h"
 #include "cli/schemas.h"
 
@@ -72,7 +72,7 @@ TEST_F(Calibrate, WritesWhatItMeasured) {
         EXPECT_TRUE(std::filesystem::exists(path("pictures/" + std::to_string(cases) + "-cheap-" +
                                                  point.at("coherence").get<std::string>() + ".png")));
     }
-    // Neighbours of a mirror are alike, others as chance has it.
+    // Neighbours from a mirror are alike; others are random.
     EXPECT_GT(report.at("points")[2].at("coherentShare"), 0.5);
     EXPECT_LT(report.at("points")[3].at("coherentShare"), 0.1);
 }
@@ -92,7 +92,7 @@ TEST_F(Calibrate, ShadesWithLightsAndTheirShadows) {
         EXPECT_EQ(one.at("difference").at("differing"), 0) << one;
         EXPECT_GT(one.at("split").at("shadow"), 0.0) << one;
     }
-    // 1 : 1/2 in random places.
+    // The shares are 1 : 1/2, in random places.
     const double first = point.at("work")[0].at("share");
     EXPECT_NEAR(std::max(first, 1.0 - first), 2.0 / 3.0, 0.06);
 }

@@ -29,7 +29,8 @@ struct Extents {
     }
 };
 
-// The box's corners in the image, whose edges are at -1 and 1. Infinite where one is behind the camera.
+// Returns the box's corners in the image, whose edges are at -1 and 1. The result is infinite if a corner is
+// behind the camera.
 Extents project(const CameraView& camera, const Bounds& box) {
     const Double3 forward = widen(camera.forward);
     const Double3 up = widen(camera.up);
@@ -72,7 +73,8 @@ TEST(FramingCamera, FillsTheImageWithTheBox) {
             expectFrame(camera);
             EXPECT_FALSE(camera.orthographic);
             EXPECT_NEAR(camera.halfWidth / camera.halfHeight, aspect, 1e-5);
-            // The margin, from both edges of one direction, and no less from those of the other.
+            // The margin is kept from both edges of one direction, and at least as much from those of the
+            // other.
             constexpr double kInside = 1.0 / 1.05;
             const Extents seen = project(camera, box);
             EXPECT_NEAR(seen.reach(), kInside, 2e-3);
@@ -133,7 +135,7 @@ Scene sceneWithCameras() {
     perspective.yfov = 1.0;
     perspective.znear = 0.1;
     perspective.zfar = 50.0;
-    // Turned by 90° about Y, so that -Z becomes -X, scaled by 2, at (1, 2, 3).
+    // The node is turned by 90° about Y, so that -Z becomes -X, scaled by 2, at (1, 2, 3).
     perspective.world = {0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 1, 2, 3, 1};
     Camera orthographic;
     orthographic.orthographic = true;

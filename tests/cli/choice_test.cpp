@@ -1,4 +1,4 @@
-// Options that contradict each other, and lists that are no lists.
+// Options that contradict each other, and malformed lists.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 

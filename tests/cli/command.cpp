@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// In the child process: only calls that are safe between fork and exec of a single-threaded parent.
+// Runs in the child process, with only those calls that are safe between fork and exec of a single-threaded
+// parent.
 [[noreturn]] void execute(std::vector<std::string> words,
                           const std::vector<std::pair<std::string, std::string>>& variables,
                           const fs::path& folder, std::uint64_t memoryLimit, int outFile, int errFile) {
@@ -33,7 +34,7 @@ namespace {
     if (memoryLimit != 0 && setrlimit(RLIMIT_AS, &limit) != 0) {
         _exit(kCantRun);
     }
-    // Not the user's, so that tests depend on nothing outside of the build.
+    // The cache is not the user's, so that tests depend on nothing outside of the build.
     setenv("GLINT_CACHE", GLINT_BINARY_DIR "/tests/cache", 1);
     for (const auto& [name, value] : variables) {
         setenv(name.c_str(), value.c_str(), 1);
@@ -53,13 +54,13 @@ int openForWriting(const fs::path& path) {
     return open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
 }
 
-// -1 where it was ended.
+// Returns -1 if the process was killed.
 int waitFor(pid_t child) {
     int status = 0;
     return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// Everything until the other side of the terminal is closed.
+// Reads until the other side of the terminal is closed.
 std::string readTerminal(int terminal) {
     std::string text;
     std::array<char, 4096> part{};
@@ -69,7 +70,8 @@ std::string readTerminal(int terminal) {
     return text;
 }
 
-// Every diagnostic has an id of the table, with a severity that it says. `raised`: warnings may be errors.
+// Expects that every diagnostic has an id of the table, with a severity that the table lists. `raised` says
+// that warnings may be errors.
 void expectKnownDiagnostics(const std::string& err, bool raised) {
     static const std::regex kDiagnostic(R"((?:^|: )(error|warning|note): .*\[([a-z0-9-]+)\]$)");
     std::istringstream lines(err);
@@ -144,7 +146,7 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments,
 
 Outcome CommandTest::runProgram(const std::vector<std::string>& words,
                                 const std::vector<std::pair<std::string, std::string>>& variables) const {
-    // Beside the folder, which a test may want to list.
+    // The files lie beside the folder, because a test may want to list the folder.
     const fs::path out = folder_.string() + ".out";
     const fs::path err = folder_.string() + ".err";
     const pid_t child = fork();
@@ -171,7 +173,8 @@ Outcome CommandTest::runOnTerminal(const std::vector<std::string>& arguments,
         ADD_FAILURE() << "there is no pseudo terminal";
         return outcome;
     }
-    // The child's side stays open here until the child has it, or the terminal would be closed before.
+    // The child's side stays open here until the child has it; otherwise the terminal would be closed too
+    // early.
     const int errFile = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
     const pid_t child = fork();
     if (child == 0) {

@@ -1,4 +1,4 @@
-// Runs the built `glint` and captures what it says.
+// Runs the built `glint` and captures its output.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ struct Outcome {
     std::string out;
     std::string err;
 
-    // Standard output as JSON; a discarded value and a failed test where it is none.
+    // Parses standard output as JSON. If it is not JSON, the test fails and the value is discarded.
     nlohmann::json json() const;
 };
 
-// Each test has an empty folder of its own, which goes at the end.
+// Gives each test an empty folder, which is removed at the end.
 class CommandTest : public ::testing::Test {
 protected:
     void SetUp() override;
@@ -31,30 +31,31 @@ protected:
         return folder_ / name;
     }
     // Runs `glint` in the test's folder, with these variables added to the environment and a cache of the
-    // build's own. Fails the test where a diagnostic has an id or a severity that the table does not have.
+    // build's own. Fails the test if a diagnostic has an id or a severity that the table lacks.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
-    // Likewise, with a terminal as its standard error; Outcome::err is what that was sent, with "\r\n".
+    // Does the same with a terminal as standard error; Outcome::err is what the terminal received, with
+    // "\r\n".
     Outcome runOnTerminal(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
-    // Runs another program, found on the PATH, likewise.
+    // Runs another program, found on the PATH, in the same way.
     Outcome runProgram(const std::vector<std::string>& words,
                        const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
-    // Paths of all files below `folder`, relative and sorted.
+    // Returns the paths of all files below `folder`, relative and sorted.
     static std::vector<std::string> filesBelow(const std::filesystem::path& folder);
 
-    // Of the command's address space, in bytes; 0: none.
+    // Limit of the command's address space in bytes; 0 for none.
     std::uint64_t memoryLimit_ = 0;
 
 private:
     std::filesystem::path folder_;
 };
 
-// The path of `glint`.
+// Returns the path of `glint`.
 std::string commandPath();
 std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
-// Whether `part` stands in `text`.
+// Returns whether `text` contains `part`.
 bool has(const std::string& text, const std::string& part);
 
 }  // namespace glint::testing

@@ -50,8 +50,8 @@ TEST_F(CompareCommand, SaysHowFarAndWhere) {
     EXPECT_NE(text.out.find("0.25 at (2, 1) green"), std::string::npos) << text.out;
 }
 
-// Under the exposure that brings the reference to mid-grey, an image of half its radiance looks the same
-// whatever that radiance is; a PNG is shown already and keeps its own.
+// With the exposure that brings the reference to mid-grey, an image of half its radiance looks the same
+// whatever that radiance is. A PNG is already in display form and keeps its own exposure.
 TEST_F(CompareCommand, FlipIsOfWhatADisplayShows) {
     const auto flip = [this](const std::string& image, const std::string& reference) {
         return run({"compare", image, reference, "--json"}).json().at("flip").get<double>();
@@ -66,7 +66,7 @@ TEST_F(CompareCommand, FlipIsOfWhatADisplayShows) {
 
     write("shown.png", grey);
     EXPECT_EQ(flip("shown.png", "shown.png"), 0.0);
-    // White beyond the display's range against mid-grey.
+    // This compares white beyond the display's range with mid-grey.
     EXPECT_GT(flip("5000.exr", "shown.png"), 0.1);
 }
 

@@ -1,4 +1,4 @@
-// The scripts of `glint completion`, in the shells that are there.
+// Tests the scripts of `glint completion` in the installed shells.
 #include "cli/command.h"
 #include "cli/shell.h"
 
@@ -25,13 +25,13 @@ protected:
         }
     }
 
-    // Runs `script` by a shell in the test's folder; what it says on either stream is in Outcome::out.
+    // Runs `script` with a shell in the test's folder. Both output streams are in Outcome::out.
     Outcome shell(const std::string& name, const std::string& script) const {
         writeText(path("script"), script);
         return runShell(path(""), name + " ./script");
     }
 
-    // What bash offers for the last of these words, as it splits them.
+    // Returns what bash offers for the last of these words, as it splits them.
     std::string bash(const std::vector<std::string>& words) const {
         std::string script = "source ./glint.bash\nCOMP_WORDS=(glint";
         for (const std::string& word : words) {
@@ -49,7 +49,7 @@ std::vector<std::string> words(const std::string& line) {
     return {std::istream_iterator<std::string>(stream), {}};
 }
 
-// Long options that the help of a command lists, in its order.
+// Returns the long options that the help of a command lists, in its order.
 std::vector<std::string> optionsOf(const std::string& help) {
     std::vector<std::string> options;
     std::istringstream lines(help);

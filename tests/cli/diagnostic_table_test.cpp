@@ -1,4 +1,4 @@
-// The table of diagnostics against the sources that make them, and against its document.
+// Compares the table of diagnostics with the sources that make them, and with its document.
 #include "cli/diagnostic_table.h"
 
 #include <gtest/gtest.h>
@@ -24,19 +24,19 @@ std::string readText(const fs::path& path) {
     return text.str();
 }
 
-// Without comments, in which ids are only named.
+// Removes comments, because they only mention ids.
 std::string withoutComments(const std::string& source) {
     std::string text;
     std::istringstream lines(source);
     for (std::string line; std::getline(lines, line);) {
         const std::size_t comment = line.find("// ");
-        // A // within a literal is that of an address, which no blank follows.
+        // A // within a literal is part of an address, and no blank follows it.
         text += line.substr(0, comment) + "\n";
     }
     return text;
 }
 
-// Of all sources that make diagnostics, but for the table itself.
+// Returns all sources that make diagnostics, except the table itself.
 const std::vector<std::string>& sources() {
     static const std::vector<std::string> kSources = [] {
         std::vector<std::string> texts;
@@ -54,7 +54,7 @@ const std::vector<std::string>& sources() {
     return kSources;
 }
 
-// What makes a diagnostic, up to the opening quote of its id, and the severity that it gives it.
+// The code that makes a diagnostic, up to the opening quote of its id, and the severity that it gives.
 struct Maker {
     const char* pattern;
     std::uint8_t severity;
@@ -70,7 +70,7 @@ constexpr Maker kMakers[] = {
     {R"(Severity::Note,\s*)", kNote},
 };
 
-// The ids of literals at the places above, with the severities that they are made with.
+// Returns the ids in literals at the places above, with their severities.
 const std::map<std::string, std::uint8_t>& madeIds() {
     static const std::map<std::string, std::uint8_t> kIds = [] {
         std::map<std::string, std::uint8_t> ids;
@@ -106,7 +106,7 @@ TEST(DiagnosticTable, MeaningsAreSentences) {
 }
 
 TEST(DiagnosticTable, HasEveryIdThatTheSourcesMake) {
-    // Fewer would mean that the patterns no longer find them.
+    // With fewer, the patterns would no longer find them.
     EXPECT_GT(madeIds().size(), 150U);
     for (const auto& [id, severities] : madeIds()) {
         const DiagnosticInfo* const info = findDiagnostic(id);
@@ -119,8 +119,8 @@ TEST(DiagnosticTable, HasEveryIdThatTheSourcesMake) {
     }
 }
 
-// An id that goes a longer way to its diagnostic is at least a literal of its own somewhere; only one with a
-// hyphen says by itself what it is.
+// If an id reaches its diagnostic indirectly, there must at least be a literal for it somewhere. Only an id
+// with a hyphen can be recognised as one.
 TEST(DiagnosticTable, HasNoIdThatNothingMakes) {
     for (const DiagnosticInfo& info : diagnosticTable()) {
         const std::string id(info.id);

@@ -1,4 +1,4 @@
-// What becomes of diagnostics: -W, --werror, --quiet, --verbose, --color.
+// Tests how diagnostics are reported: -W, --werror, --quiet, --verbose, --color.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -9,7 +9,7 @@
 namespace glint::testing {
 namespace {
 
-// The scene brings one warning, "extension-ignored".
+// The scene causes one warning, "extension-ignored".
 class Diagnostics : public CommandTest {
 protected:
     void SetUp() override {

@@ -1,4 +1,4 @@
-// How shaders of two packages belong together, without packages.
+// Tests which shaders of two packages belong together, without packages.
 #include "cli/diff_compare.h"
 
 #include <gtest/gtest.h>
@@ -69,14 +69,14 @@ TEST(DiffCompare, SeveralCasesWithSeveral) {
     EXPECT_EQ(only(diff).kind, Kind::Regrouped);
     EXPECT_EQ(only(diff).before, (std::vector<int>{0, 1}));
     EXPECT_EQ(only(diff).after, (std::vector<int>{1, 4}));
-    // Those of ID 1 are compared; 0 is gone and 4 is new. By ID.
+    // Those with ID 1 are compared; 0 is gone and 4 is new. They are sorted by ID.
     ASSERT_EQ(diff.modules.size(), 3U);
     EXPECT_EQ(diff.modules[0].after, nullptr);
     EXPECT_EQ(diff.modules[1].idBefore, diff.modules[1].idAfter);
     EXPECT_EQ(diff.modules[2].before, nullptr);
 }
 
-// A chain of common keys is one group; cases without are added and removed.
+// A chain of common keys is one group. Cases without common keys are added or removed.
 TEST(DiffCompare, GroupsAreWhatKeysConnect) {
     const DiffPackage before = makePackage({{0, makeCase("A", {{"a"}}, 1)},
                                             {1, makeCase("B", {{"b"}, {"c"}}, 2)},

@@ -1,4 +1,4 @@
-// glint diff: what it finds between packages.
+// Tests what glint diff finds between packages.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Those whose member "change" is this.
+// Returns the elements whose member "change" has this value.
 std::vector<Json> changesOf(const Json& list, const std::string& change) {
     std::vector<Json> found;
     std::ranges::copy_if(list, std::back_inserter(found),
@@ -65,7 +65,7 @@ TEST_F(Diff, MergedAndSplitShaders) {
     EXPECT_EQ(change.at("after")[0].at("name"), "AllMaterials");
     EXPECT_EQ(change.at("after")[0].at("keys"), 2);
     EXPECT_TRUE(change.at("keysAdded").empty());
-    // ID 0 goes on with other code, ID 1 is gone; the floor had ID 1.
+    // ID 0 stays with other code, and ID 1 is gone; the floor had ID 1.
     const std::vector<Json> changed = changesOf(merged.at("modules"), "changed");
     const auto ofCase =
         std::ranges::find_if(changed, [](const Json& e) { return e.at("role") == "ShadeCase"; });
@@ -137,7 +137,7 @@ TEST_F(Diff, ValuesChangeTheTablesOnly) {
     EXPECT_TRUE(text.out.starts_with("tables.bin differs\nthe same: 2 shaders")) << text.out;
 }
 
-// Materials are known by name, not by their places.
+// Materials are identified by name, not by their places.
 TEST_F(Diff, InsertedMaterialsMoveNoOthers) {
     compile("a", {});
     Json gltf = Json::parse(readText(scene_));

@@ -65,7 +65,7 @@ TEST_F(Disassembly, AsTextIsAssemblyOfTheSameModule) {
     const Outcome assembled =
         runShell(path(""), "spirv-as --preserve-numeric-ids --target-env vulkan1.2 text.spvasm -o again.spv");
     ASSERT_EQ(assembled.exit, 0) << assembled.out;
-    // All but the first five words, which name the assembler.
+    // The first five words name the assembler, so they are left out.
     constexpr std::size_t kHeaderBytes = 20;
     EXPECT_EQ(readText(path("again.spv")).substr(kHeaderBytes),
               readText(path("package/gbuffer.frag.spv")).substr(kHeaderBytes));

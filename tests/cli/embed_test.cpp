@@ -1,4 +1,4 @@
-// glint compile --embed: a package as a C++ source.
+// Tests glint compile --embed: a package as a C++ source.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -35,7 +35,7 @@ TEST_F(Embed, ComesWithTheFolder) {
     EXPECT_FALSE(std::filesystem::exists(path("scene.glint/a.cpp")));
 }
 
-// Nothing has to be compiled for it the second time; it is made again all the same.
+// The second time nothing has to be compiled, but the file is written again.
 TEST_F(Embed, IsMadeAgainWhereItIsGone) {
     const std::vector<std::string> command{"compile", "scene.gltf", "-o", "scene.glint", "--embed", "a.cpp"};
     ASSERT_EQ(run(command).exit, 0);

@@ -26,7 +26,7 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run(arguments);
     }
-    // A map of 1 but for one pixel.
+    // Writes a map with the value 1 in all pixels except one.
     void writeExr(const std::string& name, std::uint32_t width, std::uint32_t height, float odd) const {
         LinearImage image{width, height, {}};
         image.pixels.assign(std::size_t{width} * height, {1.0F, 1.0F, 1.0F, 1.0F});

@@ -1,4 +1,4 @@
-// explain --plan: what it prints for people, and that its JSON agrees with what a package holds.
+// Tests explain --plan: what it prints for people, and that its JSON agrees with the package.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -42,7 +42,7 @@ TEST_F(ExplainPlan, JsonHasEveryCaseAndItsCost) {
     EXPECT_EQ(shared.at("estimate").at("inputBranches"), 1);
     EXPECT_TRUE(shared.at("nearest").is_null());
     EXPECT_EQ(shared.at("spared"), plan.at("caseCost"));
-    // Lit code that unlit hits wait for costs more than the branch on normals.
+    // Waiting for the lit code costs unlit hits more than the branch on normals.
     EXPECT_EQ(shared.at("branches")[0].at("feature"), "unlit");
     EXPECT_GT(shared.at("inVain").get<double>(), shared.at("spared").get<double>());
     for (const Json& key : shared.at("keys")) {

@@ -1,4 +1,4 @@
-// Packages whose modules Ninja compiles one by one.
+// Tests packages whose modules Ninja compiles one by one.
 #include "cli/command.h"
 #include "cli/many_keys.h"
 #include "cli/tiny_scene.h"
@@ -35,7 +35,7 @@ protected:
     Outcome ninja(const std::string& plan = "plan") const {
         return runProgram({"ninja", "-f", plan + "/build.ninja"}, {{"NINJA_STATUS", ""}});
     }
-    // What Ninja compiles and makes now; both below 0 where it fails.
+    // What Ninja compiles and makes now; both are below 0 if it fails.
     struct Work {
         int modules = -1;
         int packages = -1;
@@ -110,20 +110,20 @@ TEST_F(Farm, CompilesOnlyWhatChanged) {
     ASSERT_GT(all, 4);
     EXPECT_EQ(work().packages, 0);
 
-    // Ninja plans again by itself. A value is in the tables alone.
+    // Ninja makes the plan again by itself. A value is only in the tables.
     writeManyKeys(path(""), kFourLobes, 0.25);
     const Work value = work();
     EXPECT_EQ(value.modules, 0);
     EXPECT_EQ(value.packages, 1);
 
-    // A new combination of features that the scene has anyway.
+    // This is a new combination of features that the scene already has.
     writeManyKeys(path(""), {{"clearcoat", "sheen"}, {"clearcoat"}, {"sheen"}, {"textured"}}, 0.25);
     EXPECT_EQ(work().modules, 1);
     EXPECT_TRUE(has(ninja().out, "no work to do"));
     ASSERT_EQ(compile({"scene.gltf"}, {"-o", "whole", "--merge", "none", "--strategy", "visibility"}).exit,
               0);
     EXPECT_TRUE(contentsOf(path("whole")) == contentsOf(path("parts")));
-    // What the plan has no longer is gone.
+    // Files that are no longer in the plan are removed.
     EXPECT_EQ(filesOf("plan", ".module").size(), static_cast<std::size_t>(all));
     EXPECT_EQ(filesOf("plan", ".glsl").size(), static_cast<std::size_t>(all));
 }

@@ -1,5 +1,5 @@
-// Full disks, failing calls and interruptions, at every call by which the command changes a file: what was
-// there stays whole, or the new is there.
+// Full disks, failing calls and interruptions at every call by which the command changes a file: afterwards
+// either the old files or the new ones are there as a whole.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files below a folder, by their names; folders have no contents.
+// The files below a folder, by their names. Folders have no contents.
 using Contents = std::map<std::string, std::string>;
 
-// Paths that differ between two states of a folder: easier to read than all that is the same.
+// Returns the paths that differ between two states of a folder, which is easier to read than everything.
 std::string difference(const Contents& a, const Contents& b) {
     std::string names;
     for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
@@ -33,17 +33,17 @@ std::string difference(const Contents& a, const Contents& b) {
     return names;
 }
 
-// What a command does under a fault. Its files lie in "work"; what it reads and the cache lie elsewhere.
+// Runs a command under a fault. Its files lie in "work"; its inputs and the cache lie elsewhere.
 class Faults : public CommandTest {
 protected:
     void SetUp() override {
         CommandTest::SetUp();
         fs::create_directories(path("work"));
     }
-    // Runs with the call number `at` below `folder` struck; 0: none.
+    // Runs with a fault at the call number `at` below `folder`; 0 for no fault.
     Outcome runWithFault(const std::vector<std::string>& arguments, const std::string& kind, int at,
                          const std::string& folder = "work") const {
-        // The libraries of sanitized tests stay.
+        // The libraries of sanitized tests stay preloaded.
         const char* preloaded = std::getenv("LD_PRELOAD");
         return run(arguments, {{"LD_PRELOAD",
                                 std::string(preloaded == nullptr ? "" : preloaded) + ":" GLINT_WRITE_FAULTS},
@@ -52,7 +52,7 @@ protected:
                                {"GLINT_FAULT_AT", std::to_string(at)},
                                {"GLINT_FAULT_COUNT", path("count").string()}});
     }
-    // How many calls a fault can strike; the command must do all its work.
+    // Returns how many calls a fault can strike. The command must do all its work.
     int countCalls(const std::vector<std::string>& arguments, const std::string& kind,
                    const std::string& folder = "work") const {
         const Outcome outcome = runWithFault(arguments, kind, 0, folder);
@@ -85,7 +85,7 @@ bool saysWhy(const Outcome& outcome) {
             outcome.err.find("Input/output error") != std::string::npos);
 }
 
-// glint compile with everything that it can write, over what an earlier run wrote of another scene.
+// glint compile with everything that it can write, over the output of an earlier run for another scene.
 class CompileFaults : public Faults {
 protected:
     void SetUp() override {
@@ -96,7 +96,7 @@ protected:
         ASSERT_EQ(first.exit, 0) << first.err;
         old_ = contents();
         keep("old");
-        // A clearcoat: another shader, another key for the lock file.
+        // A clearcoat gives another shader, and another key for the lock file.
         writeTinyScene(path("scenes"), {.variants = true});
         const Outcome second = run(command("second.o"));
         ASSERT_EQ(second.exit, 0) << second.err;
@@ -137,8 +137,8 @@ protected:
     bool isNew() const {
         return contents() == new_;
     }
-    // Each file is the old or the new one, and those of the package are of one kind; folders of runs that
-    // were killed, and files that they left, do not count.
+    // Expects that each file is the old or the new one, and that those of the package belong together.
+    // Folders and files that killed runs left do not count.
     void expectWhole() const {
         bool isOldPackage = true;
         bool isNewPackage = true;
@@ -176,7 +176,7 @@ TEST_F(CompileFaults, FullDiskLeavesEverythingAsItWas) {
     for (int at = 1; at <= calls; ++at) {
         restore("old");
         const Outcome outcome = runWithFault(command(), "full", at);
-        // Linking files that did not change may fail: they are copied, or written anew.
+        // Linking unchanged files may fail: they are then copied, or written again.
         ASSERT_TRUE(outcome.exit == 0 ? isNew() : isOld())
             << at << ": " << outcome.exit << outcome.err << difference(old_, contents());
         if (outcome.exit != 0) {
@@ -185,7 +185,7 @@ TEST_F(CompileFaults, FullDiskLeavesEverythingAsItWas) {
             ASSERT_TRUE(saysWhy(outcome)) << at << ": " << outcome.err;
         }
     }
-    // No call that takes space may go unnoticed, or the fault does not bite.
+    // Every failure of a call that takes space must be noticed, or the fault is not effective.
     EXPECT_EQ(failed, calls);
     expectLoadable();
 }
@@ -204,7 +204,7 @@ TEST_F(CompileFaults, FailingCallLeavesFilesWhole) {
             ++failed;
             EXPECT_EQ(outcome.exit, 1) << at;
             EXPECT_TRUE(saysWhy(outcome)) << at << ": " << outcome.err;
-            // Nothing is left that is in neither state.
+            // No file remains that is in neither state.
             Contents known = old_;
             known.insert(new_.begin(), new_.end());
             for (const auto& [name, ignored] : contents()) {
@@ -250,9 +250,9 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
     for (const std::string kind : {"full", "error"}) {
         const auto forget = [&] {
             restore("old");
-            // A run that changes its own input is not kept.
+            // A run that changes its own input is not stored.
             fs::copy_file(path("new.lock"), path("work/ids.lock"), fs::copy_options::overwrite_existing);
-            // One module is compiled again, and the run is no repetition of an earlier one.
+            // One module is compiled again, so the run does not repeat an earlier one.
             fs::remove_all(path("cache"));
             fs::copy(path("warm"), path("cache"), fs::copy_options::recursive);
             fs::path smallest;
@@ -277,7 +277,7 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
                 continue;
             }
             ++noted;
-            // What is in the cache by now gives the same package.
+            // The current contents of the cache give the same package.
             restore("old");
             ASSERT_EQ(run(command()).exit, 0) << kind << at;
             ASSERT_TRUE(isNew()) << kind << at;
@@ -286,7 +286,7 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
     }
 }
 
-// compare --diff stands for every command that writes an image, or a file of measurements.
+// compare --diff stands for every command that writes an image or a file of measurements.
 TEST_F(Faults, ImageIsWholeOrTheEarlierOne) {
     LinearImage image{64, 64, {}};
     image.pixels.assign(std::size_t{64} * 64, {0.5F, 0.5F, 0.5F, 1.0F});
@@ -319,7 +319,7 @@ TEST_F(Faults, ImageIsWholeOrTheEarlierOne) {
                 EXPECT_TRUE(map == before.at("map.png") || map == after.at("map.png")) << kind << at;
             }
         }
-        // What killed runs left goes with the next.
+        // The next run removes what killed runs left.
         ASSERT_EQ(run(command).exit, 0);
         EXPECT_EQ(contents(), after) << kind << difference(contents(), after);
     }

@@ -1,4 +1,4 @@
-// The sources of --emit glsl, by a compiler that knows nothing of Glint.
+// Compiles the sources of --emit glsl with a compiler that knows nothing of Glint.
 #include "cli/command.h"
 #include "cli/shell.h"
 #include "cli/tiny_scene.h"
@@ -20,7 +20,7 @@ TEST_P(EmittedGlsl, CompilesOnItsOwn) {
     const Outcome made = run({"compile", "scene.gltf", "-o", "package", "--emit", "glsl", "--merge", "none",
                               "--strategy", GetParam(), "--tracer", "all"});
     ASSERT_EQ(made.exit, 0) << made.err;
-    // Only the sources: nothing beside them may be needed.
+    // Only the sources are kept, because they must not need anything else.
     std::filesystem::rename(path("package/glsl"), path("alone"));
     std::filesystem::remove_all(path("package"));
     const std::vector<std::string> files = filesBelow(path("alone"));

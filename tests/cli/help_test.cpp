@@ -1,4 +1,4 @@
-// What --help says of options whose words have misled before.
+// Tests the help of options whose wording has misled users before.
 #include "cli/command.h"
 
 #include <sstream>
@@ -10,7 +10,8 @@ namespace {
 
 class Help : public CommandTest {
 protected:
-    // With one blank in place of every run of blanks and line breaks, so that lines may break anywhere.
+    // Returns the help with one blank in place of every run of blanks and line breaks, so that lines may
+    // break anywhere.
     std::string help(const std::string& command) const {
         std::istringstream words(run({command, "--help"}).out);
         std::string text;
@@ -61,7 +62,7 @@ TEST_F(Help, HasNoTraceOfTheParserInItsOptions) {
     }
 }
 
-// Continuation lines start at column 32; texts are written for terminals of 92 columns.
+// Continuation lines start at column 32. Texts are written for terminals with 92 columns.
 TEST_F(Help, LinesFitATerminal) {
     constexpr std::size_t kColumns = 92;
     for (const char* command :

@@ -1,4 +1,4 @@
-// What a run does again, and what it leaves alone.
+// Tests what a run does again, and what it leaves unchanged.
 #include "cli/command.h"
 #include "cli/many_keys.h"
 
@@ -22,7 +22,7 @@ protected:
         CommandTest::SetUp();
         writeManyKeys(path("scene"));
     }
-    // One run on a cache of the test's own.
+    // Runs once with a cache of the test's own.
     Outcome compile(const Words& options = {}) const {
         Words words{"compile", "scene/scene.gltf", "--merge", "none", "--json"};
         words.insert(words.end(), options.begin(), options.end());
@@ -36,7 +36,7 @@ protected:
         EXPECT_EQ(outcome.exit, 0) << outcome.err;
         return outcome;
     }
-    // Every file of the package gets an old time stamp, so that one that is written shows.
+    // Gives every file of the package an old time stamp, so that a written file shows.
     void age() const {
         for (const auto& [file, bytes] : contentsOf(path("package"))) {
             fs::last_write_time(path("package") / file, old_);
@@ -82,7 +82,7 @@ TEST_F(Incremental, AColdRunCompilesAndAWarmOneDoesNothing) {
     EXPECT_EQ(first, second);
 }
 
-// A package has no pixels: renderers read the scene's images.
+// A package has no pixels, because renderers read the scene's images.
 TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
     compile();
     age();
@@ -118,7 +118,7 @@ TEST_F(Incremental, AValueIsInTheTablesAlone) {
 
 TEST_F(Incremental, ACombinationCompilesItsModuleAndThoseOfAllCases) {
     compile();
-    // Features that the scene has, of which only the combination is new.
+    // The scene has these features already; only the combination is new.
     writeManyKeys(path("scene"), {{"clearcoat", "sheen"}, {"clearcoat"}, {"sheen"}, {"textured"}});
     EXPECT_EQ(compiled(compile({"--strategy", "visibility", "-o", "other"})), 1);
     EXPECT_EQ(compiled(compile()), 1);  // uber.comp
@@ -183,7 +183,7 @@ TEST_F(Incremental, JobsChangeNoByte) {
     EXPECT_TRUE(contentsOf(path("one")) == contentsOf(path("two")));
 }
 
-// Scenes below a folder whose name has what Make and Ninja escape.
+// Scenes below a folder whose name contains characters that Make and Ninja escape.
 class Dependencies : public Incremental {
 protected:
     void SetUp() override {
@@ -208,7 +208,7 @@ TEST_F(Dependencies, AreReadByNinja) {
               "rule run\n  command = echo run >> log\n  depfile = list.d\n"
               "build pack$ age/manifest.json: run\n");
     const Words ninja{"ninja", "-d", "explain", "-n"};
-    // Its log is empty, so that it runs once.
+    // Ninja's log is empty, so it runs once.
     ASSERT_EQ(runProgram({"ninja"}).exit, 0);
     const Outcome clean = runProgram(ninja);
     EXPECT_NE(clean.out.find("no work to do"), std::string::npos) << clean.out << clean.err;

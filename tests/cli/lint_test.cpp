@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A module of one compute entry point that does nothing; or, with `model`, of another stage.
+// Returns a module with one compute entry point that does nothing, or of another stage with `model`.
 std::string emptyModule(std::uint32_t model = 5) {
     constexpr std::uint32_t kShader = 1;
     constexpr std::uint32_t kRayTracing = 4479;
@@ -57,7 +57,7 @@ std::string emptyModule(std::uint32_t model = 5) {
     return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)};
 }
 
-// Stands in for Arm's program: prints a report as malioc 8 does, with its own arguments as the core.
+// Replaces Arm's program: it prints a report like malioc 8, with its own arguments as the core.
 constexpr const char* kMalioc = R"(#!/bin/sh
 cat <<END
 {"schema": {"name": "performance", "version": 0},
@@ -75,7 +75,7 @@ END
 
 class LintCommand : public CommandTest {
 protected:
-    // Makes an executable `malioc` in a folder of its own and returns PATH with that folder before the rest.
+    // Makes an executable `malioc` in its own folder, and returns PATH with that folder first.
     std::string writeMalioc(const std::string& script) const {
         fs::create_directories(path("bin"));
         writeText(path("bin/malioc"), script);
@@ -83,7 +83,7 @@ protected:
         const char* const rest = std::getenv("PATH");
         return path("bin").string() + ":" + (rest == nullptr ? "/usr/bin:/bin" : rest);
     }
-    // Without any malioc that this machine may have.
+    // Runs without any malioc that this machine may have.
     Outcome runWithout(const std::vector<std::string>& arguments) const {
         return run(arguments, {{"PATH", path("nowhere").string()}});
     }
@@ -238,7 +238,7 @@ TEST_F(LintCommand, MaliocEstimatesComputeShaders) {
     EXPECT_TRUE(has(text.out, "7.25")) << text.out;
     EXPECT_FALSE(has(text.out, "malioc not found")) << text.out;
     const Outcome named = runWithout({"lint", "compute.spv", "--malioc", path("bin/malioc").string()});
-    // The script's own cat is not in that PATH: malioc is found, and what it prints is no report.
+    // The script's own cat is not in that PATH, so malioc is found but prints no report.
     EXPECT_TRUE(has(named.err, "compute.spv: warning: malioc ")) << named.err;
 }
 
@@ -255,7 +255,7 @@ echo '{"shaders": [{"errors": ["no such core"]}]}'; exit 1
     EXPECT_TRUE(has(lintWith("#!/bin/sh\necho Segmentation fault\n").err, "no report: Segmentation fault"));
     EXPECT_TRUE(has(lintWith("#!/bin/sh\n").err, "[malioc]"));
     EXPECT_TRUE(has(lintWith("#!/nonexistent\n").err, "can't be run")) << "an interpreter that is not there";
-    // Members that a version leaves out are no error.
+    // Members that a version leaves out cause no error.
     const Outcome bare = lintWith("#!/bin/sh\necho '{\"shaders\": [{\"variants\": [{}]}]}'\n");
     EXPECT_TRUE(bare.err.empty()) << bare.err;
     EXPECT_EQ(runWithout({"lint", "compute.spv", "--malioc", "./absent"}).exit, 1);

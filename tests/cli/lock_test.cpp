@@ -1,4 +1,4 @@
-// --lock: shader IDs that stay, the file that keeps them, and what is said when it changes.
+// Tests --lock: shader IDs that stay, the file that keeps them, and the messages about changes.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// The scene has two keys: "unlit" of the wall, "normals" of the floor.
+// The scene has two keys: "unlit" for the wall, and "normals" for the floor.
 class Lock : public CommandTest {
 protected:
     void SetUp() override {
@@ -22,7 +22,7 @@ protected:
     void coatTheFloor() const {
         writeTinyScene(path(""), {.variants = true});
     }
-    // Plans with --merge none; nothing but the lock is written where `more` says so.
+    // Plans with --merge none. `more` decides whether anything besides the lock is written.
     Outcome compile(std::vector<std::string> more) const {
         more.insert(more.begin(),
                     {"compile", scene_, "-o", "package", "--merge", "none", "--strategy", "visibility"});
@@ -31,7 +31,7 @@ protected:
     void writeLock(const std::string& lines) const {
         writeText(path("glint.lock"), "version 1\n" + lines);
     }
-    // Without comments.
+    // Returns the lock without its comments.
     std::string lock() const {
         const std::string text = readText(path("glint.lock"));
         return text.substr(std::min(text.find("version"), text.size()));
@@ -60,7 +60,7 @@ TEST_F(Lock, KeysKeepTheirIdsAndComeBackToThem) {
     EXPECT_TRUE(
         has(coated.err, "glint.lock: note: keeps 1 key that nothing has here: 1 normals; --lock-prune"))
         << coated.err;
-    // The gap is one in the package too.
+    // The gap is also in the package.
     const Json shaders = run({"inspect", "package", "--json"}).json().at("shaders");
     EXPECT_EQ(shaders.back().at("id"), 2);
     const std::string header = readText(path("package/glint_tables.h"));
@@ -95,7 +95,7 @@ TEST_F(Lock, LockedRefusesAnyChange) {
     EXPECT_TRUE(has(missing.err, "none.lock: error: no such file")) << missing.err;
 }
 
-// A merge of branches that took both sides.
+// This file results from a merge of branches that took both sides.
 TEST_F(Lock, ClashingKeysAreSettledWithAWarning) {
     writeLock("4 normals\n4 unlit\n");
     const Outcome strict = compile({"--lock", "glint.lock", "--werror"});

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
 
-// Positions, normals, texture coordinates and indices of a square.
+// Returns positions, normals, texture coordinates and indices of a square.
 std::string squareBytes() {
     constexpr std::array<float, 32> kVertices{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0,  //
                                               0,  0,  1, 0, 0,  1, 0, 0, 1, 0,  0, 1,  //

@@ -1,4 +1,4 @@
-// A tiny scene with a texture, whose materials a test sets.
+// A tiny textured scene whose materials a test chooses.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,20 +11,20 @@
 
 namespace glint::testing {
 
-// Lobes of each material, "clearcoat" and "sheen" among them; "textured" gives a base colour texture.
+// The lobes of each material, such as "clearcoat" and "sheen"; "textured" gives it a base colour texture.
 using Lobes = std::vector<std::vector<std::string>>;
 
 inline const Lobes kFourLobes{{}, {"clearcoat"}, {"sheen"}, {"textured"}};
 
-// Writes scene.gltf, scene.bin and base.png into `folder`, which is made: a material and a quad for each of
-// `lobes`. `red` is the first material's base colour.
+// Writes scene.gltf, scene.bin and base.png into `folder`, which is created: a material and a quad for each
+// of `lobes`. `red` is the first material's base colour.
 std::filesystem::path writeManyKeys(const std::filesystem::path& folder, const Lobes& lobes = kFourLobes,
                                     double red = 0.5);
 
-// base.png, of one colour.
+// Writes base.png with one colour.
 void writeBaseTexture(const std::filesystem::path& folder, std::uint8_t red);
 
-// Names and bytes of all files below `folder`.
+// Returns names and bytes of all files below `folder`.
 std::vector<std::pair<std::string, std::string>> contentsOf(const std::filesystem::path& folder);
 
 }  // namespace glint::testing

@@ -1,5 +1,5 @@
-// Inputs of about a kilobyte that say they are gigabytes: each is refused by a diagnostic, in a process that
-// may not have a gigabyte.
+// Inputs of about a kilobyte that claim to be gigabytes. Each must be refused with a diagnostic, in a process
+// that may not use a gigabyte.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::uint64_t kGibibyte = 1ULL << 30;
-// What one of these inputs may be at most, but for a package's tables.
+// The largest size of these inputs, except for a package's tables.
 constexpr std::size_t kSmall = 2048;
-// Half of what a scene may have; 1.5 GiB as positions.
+// Half of what a scene may have; as positions it would be 1.5 GiB.
 constexpr std::uint64_t kManyElements = 1ULL << 27U;
 
 std::string big(std::uint32_t word) {
@@ -37,7 +37,7 @@ std::string little(std::uint32_t word) {
     return {bytes.rbegin(), bytes.rend()};
 }
 
-// Headers of images with nothing behind them; readers look at checksums last, if at all.
+// Headers of images with nothing behind them. Readers check checksums last, if at all.
 std::string hugePng(std::uint32_t size) {
     return "\x89PNG\r\n\x1A\n" + big(13) + "IHDR" + big(size) + big(size) + std::string("\x08\x06\0\0\0", 5) +
            big(0) + big(1) + "IDATx" + big(0) + big(0) + "IEND" + big(0);
@@ -48,13 +48,13 @@ std::string pngOfHugeChunk() {
            big(0) + big(0x7FFFFFF0) + "IDATx" + big(0);
 }
 
-// 16000 x 16000 pixels.
+// The header claims 16000 x 16000 pixels.
 std::string hugeJpeg() {
     return std::string("\xFF\xD8\xFF\xC0\0\x11\x08\x3E\x80\x3E\x80\x03\x01\x11\0\x02\x11\0\x03\x11\0\xFF\xD9",
                        23);
 }
 
-// Lossless; sizes of 14 bits, less 1.
+// The format is lossless; sizes have 14 bits and are stored minus 1.
 std::string hugeWebp() {
     std::string data(1, '\x2F');
     data.append(little(15999U | 15999U << 14U)).append(16, '\0');
@@ -81,7 +81,7 @@ std::string hugeExr() {
            attribute("screenWindowWidth", "float", little(0x3F800000)) + '\0';
 }
 
-// A scene of one primitive. Accessor 0 has its positions.
+// Returns a scene with one primitive, whose positions are in accessor 0.
 Json scene() {
     return Json::parse(R"({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
@@ -105,7 +105,7 @@ protected:
         ASSERT_LE(bytes.size(), kSmall) << name;
         writeText(path(name), bytes);
     }
-    // Refused for that reason, and not because memory ran out.
+    // Expects the input to be refused for that reason, and not because memory ran out.
     void expectRefused(const std::string& name, const std::vector<std::string>& arguments,
                        const std::string& id) const {
         const Outcome outcome = run(arguments);
@@ -188,8 +188,7 @@ TEST_F(Memory, CompressedGeometry) {
     gltf["accessors"][0]["count"] = kManyElements;
     expectSceneRefused("meshopt", gltf, "meshopt-size");
 
-    // "DRACO" 2.2, a triangular mesh, sequential, no flags; then 2^31 faces and 2^31 points as variable
-    // bytes.
+    // "DRACO" 2.2, a triangular mesh, sequential, no flags; then 2^31 faces and 2^31 points as varints.
     const std::string draco = "DRACO\x02\x02\x01" + std::string(3, '\0') +
                               "\x80\x80\x80\x80\x08\x80\x80\x80\x80\x08" + std::string(15, '\0');
     write("draco.bin", draco);
@@ -238,7 +237,7 @@ TEST_F(Memory, Pictures) {
     }
 }
 
-// Every count of the tables, with hashes that are right.
+// Tests every count of the tables, with hashes that are right.
 TEST_F(Memory, TablesOfPackages) {
     writeTinyScene(path(""));
     memoryLimit_ = 0;
@@ -279,7 +278,7 @@ TEST_F(Memory, TablesOfPackages) {
 }
 
 TEST_F(Memory, Modules) {
-    // The bound of identifiers is what readers like to allocate by.
+    // Readers often allocate by the bound of identifiers.
     std::string words;
     for (const std::uint32_t word : {0x07230203U, 0x00010500U, 0U, 0xFFFFFFFFU, 0U, 2U << 16U | 17U, 1U,
                                      3U << 16U | 14U, 0U, 1U, 2U << 16U | 19U, 0xFFFFFFFEU}) {

@@ -1,4 +1,4 @@
-// --merge auto and profile without a device: cases, reasons, and profiles that are not what they should be.
+// Tests --merge auto and profile without a device: cases, reasons, and invalid profiles.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -79,7 +79,7 @@ TEST_F(Merge, ProfileTellsHotFromNeverHit) {
     EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
 }
 
-// The floor has the larger area, and the wall what hits the profile counts.
+// The floor has the larger area, and the wall has the hits that the profile counts.
 TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
     const auto sharesOf = [](const Outcome& outcome) {
         const Json shaders = outcome.json().at("shaders");
@@ -97,7 +97,7 @@ TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
     EXPECT_EQ(plan({"--merge", "auto:missing.json"}).exit, 1);
 }
 
-// Without a hit, what areas let expect is better than nothing.
+// If the profile has no hit, the expectation by areas is better than nothing.
 TEST_F(Merge, AutoDoesWithoutAProfileThatHasNoHits) {
     const Outcome outcome = planWith(makeProfileJson(0, 0), {"--merge", "auto"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
@@ -170,7 +170,7 @@ TEST_F(Merge, MalformedProfilesFailWithTheirPlace) {
     EXPECT_NE(plan({"--merge", "profile:missing.json"}).err.find("[file-open]"), std::string::npos);
 }
 
-// A byte changed, taken out or cut off: a plan or a diagnostic, never anything else.
+// A byte is changed, removed or cut off. The result must be a plan or a diagnostic.
 TEST_F(Merge, DamagedProfilesNeverCrash) {
     constexpr unsigned kSeed = 20250320;
     RecordProperty("seed", kSeed);

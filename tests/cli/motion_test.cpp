@@ -1,4 +1,4 @@
-// glint render of scenes that move: which files there are, what they show, what is said of them.
+// Tests glint render with moving scenes: its files, its pictures, and its messages.
 #include "cli/motion_options.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
@@ -65,7 +65,7 @@ TEST_F(MovingScene, WritesASequence) {
         EXPECT_EQ(frames[i].at("deformed"), i == 0 ? 0 : 1);
         EXPECT_EQ(frames[i].at("topLevel"), i == 0 ? "kept" : "updated");
     }
-    // Each is what one picture of that moment shows.
+    // Each frame equals a single picture of that moment.
     ASSERT_EQ(render("time.exr", {"--time", "0.5"}).exit, 0);
     expectSame("out.0002.exr", "time.exr");
     expectOther("out.0001.exr", "out.0003.exr");
@@ -131,7 +131,7 @@ TEST_F(MovingScene, UsesPackagesThatCanDeform) {
     const Outcome outcome = render("out.exr", {"--frames", "0:1", "--package", "package"});
     EXPECT_EQ(outcome.exit, 0) << outcome.err;
     EXPECT_NE(run({"inspect", "package"}).out.find("deform.spv"), std::string::npos);
-    // One of the same scene without its morph target lacks the pass.
+    // A package of the same scene without its morph target lacks the pass.
     const std::string still = writeTinyScene(path("")).string();
     ASSERT_EQ(run({"compile", still, "-o", "other"}).exit, 0);
     EXPECT_EQ(run({"inspect", "other"}).out.find("deform.spv"), std::string::npos);

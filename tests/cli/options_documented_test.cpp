@@ -1,4 +1,4 @@
-// docs/cli.md against the program: every option of every command stands in its section.
+// Compares docs/cli.md with the program: every option of every command must be in its section.
 #include "cli/command.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 class DocumentedOptions : public CommandTest {
 protected:
-    // Long options by command, as their help lists them; -W, which has none, as "-W".
+    // Returns the long options of a command, as its help lists them, and "-W", which has no long form.
     std::set<std::string> optionsOf(const std::string& command) const {
         std::set<std::string> options;
         std::istringstream lines(run({command, "--help"}).out);
@@ -34,7 +34,7 @@ protected:
 const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect", "diff",
                                          "lint",    "render",         "bench",   "compare", "completion"};
 
-// The text below each heading of the second level.
+// Returns the text below each heading of the second level.
 std::map<std::string, std::string> sectionsOf(const std::string& document) {
     std::map<std::string, std::string> sections;
     std::istringstream lines(document);
@@ -59,8 +59,8 @@ std::vector<std::string> cellsOf(const std::string& row) {
     return cells;
 }
 
-// What stands in the rows of each option, "| `-o`, `--output` | second | …": the second cells, of those too
-// that leave the first one empty because the row above has it.
+// Returns for each option the second cells of its rows, "| `-o`, `--output` | second | …". A row with an
+// empty first cell belongs to the option of the row above.
 std::map<std::string, std::string> rowsOf(const std::string& section) {
     std::map<std::string, std::string> rows;
     std::vector<std::string> options;
@@ -87,7 +87,7 @@ std::map<std::string, std::string> rowsOf(const std::string& section) {
 
 TEST_F(DocumentedOptions, AreThoseOfTheProgram) {
     std::map<std::string, std::string> sections = sectionsOf(readText(GLINT_SOURCE_DIR "/docs/cli.md"));
-    // Rows of these sections say which commands have the option.
+    // The rows of these sections say which commands have the option.
     const std::map<std::string, std::string> shared = rowsOf(sections["What shaders are made"]);
     const std::map<std::string, std::string> reporting = rowsOf(sections["What is reported"]);
     ASSERT_FALSE(shared.empty());
@@ -126,7 +126,7 @@ TEST_F(DocumentedOptions, CommandsAreThoseOfTheProgram) {
     EXPECT_EQ(commands, std::set<std::string>(kCommands.begin(), kCommands.end()));
 }
 
-// The list in README.md is the way to every document.
+// Every document must be reachable through the list in README.md.
 TEST(Documents, AreListedInTheReadme) {
     const std::string readme = readText(GLINT_SOURCE_DIR "/README.md");
     const std::size_t begin = readme.find("## Documents");

@@ -1,4 +1,4 @@
-// Rendering from packages that can do some things and not others.
+// Tests rendering from packages that support only some settings.
 #include "cli/render_command.h"
 
 #include <string>

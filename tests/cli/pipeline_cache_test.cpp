@@ -1,4 +1,4 @@
-// glint render --pipeline-cache: what it keeps, and what it makes of files that it did not write.
+// Tests glint render --pipeline-cache: what it stores, and how it treats files that it did not write.
 #include "base/files.h"
 #include "base/staged_file.h"
 #include "cli/render_command.h"
@@ -24,7 +24,7 @@ protected:
         return outcome.json();
     }
 
-    // As from another machine's disk: all is right but the device.
+    // Returns the file as if another machine had written it: everything is right except the device.
     static std::string ofAnotherDevice(std::string file) {
         constexpr std::size_t kDeviceAt = 16;
         constexpr std::size_t kChecksumAt = 56;
@@ -121,7 +121,7 @@ TEST_F(RenderCommand, ThreadsOfPipelinesAndTheStartAreReported) {
     EXPECT_LE(three.json().at("pipelineCreationMs").get<double>(), start.at("rendererMs").get<double>());
 }
 
-// A driver that tells of its pipelines gives a list; another a note.
+// A driver that reports statistics of its pipelines gives a list; another driver gives a note.
 TEST_F(RenderCommand, PipelineStatisticsAreListedOrANoteSaysWhyNot) {
     const Outcome outcome = render("a.png", {"--json", "--pipeline-statistics"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;

@@ -1,4 +1,4 @@
-// Pipelines and memory as text and JSON.
+// Tests the output about pipelines and memory, as text and JSON.
 #include "cli/pipeline_report.h"
 
 #include "cli/memory_table.h"

@@ -38,7 +38,7 @@ package::PackageSection sectionOf(const std::string& tables, package::SectionKin
     return {};
 }
 
-// Length and hash of the file's new bytes, then the hash of the tables.
+// Stores the length and the hash of the file's new bytes, then the hash of the tables.
 std::string withModule(std::string tables, const std::string& file, std::span<const std::uint8_t> spirv) {
     const package::PackageSection modules = sectionOf(tables, package::SectionKind::Modules);
     const package::PackageSection strings = sectionOf(tables, package::SectionKind::Strings);

@@ -1,4 +1,4 @@
-// Faults that a test puts into a compiled package.
+// Plants faults into a compiled package.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace glint::testing {
 
-// Compiles the source of a module again with `from` replaced by `to`, and puts what comes of it into the
-// package's tables. `source`: below `package`, made by `glint compile --emit glsl`; a compute shader. Fails
-// the test where `from` is not in it or nothing compiles.
+// Compiles the source of a module again with `from` replaced by `to`, and stores the result in the package's
+// tables. `source` is a file below `package` from `glint compile --emit glsl`, and must be a compute shader.
+// Fails the test if the source lacks `from` or does not compile.
 void plant(const std::filesystem::path& package, const std::string& source, const std::string& from,
            const std::string& to);
 

@@ -1,4 +1,4 @@
-// Device files of devices that are not there.
+// Device files of imaginary devices.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,8 @@
 
 namespace glint::testing {
 
-// Of a device called "Planted" on which every strategy takes ten times as long as `fastest`.
+// Returns the file of a device called "Planted" on which every other strategy takes ten times as long as
+// `fastest`.
 nlohmann::json plantedDevice(const std::string& fastest);
 
 }  // namespace glint::testing

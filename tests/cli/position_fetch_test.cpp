@@ -1,4 +1,4 @@
-// --position-fetch: the same picture, or the reason why this build or device can't.
+// Tests --position-fetch: the same picture, or the reason why this build or device can't do it.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 #include "spirv/compiler.h"
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Strategies, PositionFetch, ::testing::Values("uber", "h
 
 class PositionFetchCompile : public CommandTest {};
 
-// What no shader of the package would do is no setting of it.
+// It is not a setting of a package in which no shader would use it.
 TEST_F(PositionFetchCompile, IsRefusedWhereNoShaderCould) {
     const std::string scene = writeTinyScene(path("")).string();
     const Outcome outcome =
@@ -60,7 +60,7 @@ TEST_F(PositionFetchCompile, IsRefusedWhereNoShaderCould) {
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 }
 
-// The modules that shade where they find, and no other, read positions from the acceleration structure.
+// Only the modules that both trace and shade read positions from the acceleration structure.
 TEST_F(PositionFetchCompile, IsInTheModulesThatCan) {
     const std::string scene = writeTinyScene(path("")).string();
     const Outcome outcome =

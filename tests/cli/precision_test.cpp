@@ -1,4 +1,4 @@
-// --precision 16: which shaders compute in 16-bit float, and that pictures come of it.
+// Tests --precision 16: which shaders compute in 16-bit float, and that they render pictures.
 #include "cli/render_command.h"
 #include "cli/tiny_scene.h"
 

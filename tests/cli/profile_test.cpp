@@ -1,4 +1,4 @@
-// From counted hits to a package: render --profile, then --merge profile.
+// Tests the way from counted hits to a package: render --profile, then --merge profile.
 #include "cli/render_command.h"
 
 #include <string>
@@ -27,7 +27,7 @@ TEST_F(RenderProfile, CountsTheHitsOfEveryKeyOverAllSamples) {
     }
     EXPECT_GT(profile.at("keys")[0].at("hits").get<int>(), 0);
 
-    // Nothing of this scene depends on the sample's random numbers but where in its pixel a ray starts.
+    // In this scene the random numbers of a sample only decide where in its pixel a ray starts.
     const Outcome four = render("four.exr", {"--profile", "four.json", "--spp", "4"});
     ASSERT_EQ(four.exit, 0) << four.err;
     const nlohmann::json more = nlohmann::json::parse(readText(path("four.json")));
@@ -51,7 +51,7 @@ TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
     EXPECT_EQ(manifest.at("shaders")[0].at("reason"), "hot");
     EXPECT_EQ(manifest.at("shaders")[0].at("share"), wall.at("share"));
 
-    // The package and the policy give the picture that any other gives.
+    // Package and policy give the same picture as any other.
     ASSERT_EQ(render("b.exr", {"--package", "package"}).exit, 0);
     ASSERT_EQ(render("c.exr", {"--merge", "profile:hits.json"}).exit, 0);
     for (const char* image : {"b.exr", "c.exr"}) {

@@ -12,7 +12,7 @@ class RenderCommand : public CommandTest {
 protected:
     void SetUp() override;
 
-    // A small picture of the scene, with more options.
+    // Renders a small picture of the scene, with more options.
     Outcome render(const std::string& image, const std::vector<std::string>& more = {}) const;
 
     std::string scene_;

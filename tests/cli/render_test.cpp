@@ -7,7 +7,7 @@
 namespace glint::testing {
 namespace {
 
-// What the report says of an effect; null where the package lacks it.
+// Returns the report's entry for an effect, or null if the package lacks it.
 nlohmann::json effectOf(const nlohmann::json& report, const std::string& name) {
     for (const nlohmann::json& effect : report.at("effects")) {
         if (effect.at("name") == name) {
@@ -82,7 +82,7 @@ TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     for (const nlohmann::json& pass : stats.at("passes")) {
         EXPECT_GE(pass.at("milliseconds").get<double>(), 0.0) << pass;
     }
-    // Misses, the floor's case and the wall's.
+    // The buckets are misses, the floor's case and the wall's case.
     const nlohmann::json& counters = stats.at("counters");
     ASSERT_EQ(counters.at("buckets").size(), 3U);
     std::uint64_t hits = 0;
@@ -100,7 +100,7 @@ TEST_F(RenderCommand, StatsAreWrittenAndPrinted) {
     EXPECT_EQ(counters.at("nonFinite"), 0);
 }
 
-// A light so bright that its inverse square law overflows.
+// The light is so bright that its inverse square law overflows.
 TEST_F(RenderCommand, SamplesThatAreNoNumberAreWarnedOf) {
     std::ifstream file(scene_);
     nlohmann::json gltf = nlohmann::json::parse(file);

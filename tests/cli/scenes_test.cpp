@@ -1,4 +1,4 @@
-// Several scenes in one package: shared cases, tables a scene.
+// Tests several scenes in one package, which share cases and have their own tables.
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
@@ -11,7 +11,8 @@ namespace {
 
 class Scenes : public CommandTest {
 protected:
-    // Two of the same materials, but that "night" has a clearcoat on its floor in the variant Day.
+    // Both scenes have the same materials, except that "night" has a clearcoat on its floor in the variant
+    // Day.
     void SetUp() override {
         CommandTest::SetUp();
         for (const char* name : {"day", "night"}) {
@@ -31,14 +32,14 @@ TEST_F(Scenes, ShareTheirCases) {
     EXPECT_EQ(two.json().at("counts").at("materials"),
               2 * one.json().at("counts").at("materials").get<int>());
     EXPECT_EQ(two.json().at("counts").at("cases"), one.json().at("counts").at("cases"));
-    // Comments name materials; the code is the same.
+    // Only comments name materials; the code is the same.
     EXPECT_EQ(two.json().at("spirvBytes"), one.json().at("spirvBytes"));
     const nlohmann::json inspected = run({"inspect", "two", "--json"}).json();
     EXPECT_EQ(inspected.at("scenes")[0].at("name"), "day");
     EXPECT_EQ(inspected.at("scenes")[1].at("name"), "day_2");
 }
 
-// Only one of the scenes has it.
+// Only one of the scenes has the variant.
 TEST_F(Scenes, AVariantIsUsedWhereThereIsOne) {
     const Outcome outcome =
         run({"compile", "day/day.gltf", "night/night.gltf", "-o", "two", "--variant", "Day", "--json"});

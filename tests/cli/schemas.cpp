@@ -28,12 +28,12 @@ nlohmann::json readFile(const std::string& file) {
     return json;
 }
 
-// What is wrong with the document, a line each; empty where nothing is.
+// Returns what is wrong with the document, one line each, or an empty text.
 std::string violations(const std::string& name, const nlohmann::json& document) {
     const nlohmann::json text = readSchema(name);
     valijson::Schema schema;
     valijson::SchemaParser parser;
-    // References to other files are by name alone, as all stand in one folder.
+    // References to other files are names only, because all files are in one folder.
     const auto fetch = [](const std::string& file) { return new nlohmann::json(readFile(file)); };
     const auto release = [](const nlohmann::json* json) { delete json; };
     parser.populateSchema(Adapter(text), schema, fetch, release);

@@ -1,4 +1,4 @@
-// Holds JSON to the schemas in docs/schemas.
+// Checks JSON against the schemas in docs/schemas.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,13 +7,13 @@
 
 namespace glint::testing {
 
-// docs/schemas/<name>.json
+// Returns docs/schemas/<name>.json.
 nlohmann::json readSchema(const std::string& name);
 
-// Fails the test, with every violation, where `document` does not fit docs/schemas/<name>.json.
+// Fails the test, with every violation, if `document` does not match docs/schemas/<name>.json.
 void expectFits(const std::string& name, const nlohmann::json& document);
 
-// Whether it fits, without a word.
+// Returns whether it matches, without failing the test.
 bool fits(const std::string& name, const nlohmann::json& document);
 
 }  // namespace glint::testing

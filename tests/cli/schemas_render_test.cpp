@@ -1,4 +1,4 @@
-// What needs a device to be made, held to docs/schemas.
+// Checks JSON that needs a device against docs/schemas.
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 #include "support/hdr_writer.h"

@@ -1,4 +1,4 @@
-// What every command prints with --json, and the files of a package, held to docs/schemas.
+// Checks the --json output of every command and the files of a package against docs/schemas.
 #include "cli/schemas.h"
 
 #include "cli/command.h"
@@ -28,7 +28,7 @@ protected:
         EXPECT_EQ(outcome.exit, exit) << outcome.err;
         return outcome.json();
     }
-    // A result, which has more than its diagnostics.
+    // Expects a result, which has more than its diagnostics.
     void expectResult(const std::string& schema, const Json& result) const {
         expectFits(schema, result);
         EXPECT_GT(result.size(), 1U) << result;
@@ -61,7 +61,7 @@ TEST_F(Schemas, HoldTheManifest) {
     expectFits("manifest", Json::parse(readText(path("small/manifest.json"))));
 }
 
-// The lock file is text: a line a key, as docs/cli.md says.
+// The lock file is text with one line for each key, as docs/cli.md says.
 TEST_F(Schemas, LockFilesHaveTheFormOfTheDocument) {
     ASSERT_EQ(run({"compile", "scene.gltf", "-o", "package", "--lock", "glint.lock", "--merge", "none",
                    "--strategy", "uber"})
@@ -152,7 +152,7 @@ TEST_F(Schemas, RefuseWhatTheyDoNotKnow) {
     EXPECT_FALSE(fits("explain", Json::object()));
 }
 
-// Every member says what it is, and none beside those is let through.
+// Expects that every member has a description, and that other members are rejected.
 void expectDescribed(const Json& schema, const std::string& where) {
     if (schema.is_array()) {
         for (const Json& element : schema) {
@@ -186,7 +186,7 @@ TEST(SchemaFiles, DescribeEveryMember) {
     }
 }
 
-// The first JSON block of a document below a heading.
+// Returns the first JSON block below a heading of a document.
 Json exampleIn(const std::string& document, const std::string& heading) {
     const std::string text = readText(GLINT_SOURCE_DIR "/docs/" + document);
     const std::string fence = "```json\n";

@@ -1,4 +1,4 @@
-// Settings in a file: what they bring, what holds instead, and what is refused.
+// Tests settings files: their effect, what takes precedence, and what is refused.
 #include "cli/render_command.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-// Other programs than `glint`, for tests that need them.
+// Runs programs other than `glint`, for tests that need them.
 #pragma once
 
 #include "cli/command.h"
@@ -8,13 +8,13 @@
 
 namespace glint::testing {
 
-// Runs a line of sh in `folder`. Both of its streams are in Outcome::out.
+// Runs a line of sh in `folder`. Both of its output streams are in Outcome::out.
 Outcome runShell(const std::filesystem::path& folder, const std::string& line);
 
-// Whether PATH has it.
+// Returns whether PATH has the program.
 bool hasProgram(const std::string& name);
 
-// `text` as one word of sh.
+// Returns `text` as one word of sh.
 std::string quoteForShell(const std::string& text);
 
 }  // namespace glint::testing

@@ -1,4 +1,5 @@
-// --strategy auto, --calibration and what explain says of strategies, with planted costs of devices.
+// Tests --strategy auto, --calibration and the output of explain about strategies, with planted costs of
+// devices.
 #include "cli/command.h"
 #include "cli/planted_device.h"
 #include "cli/schemas.h"
@@ -20,7 +21,7 @@ protected:
         CommandTest::SetUp();
         writeTinyScene(path(""));
     }
-    // A device on which only `strategy` is fast.
+    // Writes the file of a device on which only `strategy` is fast.
     std::string device(const std::string& strategy) const {
         const std::filesystem::path file = path(strategy + ".json");
         writeText(file, plantedDevice(strategy).dump());
@@ -110,7 +111,7 @@ TEST_F(StrategyAuto, ExplainListsWhatEachStrategyTakes) {
         for (const auto& [name, part] : estimate.at("parts").items()) {
             sum += part.get<double>();
         }
-        // Each has four digits.
+        // Each number has four digits.
         EXPECT_NEAR(sum, estimate.at("milliseconds").get<double>(), 2e-3 * sum);
     }
 }

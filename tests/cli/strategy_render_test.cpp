@@ -1,4 +1,4 @@
-// glint render --strategy auto, and the device file as the program writes and reads it.
+// Tests glint render --strategy auto, and the device file as the program writes and reads it.
 #include "bench/strategy_fit.h"
 #include "cli/calibration_points.h"
 #include "cli/device_file.h"
@@ -76,7 +76,7 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
     writeText(path("planted.json"), plantedDevice("uber").dump());
     const Result<DeviceFile> planted = readDeviceFile(path("planted.json"));
     ASSERT_TRUE(planted) << planted.error().message;
-    // Points as that device would give.
+    // These are the points that such a device would give.
     Json points = Json::array();
     for (const std::uint32_t cases : {1U, 8U, 64U}) {
         for (const double coherence : {0.1, 0.9}) {
@@ -95,7 +95,8 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                 for (const StrategyCosts& costs : planted->costs.strategies) {
                     const double ms = estimatedMs(bench::roundOf(point), costs, 32.0);
                     times.push_back({{"strategy", costs.strategy},
-                                     // As on a device whose clock changes from round to round.
+                                     // The times are like those of a device whose clock changes from round to
+                                     // round.
                                      {"time", {{"median", times.empty() ? ms : 3.0 * ms}}},
                                      {"ratio", {{"median", ms / first}}},
                                      {"difference", {{"wrong", false}}}});

@@ -36,7 +36,7 @@ constexpr int kUnsignedShort = 5123;
 constexpr std::size_t kVectorBytes = 48;
 constexpr std::size_t kQuadBytes = 2 * kVectorBytes + 12;
 
-// Three buffer views and three accessors for the quad at `offset` of the buffer.
+// Adds three buffer views and three accessors for the quad at `offset` of the buffer.
 void addQuad(Json& gltf, const Corners& corners, std::size_t offset, int material) {
     const std::size_t first = gltf["accessors"].size();
     const auto view = [&](std::size_t start, std::size_t bytes) {
@@ -69,7 +69,7 @@ void addQuad(Json& gltf, const Corners& corners, std::size_t offset, int materia
                                  {"material", material}}}}});
 }
 
-// Times, shifts, weights and a morph target, after the quads.
+// Returns times, shifts, weights and a morph target, which follow the quads.
 std::string motionData() {
     std::string bytes;
     const std::array<float, 2> times{0, 1};
@@ -102,7 +102,7 @@ void addMotion(Json& gltf) {
     const auto channel = [](int sampler, int node, const char* path) {
         return Json{{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}};
     };
-    // Weights from 0 to 1 are the times themselves.
+    // The weights from 0 to 1 are the times themselves.
     const Json shift{{"input", first}, {"output", first + 1}};
     const Json weights{{"input", first}, {"output", first}};
     gltf["animations"] = {

@@ -9,13 +9,13 @@ struct TinyScene {
     bool unknownExtension = false;  // in extensionsUsed: a warning
     bool camera = true;
     bool variants = false;  // "Day" gives the floor "Spare"; "Floor" gets a clearcoat
-    // "Slide": the wall moves by 1 m along X in a second and its morph target lifts its top edge by 1 m;
-    // "Look": the camera moves by 1 m along X.
+    // In "Slide" the wall moves by 1 m along X in a second, and its morph target lifts its top edge by 1 m.
+    // In "Look" the camera moves by 1 m along X.
     bool animated = false;
 };
 
-// A smooth metal floor ("Floor"), an unlit wall ("Wall") and a material that nothing uses ("Spare").
-// Writes scene.gltf and scene.bin into `folder`; returns the path of the former.
+// Writes scene.gltf and scene.bin into `folder`, and returns the path of the former. The scene has a smooth
+// metal floor ("Floor"), an unlit wall ("Wall") and an unused material ("Spare").
 std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options = {});
 
 }  // namespace glint::testing

@@ -29,7 +29,8 @@ TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
     }
 }
 
-// The example of each help must at least parse: it fails for want of its files, not of its options.
+// The example of each help must at least parse: it fails because its files are missing, not because of its
+// options.
 TEST_F(Usage, ExamplesOfTheHelpAreValidCommandLines) {
     for (const std::string& command : kCommands) {
         const std::string help = run({command, "--help"}).out;

@@ -1,5 +1,5 @@
-// What a folder of the cache holds: an entry's file as a crash or another program left it, and the values in
-// it as other versions may have packed them. Nothing of it may do more than to be no entry.
+// Fuzzes a folder of the cache: the file of an entry as a crash or another program left it, and the values in
+// it as other versions may have packed them. All of that must only count as no entry.
 #include "base/files.h"
 #include "cache/action.h"
 #include "cache/module_cache.h"
@@ -19,7 +19,7 @@ using glint::fuzz::require;
 constexpr std::string_view kCompiler = "compiler";
 constexpr std::string_view kSource = "source";
 
-// All keys have one file a kind, so that its name is known: the hash 0.
+// All keys of a kind have one file, the hash 0, so that its name is known.
 glint::CacheStore& store() {
     static const glint::test::TemporaryFolder folder;
     static glint::CacheStore store(
@@ -66,7 +66,7 @@ void readModule(std::string_view text) {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = glint::fuzz::asText(data, size);
-    // Makes the folder, too.
+    // This also creates the folder.
     readModule(text);
     readEntry({data, size}, text);
     readAction(text);

@@ -1,4 +1,4 @@
-// What every fuzz target is: libFuzzer's entry points, which replay_main.cpp calls where there is no
+// The common parts of fuzz targets: libFuzzer's entry points, which replay_main.cpp calls if there is no
 // libFuzzer.
 #pragma once
 
@@ -11,7 +11,7 @@
 // Names that libFuzzer gives.
 // NOLINTBEGIN(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-// Present in targets whose inputs have a shape that blind mutations would break.
+// Exists in targets whose inputs have a structure that blind mutations would break.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t maxSize,
                                                unsigned int seed);
 // libFuzzer's own mutations; returns the new size.
@@ -20,7 +20,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace glint::fuzz {
 
-// A property that holds for every input. Ends the process where it does not, which is a finding.
+// Checks a property that holds for every input. If it does not hold, the process ends, which is a finding.
 inline void require(bool holds, const char* property) {
     if (!holds) {
         std::fprintf(stderr, "fuzz: does not hold: %s\n", property);

@@ -1,5 +1,5 @@
-// Mutations of a .glb file go into one of its two chunks, and the container is made to fit again: most of
-// what matters lies behind lengths that a blind change contradicts.
+// Mutates one of the two chunks of a .glb file, and then makes the container fit again. Most of what matters
+// lies behind lengths that a blind change would contradict.
 #include "fuzz/fuzz_target.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ Bytes join(const Glb& glb) {
 
 std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t maxSize,
                                     unsigned int seed) {
-    // One in eight changes the container itself.
+    // One mutation in eight changes the container itself.
     std::optional<Glb> glb = seed % 8 == 0 ? std::nullopt : split({data, size});
     if (!glb) {
         return LLVMFuzzerMutate(data, size, maxSize);

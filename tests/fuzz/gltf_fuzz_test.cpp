@@ -1,5 +1,5 @@
-// Damaged glTF files: truncated, with bytes flipped, numbers replaced and pieces repeated. Deterministic.
-// Each import must return, with a scene or with a diagnostic; sanitizers see the rest.
+// Imports damaged glTF files: truncated, with bits flipped, numbers replaced and pieces repeated. The damage
+// is deterministic. Each import must return a scene or a diagnostic; sanitizers check the rest.
 #include "fuzz/mutations.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr int kMutationsPerFile = 1500;
 constexpr int kContentMutations = 8000;
 
-// A scene with something of everything that the importer reads.
+// Returns a scene that has something of everything that the importer reads.
 GltfBuilder richScene() {
     GltfBuilder builder;
     builder.root["extensionsUsed"] = Json::array({"KHR_lights_punctual", "KHR_texture_transform"});
@@ -81,7 +81,7 @@ TEST(GltfFuzz, DamagedFilesAreRefusedOrRead) {
     }
     std::printf("%d imported, %d refused for %zu kinds of reason\n", tally.imported, tally.refused,
                 tally.ids.size());
-    // Mutations that all fail early, or all succeed, would test nothing.
+    // If all mutations failed early, or all succeeded, they would test nothing.
     EXPECT_GT(tally.imported, 2000);
     EXPECT_GT(tally.refused, 2000);
     EXPECT_GT(tally.ids.size(), 20U);

@@ -1,4 +1,4 @@
-// A .glb file.
+// Fuzzes a .glb file.
 #include "fuzz/fuzz_target.h"
 #include "fuzz/import_bytes.h"
 

@@ -1,4 +1,4 @@
-// A .gltf file: JSON, with buffers and images as data URIs.
+// Fuzzes a .gltf file: JSON, with buffers and images as data URIs.
 #include "fuzz/fuzz_target.h"
 #include "fuzz/import_bytes.h"
 

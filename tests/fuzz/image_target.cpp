@@ -1,4 +1,4 @@
-// Pictures that compare and --environment read; what an input is shows in its first bytes.
+// Fuzzes pictures that compare and --environment read. The first bytes of an input decide its format.
 #include "fuzz/fuzz_target.h"
 #include "image/exr.h"
 #include "image/hdr.h"
@@ -8,7 +8,7 @@
 
 namespace {
 
-// By the magic numbers of OpenEXR and PNG.
+// The formats are recognised by the magic numbers of OpenEXR and PNG.
 glint::Result<glint::LinearImage> decode(std::span<const std::uint8_t> bytes) {
     if (!bytes.empty() && bytes[0] == 0x76) {
         return glint::decodeExr(bytes, "picture.exr");

@@ -61,7 +61,7 @@ void checkAnimation(const Scene& scene, const Animation& animation) {
     }
 }
 
-// Whatever the file holds, it can be played.
+// Whatever the file contains, its animations can be played.
 void checkMotion(Scene scene) {
     std::vector<std::size_t> all;
     for (const Animation& animation : scene.animations) {
@@ -125,7 +125,7 @@ void importBytes(std::span<const std::uint8_t> bytes, std::string_view name) {
     if (!writeFile(path, bytes).ok()) {
         require(false, "the temporary folder can be written");
     }
-    // Large images are slow to decode and show nothing that smaller ones do not.
+    // Large images are slow to decode, and smaller ones find the same errors.
     const ImportOptions options{.decodeImages = true, .maxImageSize = 1024};
     const Result<Scene> scene = importScene(path, options);
     if (!scene) {

@@ -1,4 +1,4 @@
-// Imports bytes as the glTF file that they may be, and plans what comes of it.
+// Imports bytes as a glTF file, and plans the resulting scene.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace glint::fuzz {
 
-// `name`: of the file, "scene.gltf" or "scene.glb". Ends the process where a promise of the importer or of
+// `name` is the file's name, "scene.gltf" or "scene.glb". Ends the process if a promise of the importer or of
 // the planner is broken.
 void importBytes(std::span<const std::uint8_t> bytes, std::string_view name);
 

@@ -1,4 +1,4 @@
-// A SPIR-V module, as `glint lint` and the statistics of `glint inspect` read it.
+// Fuzzes a SPIR-V module, as `glint lint` and the statistics of `glint inspect` read it.
 #include "fuzz/fuzz_target.h"
 #include "spirv/lint.h"
 #include "spirv/reader.h"

@@ -1,4 +1,4 @@
-// The text of a lock file.
+// Fuzzes the text of a lock file.
 #include "fuzz/fuzz_target.h"
 #include "plan/lock_text.h"
 

@@ -12,7 +12,7 @@ namespace glint::test {
 
 namespace {
 
-// Numbers on the edges of what the importer's arithmetic has to stand.
+// Returns numbers at the limits of the importer's arithmetic.
 std::string hostileNumber(Random& random) {
     constexpr std::array kNumbers{"-1",
                                   "0",
@@ -50,7 +50,7 @@ void repeatPiece(Random& random, std::string& text) {
     text.insert(below(random, text.size()), piece);
 }
 
-// Every value of a document, to pick from.
+// Collects every value of a document, to choose from.
 void collect(Json& value, std::vector<Json*>& values) {
     values.push_back(&value);
     if (value.is_structured()) {

@@ -1,5 +1,5 @@
-// tables.bin. Its hashes would stop every change at the door, so that each input is loaded three times: as it
-// is, with the header's hash made to fit, and with modules as well that are what the tables say.
+// Fuzzes tables.bin. Its hashes would reject every change at once, so each input is loaded three times: as it
+// is; with a header whose hash fits; and also with modules that fit the tables.
 #include "fuzz/fuzz_target.h"
 #include "interop_hash.h"
 
@@ -19,14 +19,14 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 namespace package = glint::package;
 
-// A module that holds nothing: all that the loader looks at.
+// A module without contents, but with everything that the loader checks.
 constexpr std::array<std::uint32_t, 5> kModule{0x07230203, 0x00010500, 0, 1, 0};
 
 std::span<const std::uint8_t> moduleBytes() {
     return {reinterpret_cast<const std::uint8_t*>(kModule.data()), sizeof kModule};
 }
 
-// The header's promises about the bytes after it.
+// Corrects the header's statements about the bytes after it.
 void seal(Bytes& tables) {
     package::PackageHeader header{};
     std::memcpy(&header, tables.data(), sizeof header);
@@ -40,7 +40,7 @@ void seal(Bytes& tables) {
     std::memcpy(tables.data(), &header, sizeof header);
 }
 
-// The section of that kind, where it lies within the bytes.
+// Returns the section of that kind, if it lies within the bytes.
 package::PackageSection findSection(const Bytes& tables, package::SectionKind kind) {
     constexpr std::size_t kMaxSections = 16;
     for (std::size_t i = 0; i < kMaxSections; ++i) {
@@ -57,7 +57,7 @@ package::PackageSection findSection(const Bytes& tables, package::SectionKind ki
     return {};
 }
 
-// Makes every entry's size and hash those of kModule; returns the names of their files.
+// Sets every entry's size and hash to those of kModule. Returns the names of their files.
 std::vector<std::string> fitModules(Bytes& tables) {
     const package::PackageSection modules = findSection(tables, package::SectionKind::Modules);
     const package::PackageSection strings = findSection(tables, package::SectionKind::Strings);
@@ -80,7 +80,7 @@ std::vector<std::string> fitModules(Bytes& tables) {
     return names;
 }
 
-// Reads everything that a renderer would.
+// Reads everything that a renderer would read.
 std::size_t use(const glint::Package& loaded) {
     std::size_t sum = loaded.caseCount() + loaded.bucketCount();
     for (const package::CaseEntry& entry : loaded.cases()) {

@@ -1,4 +1,4 @@
-// Damage to compressed geometry and images: the decoders see bytes that their encoders never wrote.
+// Damages compressed geometry and images, so that decoders see bytes that their encoders never wrote.
 #include "fuzz/mutations.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
@@ -32,7 +32,8 @@ GltfBuilder widePngScene() {
     return builder;
 }
 
-// A GLB with flipped bits in its binary chunk only: the JSON leads every import to the decoder.
+// Returns a GLB with flipped bits in its binary chunk only, so that the JSON leads every import to the
+// decoder.
 std::string damageBinary(Random& random, const GltfBuilder& builder) {
     GltfBuilder copy = builder;
     std::string binary(copy.buffer.begin(), copy.buffer.end());
@@ -44,7 +45,7 @@ std::string damageBinary(Random& random, const GltfBuilder& builder) {
 void expectBothOutcomes(const Tally& tally, const char* name) {
     std::printf("%s: %d imported, %d refused for %zu kinds of reason\n", name, tally.imported, tally.refused,
                 tally.ids.size());
-    // Mutations that all fail, or all succeed, would test nothing.
+    // If all mutations failed, or all succeeded, they would test nothing.
     EXPECT_GT(tally.imported, 100) << name;
     EXPECT_GT(tally.refused, 100) << name;
 }
@@ -89,7 +90,7 @@ TEST(PackedFuzz, EveryTruncationOfPackedDataReturns) {
     }
 }
 
-// The models are damaged in the file that holds the compressed data, beside copies of the others.
+// The file with the compressed data is damaged; the model's other files are copied unchanged.
 TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
     if (!fs::exists(kModels)) {
         GTEST_SKIP() << "no models in " << kModels;

@@ -1,4 +1,4 @@
-// Runs a fuzz target over the files of folders: a regression test that needs no libFuzzer.
+// Runs a fuzz target over the files of folders, as a regression test that needs no libFuzzer.
 #include "base/files.h"
 #include "fuzz/fuzz_target.h"
 
@@ -31,10 +31,10 @@ bool replay(const fs::path& file) {
         std::fprintf(stderr, "%s\n", glint::toString(bytes.error()).c_str());
         return false;
     }
-    // The last line of a run that crashes names the culprit.
+    // The last line of a run that crashes names the file.
     std::printf("%s\n", file.filename().c_str());
     std::fflush(stdout);
-    // A copy of its own size: a sanitizer sees reads beyond the end.
+    // The copy has exactly the file's size, so that a sanitizer detects reads beyond the end.
     const glint::Bytes copy(bytes->begin(), bytes->end());
     LLVMFuzzerTestOneInput(copy.data(), copy.size());
     return true;
@@ -53,6 +53,6 @@ int main(int count, char** arguments) {
         }
     }
     std::printf("%zu inputs\n", replayed);
-    // A folder that is not there must not pass for one that holds no crash.
+    // A missing folder must not count as one without a crash.
     return replayed == 0 ? 1 : 0;
 }

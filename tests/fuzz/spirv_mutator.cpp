@@ -1,4 +1,4 @@
-// Mutations of a SPIR-V module work on instructions: bytes that shift by one are no module any more.
+// Mutates the instructions of a SPIR-V module, because bytes that shift by one are no module any more.
 #include "fuzz/fuzz_target.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Words toWords(const std::uint8_t* data, std::size_t size) {
     return words;
 }
 
-// Where instructions begin, as far as their lengths lead; the end last.
+// Returns where instructions begin, as far as their lengths allow, and the end as the last element.
 std::vector<std::size_t> findStarts(const Words& words) {
     std::vector<std::size_t> starts;
     for (std::size_t at = kHeaderWords; at < words.size();) {
@@ -48,7 +48,7 @@ void mutateOperand(Random& random, Words& words, std::size_t first, std::size_t 
             operand = static_cast<std::uint32_t>(random() % 8);
             break;
         default:
-            // Another identifier of the module.
+            // The operand becomes another identifier of the module.
             operand = static_cast<std::uint32_t>(random() % std::max<std::uint32_t>(words[kBoundWord], 2));
     }
 }

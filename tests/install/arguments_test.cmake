@@ -1,8 +1,9 @@
-# Wrong arguments of glint_add_materials() are errors that say what is wrong.
-# -DWORK=… -DMODULE=…/GlintMaterials.cmake
+# Wrong arguments of glint_add_materials() must give errors that say what is wrong. Arguments: -DWORK=…
+# -DMODULE=…/GlintMaterials.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# refused(MESSAGE ARGUMENTS…): a project that passes these does not configure, and the message says why.
+# refused(MESSAGE ARGUMENTS…): expects that a project with these arguments does not configure, and that the
+# message says why.
 function(refused message)
   list(JOIN ARGN " " arguments)
   file(REMOVE_RECURSE "${WORK}")

@@ -1,7 +1,8 @@
-# Builds examples/cmake-consumer against a Glint that is not installed: the folder that it was built in or, with
-# GLINT_SOURCE, its sources as a subdirectory. There only the runtime is built; the tool is EXECUTABLE, as where a build is
-# for another machine than the one that it runs on.
-# -DGLINT_BUILD=… -DWORK=… -DEXAMPLE=… -DGENERATOR=… [-DGLINT_SOURCE=… -DEXECUTABLE=…] [-DFLAGS=…] [-DLAUNCHER=…]
+# Builds examples/cmake-consumer against a Glint that is not installed: against the folder in which it was
+# built or, with GLINT_SOURCE, with its sources as a subdirectory. In the latter only the runtime is built,
+# and the tool is EXECUTABLE, as in a build for another machine.
+# Arguments: -DGLINT_BUILD=… -DWORK=… -DEXAMPLE=… -DGENERATOR=… [-DGLINT_SOURCE=… -DEXECUTABLE=…] [-DFLAGS=…]
+# [-DLAUNCHER=…]
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 

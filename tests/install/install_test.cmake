@@ -1,5 +1,5 @@
-# Installs into an empty prefix, and builds programs against what was installed.
-# -DGLINT_BUILD=… -DWORK=… -DCONSUMER=… -DSCENES=… -DGENERATOR=… [-DFLAGS=…] [-DLAUNCHER=…]
+# Installs into an empty prefix, and builds programs against the installed files.
+# Arguments: -DGLINT_BUILD=… -DWORK=… -DCONSUMER=… -DSCENES=… -DGENERATOR=… [-DFLAGS=…] [-DLAUNCHER=…]
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
@@ -18,7 +18,7 @@ run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
 run("${build}/tables/uses_tables")
 
-# The first build made the lock; the second has no reason to run for it.
+# The first build made the lock, so the second has no reason to run the tool.
 if(NOT EXISTS "${build}/cubes.lock")
   message(FATAL_ERROR "there is no lock")
 endif()
@@ -27,7 +27,7 @@ if(output MATCHES "Compiling the materials")
   message(FATAL_ERROR "the second build compiles materials\n${output}")
 endif()
 
-# A lock that is gone or changed is an input that changed.
+# A lock that is removed or changed counts as a changed input.
 file(REMOVE "${build}/cubes.lock")
 run(${CMAKE_COMMAND} --build "${build}")
 if(NOT EXISTS "${build}/cubes.lock" OR output MATCHES "materials of both")

@@ -1,5 +1,6 @@
-# Builds examples/cmake-consumer against an installed Glint, and checks what each change builds again, and what not.
-# -DGLINT_BUILD=… -DWORK=… -DEXAMPLE=… -DGENERATOR=… -DOTHER_TEXTURE=… [-DFLAGS=…] [-DLAUNCHER=…]
+# Builds examples/cmake-consumer against an installed Glint, and checks what each change rebuilds and what it
+# does not.
+# Arguments: -DGLINT_BUILD=… -DWORK=… -DEXAMPLE=… -DGENERATOR=… -DOTHER_TEXTURE=… [-DFLAGS=…] [-DLAUNCHER=…]
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
@@ -18,8 +19,8 @@ if(GENERATOR MATCHES "Multi-Config")
   set(program "${build}/Debug/cubes")
 endif()
 
-# Builds; `output` is what the build said, `changed` the files of the package that are new or have another time, `gone`
-# those that are no more, `compiled` the sources that a compiler read.
+# Builds and sets: `output`, what the build printed; `changed`, the package's files that are new or have
+# another time; `gone`, those that no longer exist; `compiled`, the sources that a compiler read.
 macro(build)
   take_times(before)
   run(${CMAKE_COMMAND} --build "${build}" ${config})
@@ -30,7 +31,7 @@ macro(build)
   list(SORT compiled)
 endmacro()
 
-# `result`: the package's files, and `result_FILE` the time of each.
+# Sets `result` to the package's files, and `result_FILE` to the time of each.
 macro(take_times result)
   file(GLOB ${result} RELATIVE "${package}" "${package}/*")
   foreach(file IN LISTS ${result})
@@ -66,7 +67,7 @@ macro(expect_no_work)
   endif()
 endmacro()
 
-# expect(changed a b) and so on: exactly these.
+# expect(changed a b) and so on: expects exactly these.
 macro(expect what)
   if(NOT "${${what}}" STREQUAL "${ARGN}")
     message(FATAL_ERROR "${step}: ${what} \"${${what}}\", not \"${ARGN}\"\n${output}")
@@ -120,7 +121,7 @@ set(step "after another time of the tool")
 build()
 expect_no_work()
 
-# No byte of a package depends on pixels: the runtime takes them from the program.
+# No byte of a package depends on pixels, because the runtime gets them from the program.
 set(step "another texture")
 file(COPY_FILE "${OTHER_TEXTURE}" "${source}/scene/tiles.png")
 file(TOUCH "${source}/scene/tiles.png")

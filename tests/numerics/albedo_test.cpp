@@ -1,5 +1,5 @@
-// The fitted albedos against quadrature that shares no code with the shaders, nor with the script that fits
-// them.
+// Compares the fitted albedos with a quadrature that shares no code with the shaders or with the script that
+// fits them.
 #include "shaders_double.h"
 
 #include <gtest/gtest.h>
@@ -20,12 +20,13 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kSteps = 64;
 
-// What albedo.glsl and scripts/fit_directional_albedo.py promise of fit - truth, where n·v is at least 1e-3.
+// The bounds that albedo.glsl and scripts/fit_directional_albedo.py state for fit - truth, if n·v is at least
+// 1e-3.
 constexpr double kUnder = 2e-4;
 constexpr double kOver = 6e-3;
 constexpr double kSheenOver = 1e-2;
 
-// Midpoint of step i in x, where t = x - sin(2πx) / 2π takes roots at both ends, and dt.
+// The midpoint of step i in x, and dt. t = x - sin(2πx) / 2π flattens roots at both ends.
 struct Node {
     explicit Node(int i) {
         const double angle = 2.0 * kPi * (i + 0.5) / kSteps;
@@ -36,15 +37,15 @@ struct Node {
     double dt = 0.0;
 };
 
-// Half vectors by their angle θ to the normal: where D is smooth in w, θ(w) and D sin θ dθ/dw.
+// Half vectors by their angle θ to the normal: D is smooth in w; gives θ(w) and D sin θ dθ/dw.
 struct Distribution {
     std::function<double(double theta)> warp;
     std::function<std::pair<double, double>(double w)> unwarp;
 };
 
-// ∫ D weight(v·h, n·l) dω over half vectors that reflect the view to above the horizon. At angle θ they have
-// azimuths of cos φ >= (n·v) (1 - 2 cos²θ) / (2 sin θv sin θ cos θ), which follows from n·l = 2 (v·h) cos θ -
-// n·v.
+// ∫ D weight(v·h, n·l) dω over the half vectors that reflect the view to above the horizon. At the angle θ
+// they have azimuths of cos φ >= (n·v) (1 - 2 cos²θ) / (2 sin θv sin θ cos θ), which follows from n·l = 2
+// (v·h) cos θ - n·v.
 double integrate(const Distribution& distribution, double nDotV,
                  const std::function<double(double vDotH, double nDotL)>& weight) {
     const double sineView = std::sqrt((1.0 - nDotV) * (1.0 + nDotV));
@@ -117,7 +118,7 @@ double sheenSmith(double cosine, double alpha) {
     return cosine < 0.5 ? std::exp(exponent(cosine)) : std::exp(2.0 * exponent(0.5) - exponent(1.0 - cosine));
 }
 
-// ∫ of the sheen lobe times share(n·l).
+// Returns ∫ of the sheen lobe times share(n·l).
 double sheenTruth(
     double nDotV, double alpha,
     const std::function<double(double nDotL)>& share = [](double) { return 1.0; }) {
@@ -136,7 +137,7 @@ double sheenTruth(
     });
 }
 
-// Evenly spaced in the logarithm and in the value, by halves.
+// Returns values that are evenly spaced, half of them in the logarithm and half in the value.
 std::vector<double> spread(double low, int count) {
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
@@ -180,7 +181,7 @@ TEST(GgxAlbedo, AgreesWithTheTable) {
     if (!table) {
         GTEST_SKIP() << "no table of reference values beside the repository";
     }
-    // Columns: roughness, alpha, then E_mu<cosine> each, then the mean.
+    // The columns are roughness, alpha, then E_mu<cosine> each, then the mean.
     std::string line;
     std::getline(table, line);
     std::vector<double> cosines;
@@ -231,14 +232,14 @@ TEST(GgxMeanAlbedo, CancelsTheIntegralOfTheFit) {
     constexpr int kCosines = 4000;
     const double range = std::log(1e8);
     for (const double alpha : spread(glsl::kMinAlpha, 40)) {
-        // Midpoints in log μ: the loss of a smooth lobe lies about μ = alpha.
+        // The midpoints are in log μ, because the loss of a smooth lobe lies about μ = alpha.
         glsl::vec2 integral(0.0);
         for (int i = 0; i < kCosines; ++i) {
             const double nDotV = std::exp(-range * (i + 0.5) / kCosines);
             integral += glsl::ggxAlbedo(nDotV, alpha) * (2.0 * nDotV * nDotV * range / kCosines);
         }
         const glsl::vec2 mean = glsl::ggxMeanAlbedo(alpha);
-        // What a lobe of these reflectances leaves: 1 - f0 (E - y) - f90 y.
+        // The share that a lobe with these reflectances leaves: 1 - f0 (E - y) - f90 y.
         for (const double f90 : {0.0, 0.3, 1.0}) {
             for (const double share : {0.0, 0.04, 0.5, 0.99, 1.0}) {
                 const double f0 = f90 * share;

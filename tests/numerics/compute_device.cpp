@@ -127,7 +127,7 @@ Status createDevice(Context::State& state) {
         return vulkanError("vkCreateDevice", result);
     }
     state.ownsDevice = true;
-    // Null where the device lacks them, as it does those of ray tracing.
+    // The function is null if the device lacks it, as with those of ray tracing.
 #define GLINT_LOAD(name) \
     state.vk.name =      \
         reinterpret_cast<PFN_vk##name>(state.instance.GetDeviceProcAddr(state.handles.device, "vk" #name));
@@ -137,7 +137,7 @@ Status createDevice(Context::State& state) {
     return okStatus();
 }
 
-// Of those that buffers and timers look at.
+// Queries the limits that buffers and timers need.
 void queryLimits(Context::State& state) {
     VkPhysicalDeviceVulkan13Properties vulkan13{};
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;

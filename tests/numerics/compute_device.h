@@ -1,5 +1,5 @@
-// A Vulkan device with compute shaders, whether or not it traces rays: what Glint's own contexts don't ask
-// for.
+// A Vulkan device with compute shaders, even if it can't trace rays. Glint's own contexts do not create such
+// devices.
 #pragma once
 
 #include "context_state.h"
@@ -9,10 +9,10 @@
 
 namespace glint::numerics {
 
-// `deviceName`: part of the wanted device's name; empty: the first that will do. Without validation layers.
-// 16-bit float arithmetic is enabled where there is any (DeviceHandles::shaderFloat16), everything of ray
-// tracing is missing: its functions are null. Errors: "vulkan-loader", "device-missing", "device-features",
-// "vulkan-call".
+// `deviceName` is a part of the wanted device's name; if it is empty, the first suitable device is used.
+// There are no validation layers. 16-bit float arithmetic is enabled if the device has it
+// (DeviceHandles::shaderFloat16). Everything of ray tracing is missing: its functions are null. Errors:
+// "vulkan-loader", "device-missing", "device-features", "vulkan-call".
 Result<std::unique_ptr<Context::State>> createComputeDevice(const std::string& deviceName);
 
 }  // namespace glint::numerics

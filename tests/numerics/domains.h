@@ -1,5 +1,5 @@
-// The inputs of each probe. A function writes the arguments of one call in the order in which the probe reads
-// them.
+// The inputs of each probe. Each function writes the arguments of one call, in the order in which the probe
+// reads them.
 #pragma once
 
 #include "inputs.h"

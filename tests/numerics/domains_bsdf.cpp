@@ -18,7 +18,7 @@ void fillColour(InputSource& in) {
     }
 }
 
-// Reflectances at normal incidence, and that at grazing, which is no less.
+// Writes reflectances at normal incidence, and one at grazing, which is not smaller.
 void fillReflectances(InputSource& in) {
     double largest = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -36,7 +36,7 @@ void fillSchlick(InputSource& in) {
     in.put(in.cosine());
 }
 
-// From the denser side half of the time, then often near the critical angle.
+// Half of the inputs come from the denser side, and are then often near the critical angle.
 void fillCriticalAngle(InputSource& in) {
     const double eta = in.eta();
     if (eta < 1.0 && in.chance(0.5)) {
@@ -99,7 +99,7 @@ void fillVisibleNormalPdf(InputSource& in) {
 
 namespace {
 
-// As sheen has them: alpha is the square of a roughness of at least 0.07.
+// Returns alpha as sheen has it: the square of a roughness of at least 0.07.
 double sheenAlpha(InputSource& in) {
     return in.chance(0.1) ? in.pick({5e-3, 1.0}) : in.logUniform(5e-3, 1.0);
 }
@@ -167,7 +167,7 @@ void fillDispersion(InputSource& in) {
     in.put(in.uniform(0.0, 2.0));
 }
 
-// A coat whose normal leans from z, and light that mirrors the view about it.
+// Writes a coat whose normal leans away from z, and light that mirrors the view about it.
 void fillClearcoat(InputSource& in) {
     const double alpha = in.alpha();
     const Vector n = in.chance(0.3) ? Vector{} : in.lobeNormal(in.uniform(0.0, 0.5) + 1e-6);
@@ -200,7 +200,7 @@ void fillCosineSheenAlpha(InputSource& in) {
 
 namespace {
 
-// A material as evaluateSurface() makes them: energy is shared between metal, diffuse and transmitted light.
+// A material as evaluateSurface() makes it: metal, diffuse and transmitted light share the energy.
 struct GivenMaterial {
     double alphaX = 1.0;
     double alphaY = 1.0;
@@ -208,7 +208,7 @@ struct GivenMaterial {
 };
 
 GivenMaterial putMaterial(InputSource& in, std::uint32_t without = 0) {
-    // All lobes but Unlit and SpecularGlossiness, by their bits.
+    // The bits cover all lobes except Unlit and SpecularGlossiness.
     const auto lobes = static_cast<std::uint32_t>(in.uniform(0.0, 2048.0)) * 4U;
     in.put(in.chance(0.3) ? 0U : lobes & ~without);
     GivenMaterial material;

@@ -8,11 +8,11 @@
 namespace glint::numerics {
 namespace {
 
-// The plane through the origin at right angles to a unit vector.
+// The plane through the origin that is perpendicular to a unit vector.
 class Plane {
 public:
     explicit Plane(const Vector& n) {
-        // Of the axes, the one that n is least along.
+        // It starts from the axis along which n is smallest.
         const double least = std::min({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
         u_ = std::abs(n.x) == least   ? Vector{0.0, n.z, -n.y}
              : std::abs(n.y) == least ? Vector{-n.z, 0.0, n.x}
@@ -42,8 +42,8 @@ void fillTransform(InputSource& in) {
     }
 }
 
-// A sort of bins and a direction: any, on an edge of the octahedral map's cells, seams included, or with a
-// component of 0.
+// Writes a kind of bins and a direction: any direction, one on an edge of the octahedral map's cells,
+// including seams, or one with a component of 0.
 void fillBinnedDirection(InputSource& in) {
     in.put(in.pick({0.0, 1.0, 2.0}));
     const double kind = in.uniform();
@@ -75,9 +75,9 @@ void fillBinnedDirection(InputSource& in) {
     in.put({x / length, y / length, z / length});
 }
 
-// A ray from a point in view, in clip space of a perspective or orthographic camera, and a share of its line.
-// Up to 1e9 times as far away as the near plane: from there w cancels to nothing where the ray comes back to
-// it.
+// Writes a ray from a visible point, in clip space of a perspective or orthographic camera, and a share of
+// its line. The point is up to 1e9 times as far away as the near plane: from there w cancels to nothing where
+// the ray comes back to the plane.
 void fillScreenRay(InputSource& in) {
     const double nearest = in.logUniform(1e-3, 1.0);
     const bool orthographic = in.chance(0.2);
@@ -91,7 +91,7 @@ void fillScreenRay(InputSource& in) {
     const double constant = infinite ? nearest : (orthographic ? farthest : nearest * farthest) / range;
     const double w = orthographic ? 1.0 : along;
     const auto place = [&] {
-        // At the border of the image, and off it by a rounding, too.
+        // Some points are on the border of the image, or off it by a rounding error.
         return w * (in.chance(0.1) ? in.pick({0.0, 1.0, -1.0, 1.0 + 0x1p-23}) : in.uniform(-1.0, 1.0));
     };
     const double x = place();
@@ -104,7 +104,7 @@ void fillScreenRay(InputSource& in) {
     const double aspect = in.logUniform(0.3, 3.0);
     Vector view = in.direction();
     if (in.chance(0.2)) {
-        // Through the eye: a point of the screen.
+        // A point of the screen, on the line through the eye.
         const double sign = in.pick({-1.0, 1.0});
         view = orthographic ? Vector{0.0, 0.0, sign}
                             : Vector{sign * x / focal, sign * y / (focal * aspect), sign * w};
@@ -126,7 +126,7 @@ void fillCounters(InputSource& in) {
     }
 }
 
-// The sum cancels but for the rounding of one factor.
+// The sum cancels except for the rounding of one factor.
 void fillSumOfProduct(InputSource& in) {
     const auto b = static_cast<float>(in.uniform(-2.0, 2.0));
     const auto c = static_cast<float>(in.uniform(-2.0, 2.0));
@@ -145,7 +145,7 @@ void fillProducts(InputSource& in) {
     in.put(in.chance(0.5) ? static_cast<double>(a) * b / c : in.uniform(-2.0, 2.0));
 }
 
-// Two directions at right angles but for their rounding, or any two.
+// Writes two directions that are perpendicular up to rounding, or any two.
 void fillDirections(InputSource& in) {
     const Vector a = in.direction();
     const Vector b = in.direction();
@@ -169,7 +169,7 @@ void fillNormalTransform(InputSource& in) {
     in.put(in.direction());
 }
 
-// A triangle under a transform that turns, scales by 0.1 to 10 along each axis and moves.
+// Writes a triangle, and a transform that rotates, scales by 0.1 to 10 along each axis and translates.
 void fillPlane(InputSource& in) {
     in.put(in.direction());
     for (int k = 0; k < 12; ++k) {
@@ -191,7 +191,7 @@ void fillPlane(InputSource& in) {
         }
         in.put(in.coordinate());
     }
-    // Cofactors of a rotation times a scale: each column by the other two scales.
+    // The cofactors of a rotation times a scale: each column is multiplied by the other two scales.
     for (const auto& row : rotation) {
         for (int column = 0; column < 3; ++column) {
             in.put(row[column] * scale[(column + 1) % 3] * scale[(column + 2) % 3]);
@@ -199,7 +199,7 @@ void fillPlane(InputSource& in) {
     }
 }
 
-// A ray and a normal under every angle, from along each other to at right angles.
+// Writes a ray and a normal at every angle, from parallel to perpendicular.
 void fillConeOnPlane(InputSource& in) {
     const Vector n = in.direction();
     const Plane plane(n);
@@ -211,7 +211,7 @@ void fillConeOnPlane(InputSource& in) {
     in.put(n);
 }
 
-// A vector in the plane of a triangle that is no sliver, from 1e-12 to 1e12 wide.
+// Writes a vector in the plane of a triangle that is no sliver, with sizes from 1e-12 to 1e12.
 void fillTriangle(InputSource& in) {
     const Plane plane(in.direction());
     const double width = in.logUniform(1e-12, 1e12);
@@ -225,15 +225,15 @@ void fillTriangle(InputSource& in) {
     in.put(plane.at(height * std::cos(corner), height * std::sin(corner)));
 }
 
-// An ellipse up to 100 times as long as wide on a triangle that is no sliver, with a texture that it does not
-// squeeze into a line.
+// Writes an ellipse up to 100 times as long as wide on a triangle that is no sliver, with a texture that it
+// does not squeeze into a line.
 void fillFootprint(InputSource& in) {
     const double corner = in.uniform(0.2, 2.9);
     const double height = in.uniform(0.3, 3.0);
     const double axis = in.uniform(0.0, 2.0 * std::numbers::pi);
     const double width = in.logUniform(1e-4, 1e2);
     const double length = width * in.logUniform(1.0, 100.0);
-    // By Cramer's rule in the edges (1, 0) and height (cos corner, sin corner).
+    // Uses Cramer's rule with the edges (1, 0) and height (cos corner, sin corner).
     const auto putInEdges = [&](double x, double y) {
         in.put(x - y * std::cos(corner) / std::sin(corner));
         in.put(y / (height * std::sin(corner)));

@@ -1,4 +1,4 @@
-// The errors of many inputs: the worst with its inputs, and the median.
+// Collects the errors of many inputs: the worst with its inputs, and the median.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ public:
     std::uint64_t notFinite() const {
         return notFinite_;
     }
-    // Upper edge of the bin, an eighth of an octave wide, that holds the median; 0 if most are exact.
+    // Returns the upper edge of the bin that contains the median, an eighth of an octave wide; 0 if most
+    // errors are 0.
     double median() const;
 
 private:

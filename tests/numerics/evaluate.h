@@ -6,7 +6,7 @@
 
 namespace glint::numerics {
 
-// What every probe's arrays hold room for.
+// The arrays of every probe have room for this many.
 inline constexpr int kMaxInputs = 64;
 inline constexpr int kMaxOutputs = 24;
 
@@ -16,7 +16,7 @@ struct ProbeFunction {
     void (*call)(const Real* inputs, Real* outputs) = nullptr;
 };
 
-// Every probe, in the order of the text.
+// Return every probe, in the order of the text.
 std::span<const ProbeFunction<float>> floatProbes();
 std::span<const ProbeFunction<double>> doubleProbes();
 

@@ -1,4 +1,4 @@
-// Energy and reciprocity of the BSDF in double precision, against analytic values and a quadrature that
+// Tests energy and reciprocity of the BSDF in double precision, against analytic values and a quadrature that
 // shares no code with the shaders.
 #include "materials.h"
 
@@ -17,7 +17,7 @@ namespace {
 constexpr std::array kCosines{0.02, 0.1, 0.3, 0.7, 1.0};
 constexpr std::uint64_t kSeed = 20240601;
 
-// White microfacets, each of which reflects once.
+// Returns the albedo of white microfacets, each of which reflects once.
 double singleScatterAlbedo(double alpha, double cosine, int points) {
     glsl::energyCompensation = 0;
     TestMaterial material = makeMaterial(alpha);
@@ -29,13 +29,13 @@ double singleScatterAlbedo(double alpha, double cosine, int points) {
 
 TEST(Ggx, DistributionIntegratesToOneOverProjectedArea) {
     for (const double alpha : {1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0}) {
-        // Substitute t = tan θ / α, which keeps the peak resolved: ∫ D cos θ dω = 2π ∫ D cos⁴θ α² t dt. The
+        // The substitution t = tan θ / α keeps the peak resolved: ∫ D cos θ dω = 2π ∫ D cos⁴θ α² t dt. The
         // tail beyond t = 1000 is 1 / (1 + t²).
         constexpr int kSteps = 20000;
         constexpr double kEnd = 1e3;
         double sum = 0.0;
         for (int i = 0; i < kSteps; ++i) {
-            // Quadratic spacing: dense where the integrand is.
+            // Quadratic spacing is dense where the integrand is large.
             const double s = (i + 0.5) / kSteps;
             const double t = kEnd * s * s;
             const double dt = 2.0 * kEnd * s / kSteps;
@@ -61,7 +61,7 @@ TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
     if (!table) {
         GTEST_SKIP() << "no table of reference values beside the repository";
     }
-    // Columns: roughness, alpha, then E_mu<cosine> each, then the mean.
+    // The columns are roughness, alpha, then E_mu<cosine> each, then the mean.
     std::string header;
     std::getline(table, header);
     std::vector<double> cosines;
@@ -103,7 +103,7 @@ TEST(Furnace, WhiteMetalReflectsEverything) {
 
 TEST(Furnace, NothingReflectsMoreThanItReceives) {
     Engine engine(kSeed);
-    // All lobes but Unlit and SpecularGlossiness.
+    // All lobes except Unlit and SpecularGlossiness.
     constexpr glsl::uint kAll = GLINT_CLEARCOAT | GLINT_SHEEN | GLINT_ANISOTROPY | GLINT_TRANSMISSION |
                                 GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME | GLINT_DISPERSION;
     int failures = 0;
@@ -112,12 +112,13 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
             i % 4 == 0 ? std::exp(uniform(engine, std::log(1e-4), 0.0)) : uniform(engine, 1e-3, 1.0);
         const TestMaterial seen =
             randomMaterial(engine, kAll).seenFrom(direction(cosine, uniform(engine, 0.0, 2.0 * kPi)));
-        // A coat whose normal turns from the view has no visible normals for the quadrature to follow.
+        // If the coat's normal turns away from the view, it has no visible normals that the quadrature could
+        // follow.
         if (seen.has(GLINT_CLEARCOAT) && glm::dot(seen.bsdf.clearcoatNormal, seen.bsdf.view) < 0.01) {
             continue;
         }
         double most = largestOf(albedo(seen, 256));
-        // A coarse sum tells most; what comes close is summed finely.
+        // A coarse sum decides most cases; a result near the limit is summed finely.
         if (most > 0.98) {
             most = largestOf(albedo(seen, 20000));
         }
@@ -126,7 +127,7 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
     }
 }
 
-// f(v, l) of a material, without the cosine. Both directions may be on either side.
+// Returns f(v, l) of a material, without the cosine. Both directions may be on either side.
 glm::dvec3 valueOf(const TestMaterial& material, glm::dvec3 view, glm::dvec3 light) {
     if (view.z < 0.0) {  // a wall that is the same from both sides
         view.z = -view.z;
@@ -149,7 +150,7 @@ void expectReciprocity(glsl::uint lobes, bool passes) {
         }
         const glm::dvec3 view = direction(uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi));
         const double side = passes ? -1.0 : 1.0;
-        // Near the mirror direction as often as anywhere.
+        // Half of the directions are near the mirror direction.
         const glm::dvec3 light =
             i % 2 == 0 ? direction(side * uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi))
                        : glm::normalize(glm::dvec3(-view.x + 0.1 * uniform(engine),

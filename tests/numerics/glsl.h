@@ -1,6 +1,6 @@
-// GLSL's types and functions over glm, for shader text that translate.h made C++ of. Define GLINT_REAL as
-// float or double, then include this and the text inside namespace glsl: once in a translation unit, as all
-// of it has internal linkage.
+// Implements GLSL's types and functions with glm, for shader text that translate.h turned into C++. Define
+// GLINT_REAL as float or double, then include this and the text inside namespace glsl. Do so once in a
+// translation unit, because all of it has internal linkage.
 #pragma once
 
 #ifndef GLINT_REAL
@@ -85,7 +85,7 @@ using glm::tan;
 using glm::transpose;
 using glm::trunc;
 
-// Rounded once, as GLSL's on a device with fused multiply-add; glm's is not.
+// This rounds once, like GLSL's fma() on a device with fused multiply-add; glm's fma() does not.
 [[maybe_unused]] inline Real fma(Real a, Real b, Real c) {
     return std::fma(a, b, c);
 }
@@ -99,8 +99,8 @@ glm::vec<n, Real> fma(glm::vec<n, Real> a, glm::vec<n, Real> b, glm::vec<n, Real
     return result;
 }
 
-// The bits are those of single precision whatever Real is: the functions that step through them are about
-// single precision. Their arguments are inputs, hence exact.
+// The bits are those of single precision whatever Real is, because the functions that step through them are
+// about single precision. Their arguments are inputs, so they are exact.
 [[maybe_unused]] inline int floatBitsToInt(Real value) {
     return std::bit_cast<std::int32_t>(static_cast<float>(value));
 }

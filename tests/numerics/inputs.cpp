@@ -7,7 +7,7 @@ namespace glint::numerics {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// The greatest float below 1.
+// The largest float below 1.
 constexpr double kBelowOne = 1.0 - 0x1p-24;
 
 Vector fromCosine(double cosine, double phi) {

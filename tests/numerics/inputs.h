@@ -1,4 +1,4 @@
-// Inputs of probes: random ones, and those that hurt.
+// Makes inputs of probes: random ones, and difficult ones.
 #pragma once
 
 #include <cmath>
@@ -16,12 +16,12 @@ struct Vector {
     double z = 1.0;
 };
 
-// Hands out values of named domains and writes them as floats. A stream is fixed by its seed.
+// Returns values of named domains and writes them as floats. The seed decides the stream.
 class InputSource {
 public:
     explicit InputSource(std::uint64_t seed) : engine_(seed) {}
 
-    // The values that follow are written from `inputs` on; it has room for them.
+    // Writes the following values from `inputs` on, which must have room for them.
     void start(float* inputs) {
         next_ = inputs;
     }
@@ -42,32 +42,34 @@ public:
         return pick(std::span<const double>(values.begin(), values.size()));
     }
 
-    // GGX alpha: log-uniform in [1e-4, 1], and both ends.
+    // Returns a GGX alpha: log-uniform in [1e-4, 1], and both ends.
     double alpha();
     double roughness();
-    // In (0, 1]: uniform, log-uniform down to 1e-7, near 1 to 1e-8, and the ends.
+    // Returns a cosine in (0, 1]: uniform, log-uniform down to 1e-7, near 1 to 1e-8, and the ends.
     double cosine();
-    // Any unit vector: uniform, near the poles, near the equator, the axes.
+    // Returns any unit vector: uniform, near the poles, near the equator, or an axis.
     Vector direction();
-    // z in (0, 1] by cosine().
+    // Returns a unit vector whose z in (0, 1] comes from cosine().
     Vector upper();
     Vector lower();
-    // A normal about z whose sine is within some alphas of a lobe, from 1e-3 alpha to its far tail.
+    // Returns a normal about z whose sine is within some alphas of a lobe, from 1e-3 alpha to its far tail.
     Vector lobeNormal(double alpha);
-    // The light that `view` sees mirrored in lobeNormal(alpha), or upper() where that lies below the horizon.
+    // Returns the light that `view` sees mirrored in lobeNormal(alpha), or upper() if that lies below the
+    // horizon.
     Vector mirrored(const Vector& view, double alpha);
-    // The light that a facet of lobeNormal(alpha) refracts to `view`, lower() where it refracts none.
+    // Returns the light that a facet of lobeNormal(alpha) refracts to `view`, or lower() if it refracts none.
     Vector refracted(const Vector& view, double alpha, double eta);
-    // n_t / n_i: an index or its inverse, apart from 1 by leastStep, often not by much more.
+    // Returns n_t / n_i: an index or its inverse, which differs from 1 by at least leastStep, often by not
+    // much more.
     double eta(double leastStep = 1e-7);
-    // A component of a colour: 0, 1 and random; with `bright`, up to 100.
+    // Returns a component of a colour: 0, 1 or random; with `bright`, up to 100.
     double colour(bool bright = false);
-    // Index of refraction as KHR_materials_ior allows: 0 or at least 1, with 1 + 1e-7, common ones and
-    // random.
+    // Returns an index of refraction that KHR_materials_ior allows: 0 or at least 1, such as 1 + 1e-7, common
+    // ones and random ones.
     double ior();
-    // A random number of a sampler: [0, 1), with both ends.
+    // Returns a random number of a sampler: [0, 1), with both ends.
     double sample();
-    // A coordinate: ±0, denormals, 1e-6 to 1e5 of either sign.
+    // Returns a coordinate: ±0, denormals, or 1e-6 to 1e5 of either sign.
     double coordinate();
 
 private:

@@ -9,11 +9,11 @@
 namespace glint::numerics {
 namespace {
 
-// Enough to fill a GPU; a CPU is full with as many as it has lanes.
+// Enough threads to fill a GPU. A CPU is full with as many as it has lanes.
 constexpr std::uint32_t kGpuThreads = 1U << 18U;
 constexpr std::uint32_t kCpuThreads = 1U << 12U;
 static_assert(kGpuThreads <= ProbeDevice::kMaxThreads && kCpuThreads <= ProbeDevice::kMaxThreads);
-// So many that reading the inputs once does not count.
+// With so many repeats, reading the inputs once does not count.
 constexpr std::uint32_t kLeastRepeats = 16;
 constexpr std::uint32_t kMostRepeats = 1U << 16U;
 
@@ -28,7 +28,7 @@ std::uint32_t KernelTimer::threads() const {
     return device_.isCpu() ? kCpuThreads : kGpuThreads;
 }
 
-// Of as many passes over all elements as there are repeats.
+// Times as many passes over all elements as there are repeats.
 double KernelTimer::hostMilliseconds(const TimedKernel& kernel) const {
     const std::vector<double> inputs(inputs_[kernel.inputs].begin(), inputs_[kernel.inputs].end());
     std::array<double, kMaxOutputs> outputs{};
@@ -49,7 +49,7 @@ Result<double> KernelTimer::milliseconds(const TimedKernel& kernel) {
     return device_.time(*kernel.pipeline, kElements, threads(), kernel.repeats);
 }
 
-// Finds how often to repeat; the first runs warm up, too.
+// Finds how often to repeat. The first runs also warm up.
 Status KernelTimer::calibrate(TimedKernel& kernel) {
     kernel.repeats = kernel.pipeline ? kLeastRepeats : 1;
     while (kernel.repeats < kMostRepeats) {

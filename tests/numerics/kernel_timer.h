@@ -1,4 +1,4 @@
-// Times kernels against each other: interleaved, in random order, round after round.
+// Times kernels against each other: interleaved, in random order, for several rounds.
 #pragma once
 
 #include "probe_device.h"
@@ -11,7 +11,7 @@
 
 namespace glint::numerics {
 
-// What is timed: a kernel on the device, or a function on one core of the host.
+// The object of a measurement: a kernel on the device, or a function on one core of the host.
 struct TimedKernel {
     std::size_t inputs = 0;                 // which list of inputs
     std::optional<ProbePipeline> pipeline;  // nothing: the host
@@ -23,17 +23,17 @@ struct TimedKernel {
 
 class KernelTimer {
 public:
-    // Elements whose evaluations are timed; they stay in a cache of any device.
+    // The number of elements whose evaluations are timed. They fit into a cache of any device.
     static constexpr std::uint32_t kElements = 4096;
 
-    // `leastMilliseconds`: that a measurement takes. The device outlives the timer.
+    // A measurement takes at least `leastMilliseconds`. The device must outlive the timer.
     KernelTimer(ProbeDevice& device, double leastMilliseconds)
         : device_(device), leastMilliseconds_(leastMilliseconds) {}
 
-    // kElements elements; returns which list that is.
+    // Adds kElements elements. Returns the index of the list.
     std::size_t addInputs(std::vector<float> inputs);
-    // Fills in repeats and nanoseconds. Every kernel once a round, in an order that `seed` decides.
-    // Errors: those of ProbeDevice::time().
+    // Fills in repeats and nanoseconds. Every kernel runs once in each round, in an order that `seed`
+    // decides. Has the errors of ProbeDevice::time().
     Status measure(std::span<TimedKernel* const> kernels, int rounds, std::uint64_t seed);
 
 private:

@@ -10,7 +10,7 @@
 namespace glint::numerics {
 namespace {
 
-// Of functions without a textbook's form, by their probes.
+// The probes of functions for which there is no textbook form.
 constexpr std::string_view kFurther[] = {"GgxDistributionAnisotropic",
                                          "GgxVisibilityAnisotropic",
                                          "SampleVisibleNormal",
@@ -28,10 +28,10 @@ constexpr std::string_view kFurther[] = {"GgxDistributionAnisotropic",
                                          "BsdfPdf",
                                          "SampleBsdf"};
 
-// A loop of 100,000 samples is no function of shading.
+// A loop of 100,000 samples is not a function of shading.
 constexpr std::string_view kLeftOut = "RunningMean";
 
-// A rung, or what is around its function.
+// A rung, or the kernel around its function.
 struct Climbing {
     std::size_t row = 0;
     RungKind kind = RungKind::Single;
@@ -92,7 +92,7 @@ Status Climber::addRung(std::size_t row, RungKind kind) {
     if (!pipeline) {
         return pipeline.error();
     }
-    // All in half precision has loads and sums of its own; the others share them.
+    // The kernel in half precision has its own loads and sums; the other kinds share them.
     const RungKind baseKind = kind == RungKind::Half ? RungKind::Half : RungKind::Single;
     if (findKernel(row, baseKind, true) == nullptr) {
         Result<ProbePipeline> without =
@@ -111,7 +111,7 @@ Status Climber::addRung(std::size_t row, RungKind kind) {
         pipeline->spirv == findKernel(row, RungKind::Single, false)->pipeline->spirv) {
         return okStatus();  // nothing of it is in 16 bits
     }
-    // The base sums up inputs, the kernel outputs.
+    // The base sums up inputs; the kernel sums up outputs.
     const int sums = probe.inputs - probe.outputs;
     const auto cost = static_cast<int>(*all) - static_cast<int>(*around) + sums;
     Rung rung;
@@ -190,8 +190,8 @@ const TimedKernel* Climber::findKernel(std::size_t row, RungKind kind, bool isBa
     return found == climbing_.end() ? nullptr : &found->kernel;
 }
 
-// By round: what the kernel takes more than one without the function does on the whole. (Less in one round
-// than in another by chance, that one would show in the difference.)
+// Returns for each round how much longer the kernel takes than one without the function takes on average.
+// (The average is used because a base that was fast by chance in one round would distort the difference.)
 std::vector<double> Climber::timesOf(std::size_t row, RungKind kind) const {
     std::vector<double> times = findKernel(row, kind, false)->nanoseconds;
     if (kind != RungKind::Double) {
@@ -212,8 +212,8 @@ void Climber::summarise(std::size_t row) {
     for (Rung& rung : result.rungs) {
         std::vector<double> times = timesOf(row, rung.kind);
         rung.nanoseconds = spreadOf(times);
-        // The host's time is of another machine; by what is lost in that of the kernel around it nothing is
-        // divided.
+        // The host's times are for another processor. A reference whose time is lost in that of the kernel
+        // around it can't be divided by.
         if (rung.kind == reference || rung.kind == RungKind::Double || referenceSpread.low <= 0.0) {
             continue;
         }

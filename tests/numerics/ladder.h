@@ -1,5 +1,5 @@
-// The precision ladder: what a function costs, in instructions and in time, as a textbook has it, as Glint
-// has it, and in fewer or more bits, beside its errors.
+// The precision ladder: the cost of a function in instructions and in time, and its errors, in the textbook's
+// form, in Glint's form, and in fewer or more bits.
 #pragma once
 
 #include "ladder_statistics.h"
@@ -41,11 +41,11 @@ struct RungErrors {
 
 struct Rung {
     RungKind kind = RungKind::Single;
-    // Of the optimised SPIR-V; nothing of C++.
+    // The instructions of the optimised SPIR-V; absent for C++.
     std::optional<std::uint32_t> instructions;
     Spread nanoseconds;  // an evaluation, over all threads of the device
-    // Its times over the median of the textbook's form, or where there is none of ours in 32 bits. Nothing
-    // where that can't be told from the kernel around it.
+    // Its times over the median of the textbook's form, or of Glint's form in 32 bits if there is none.
+    // Absent if the time can't be told from that of the kernel around it.
     std::optional<Spread> ratio;
     bool tie = false;                  // of the times: the intervals overlap
     std::optional<RungErrors> errors;  // nothing of the truth
@@ -65,7 +65,7 @@ struct Ladder {
     std::vector<LadderRow> rows;
 };
 
-// How ours in 32 bits compares in time with the textbook's forms.
+// Compares the times of Glint's functions in 32 bits with the textbook's forms.
 struct LadderCounts {
     int faster = 0;
     int slower = 0;
@@ -74,10 +74,10 @@ struct LadderCounts {
 };
 LadderCounts countRungs(const Ladder& ladder);
 
-// The functions of the ladder: those that have a form of a textbook, and the main others.
+// Returns the functions of the ladder: those that have a textbook form, and the main others.
 std::vector<Probe> ladderProbes();
 
-// Errors: those of the device; "timings-unavailable" where it has no timestamps.
+// Errors: those of the device; "timings-unavailable" if it has no timestamps.
 Result<Ladder> climb(ProbeDevice& device, const LadderOptions& options);
 
 }  // namespace glint::numerics

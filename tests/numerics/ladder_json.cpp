@@ -23,7 +23,7 @@ Json jsonOf(const Spread& spread) {
 }
 
 Json jsonOf(const RungErrors& errors) {
-    // JSON has no infinity: null.
+    // JSON has no infinity, so it is null.
     const Json worst = std::isfinite(errors.worst) ? Json(errors.worst) : Json(nullptr);
     const Json median = std::isfinite(errors.median) ? Json(errors.median) : Json(nullptr);
     return {{"worst", worst},

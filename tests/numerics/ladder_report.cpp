@@ -17,7 +17,7 @@ std::string timeText(const Spread& spread) {
                                  : fmt::format("{:.0f}", spread.median);
 }
 
-// The ratio's median and quartiles, or that there is no difference to be seen.
+// Returns the ratio's median and quartiles, or a text that says that no difference is visible.
 std::string ratioText(const Rung& rung) {
     if (!rung.ratio) {
         return "";
@@ -67,7 +67,7 @@ std::string headline(const Ladder& ladder) {
                        ladder.hasHalf ? "" : " The device has no 16-bit arithmetic.");
 }
 
-// How ours fares against textbooks.
+// Summarises how Glint's functions compare with textbooks.
 std::string summary(const Ladder& ladder) {
     const LadderCounts counts = countRungs(ladder);
     return fmt::format(

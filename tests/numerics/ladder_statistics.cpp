@@ -7,7 +7,7 @@
 namespace glint::numerics {
 namespace {
 
-// Between neighbours in proportion, as R's type 7 (Hyndman and Fan 1996, "Sample Quantiles in Statistical
+// Interpolates between neighbours, like R's type 7 (Hyndman and Fan 1996, "Sample Quantiles in Statistical
 // Packages").
 double quantile(const std::vector<double>& sorted, double share) {
     const double place = share * static_cast<double>(sorted.size() - 1);
@@ -16,9 +16,10 @@ double quantile(const std::vector<double>& sorted, double share) {
     return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
-// How many of the least, and of the greatest, values an interval leaves out that holds the population's
-// median with a chance of 95 %: the most for which a binomial of that many trials and a half has at most 5 %
-// in both tails. 0 where there are too few values.
+// Returns how many of the smallest, and of the largest, values can be left out so that the interval of the
+// rest contains the population's median with a chance of 95 %. It is the largest number for which a binomial
+// with that many trials and probability one half has at most 5 % in both tails. Returns 0 if there are too
+// few values.
 std::size_t outside(std::size_t count) {
     constexpr double kTails = 0.05;
     double term = std::exp2(-static_cast<double>(count));

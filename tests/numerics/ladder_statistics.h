@@ -1,11 +1,11 @@
-// What is said of repeated measurements.
+// Statistics of repeated measurements.
 #pragma once
 
 #include <vector>
 
 namespace glint::numerics {
 
-// Of at least one number.
+// Requires at least one number.
 struct Spread {
     double median = 0.0;
     double low = 0.0;  // 95 % confidence interval of the median, by order statistics
@@ -16,7 +16,7 @@ struct Spread {
 
 Spread spreadOf(std::vector<double> values);
 
-// Whether the confidence intervals overlap: no difference is shown.
+// Returns whether the confidence intervals overlap, so that no difference is shown.
 inline bool isTie(const Spread& a, const Spread& b) {
     return a.low <= b.high && b.low <= a.high;
 }

@@ -1,5 +1,5 @@
-// The precision ladder: it has every rung, its errors are within the bounds of the functions, and its
-// statistics are those that they say. Of times only that there are some.
+// Tests the precision ladder: it has every rung, its errors are within the bounds of the functions, and its
+// statistics are right. About times it only tests that there are some.
 #include "ladder.h"
 
 #include "ladder_report.h"
@@ -23,7 +23,7 @@ TEST(Spread, IsThatOfOrderStatistics) {
     EXPECT_EQ(spread.median, 8.0);
     EXPECT_EQ(spread.q1, 4.5);
     EXPECT_EQ(spread.q3, 11.5);
-    // Both tails of 15 trials: 3.5 % with 3 successes or fewer, 11.8 % with 4.
+    // The probabilities of both tails of 15 trials are 3.5 % for 3 or fewer successes, 11.8 % for 4.
     EXPECT_EQ(spread.low, 4.0);
     EXPECT_EQ(spread.high, 12.0);
 }

@@ -1,5 +1,5 @@
-// Makes of probes.glsl, with all that it includes, one GLSL text for the device, the same text as C++, and
-// the list of its probes.
+// Turns probes.glsl, with everything that it includes, into one GLSL text for the device, the same text as
+// C++, and the list of its probes.
 //
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
@@ -30,7 +30,7 @@ constexpr std::string_view kRoot = R"(#version 460
 #include "numerics/textbook.glsl"
 )";
 
-// Of a header that needs device addresses, what needs none: its constants.
+// Returns the part of a header that needs no device addresses: its constants.
 std::string constantsOf(std::string_view header) {
     std::string text = "#include \"interop/types.h\"\nGLINT_INTEROP_BEGIN\n";
     while (!header.empty()) {
@@ -43,12 +43,12 @@ std::string constantsOf(std::string_view header) {
     return text + "GLINT_INTEROP_END\n";
 }
 
-// Found files stay in memory: flatten() keeps views of them.
+// Files that were found stay in memory, because flatten() keeps views of them.
 class Sources {
 public:
     explicit Sources(std::vector<fs::path> folders) : folders_(std::move(folders)) {
         texts_["generated/features.glsl"] = glint::featureDefines();
-        // What a scene chooses, who compiles the text defines.
+        // A scene chooses these values; here, the code that compiles the text defines them.
         texts_["generated/scene.glsl"] =
             "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";
     }

@@ -1,5 +1,5 @@
-// Materials for tests of the whole BSDF, as evaluateSurface() makes them: energy is shared between metal,
-// diffuse and transmitted light.
+// Materials for tests of the whole BSDF, as evaluateSurface() makes them: metal, diffuse and transmitted
+// light share the energy.
 #pragma once
 
 #include "quadrature.h"
@@ -24,7 +24,7 @@ struct TestMaterial {
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;
     }
-    // With what follows from the view.
+    // Returns the material with everything that follows from the view.
     TestMaterial seenFrom(const glm::dvec3& view) const {
         TestMaterial seen = *this;
         glsl::prepareBsdf(seen.bsdf, features(), view);
@@ -38,7 +38,7 @@ struct TestMaterial {
     }
 };
 
-// Black, and as neutral as can be.
+// Returns a black material whose other values are neutral.
 [[maybe_unused]] TestMaterial makeMaterial(double alpha) {
     TestMaterial material;
     material.bsdf.f90 = 1.0;
@@ -61,13 +61,13 @@ using Engine = std::mt19937_64;
     return {component(), component(), component()};
 }
 
-// Roughness as artists set it, alpha from `leastAlpha` on.
+// Returns alpha from a roughness as artists set it, at least `leastAlpha`.
 [[maybe_unused]] double randomAlpha(Engine& engine, double leastAlpha) {
     const double roughness = uniform(engine);
     return std::max(roughness * roughness, leastAlpha);
 }
 
-// Any lobes of `allowed` at once.
+// Returns a material with any combination of the lobes in `allowed`.
 [[maybe_unused]] TestMaterial randomMaterial(Engine& engine, glsl::uint allowed, double leastAlpha = 1e-4) {
     TestMaterial material = makeMaterial(randomAlpha(engine, leastAlpha));
     glsl::Bsdf& b = material.bsdf;
@@ -97,7 +97,7 @@ using Engine = std::mt19937_64;
     return material;
 }
 
-// Points where the material, seen from its view, has its mass.
+// Returns points where the material, seen from its view, has its mass.
 [[maybe_unused]] Quadrature quadratureOf(const TestMaterial& material) {
     const glsl::Bsdf& b = material.bsdf;
     Quadrature quadrature(b.view);

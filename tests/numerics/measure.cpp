@@ -41,7 +41,7 @@ Result<Calls> findCalls(std::string_view name) {
     return calls;
 }
 
-// Errors of `values` against `truth`, both with scale and decision behind the outputs.
+// Adds the errors of `values` against `truth`. Both have scale and decision behind the outputs.
 template <typename Real>
 bool compare(const Probe& probe, const Real* values, const double* truth, const float* inputs,
              ErrorStatistics& statistics) {
@@ -62,7 +62,7 @@ bool compare(const Probe& probe, const Real* values, const double* truth, const 
     }
     const double scale = probe.hasScale ? std::abs(truth[probe.outputs]) : 1.0;
     for (int k = 0; k < probe.outputs; ++k) {
-        // The least normal number stands in for a scale of 0: devices may flush what is below.
+        // The smallest normal number replaces a scale of 0, because devices may flush smaller ones.
         const double against =
             std::max({std::abs(truth[k]), probe.bounds.floorShare * scale, static_cast<double>(FLT_MIN)});
         statistics.add(std::abs(static_cast<double>(values[k]) - truth[k]) / against, k, inputs,
@@ -71,7 +71,7 @@ bool compare(const Probe& probe, const Real* values, const double* truth, const 
     return true;
 }
 
-// One batch of inputs with what each implementation makes of them.
+// One batch of inputs, with the results of each implementation.
 struct Batch {
     std::vector<float> inputs;
     std::vector<float> device;
@@ -127,7 +127,8 @@ ChunkResult compareChunk(const Probe& probe, const Calls& ours, const Calls& tex
     return result;
 }
 
-// Calls work(chunk) for each chunk of `count` elements on every core; results in the order of the chunks.
+// Calls work(chunk) for each chunk of `count` elements, on all cores. Returns the results in the order of the
+// chunks.
 template <typename Work>
 auto forChunks(std::uint32_t count, const Work& work) {
     std::vector<Chunk> chunks;
@@ -154,7 +155,7 @@ void fillInputs(const Probe& probe, std::uint64_t seed, std::uint64_t batch, std
                 std::vector<float>& inputs) {
     inputs.resize(std::size_t{count} * probe.inputs);
     forChunks(count, [&](Chunk chunk) {
-        // A stream of its own for each chunk, so that inputs do not depend on the number of cores.
+        // Each chunk has its own stream, so that inputs do not depend on the number of cores.
         std::seed_seq sequence{seed, seed >> 32U, batch, std::uint64_t{chunk.first}};
         std::array<std::uint32_t, 2> word{};
         sequence.generate(word.begin(), word.end());

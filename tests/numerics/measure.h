@@ -1,4 +1,4 @@
-// Runs a probe in all three ways and keeps the worst of what it sees.
+// Runs a probe in all three ways and keeps the worst errors.
 #pragma once
 
 #include "error_statistics.h"
@@ -18,7 +18,7 @@ struct MeasureOptions {
     std::uint64_t seed = 1;
 };
 
-// GLINT_NUMERIC_INPUTS and GLINT_NUMERIC_SEED of the environment, over the defaults.
+// Returns GLINT_NUMERIC_INPUTS and GLINT_NUMERIC_SEED of the environment, or else the defaults.
 MeasureOptions optionsFromEnvironment();
 
 struct ProbeResult {
@@ -29,7 +29,7 @@ struct ProbeResult {
     std::uint64_t undecided = 0;  // inputs on which the device decided otherwise than double precision
     std::optional<ErrorStatistics> textbook;  // on the device
 
-    // On the device, in fewer bits.
+    // The results on the device in fewer bits.
     struct Fewer {
         ProbePrecision precision = ProbePrecision::Single;
         ErrorStatistics statistics;
@@ -38,13 +38,13 @@ struct ProbeResult {
     std::vector<Fewer> fewer;
 };
 
-// Streams the inputs in batches; the truth is the probe in double precision over the same inputs.
-// Errors: those of the device; "probe-name" where a probe is not in the text.
-// `fewer`: what else to measure than 32 bits, on a device that has them.
+// Streams the inputs in batches. The truth is the probe in double precision for the same inputs. `fewer`
+// lists precisions to measure in addition to 32 bits, on a device that has them. Errors: those of the device;
+// "probe-name" if a probe is not in the text.
 Result<ProbeResult> measure(ProbeDevice& device, const Probe& probe, const MeasureOptions& options,
                             std::span<const ProbePrecision> fewer = {});
 
-// Inputs of the probe: `count`, of those that measure() draws first.
+// Returns the first `count` inputs that measure() draws for the probe.
 std::vector<float> firstInputs(const Probe& probe, std::uint64_t seed, std::uint32_t count);
 
 }  // namespace glint::numerics

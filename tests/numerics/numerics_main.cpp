@@ -64,7 +64,7 @@ Result<numerics::Report> measureAll(const Settings& settings) {
                             : makeError("validation", "", messages.front(), "");
 }
 
-// Into the files that were asked for.
+// Writes the report into the files that were asked for.
 Status writeReport(const Settings& settings, const std::string& json, const std::string& markdown) {
     if (!settings.json.empty()) {
         if (Status status = writeFile(settings.json, json); !status) {

@@ -1,5 +1,5 @@
-// The shaders' functions on the device and as C++ in single precision, against themselves in double
-// precision.
+// Compares the shaders' functions on the device and as C++ in single precision with the same functions in
+// double precision.
 #include "evaluate.h"
 #include "measure.h"
 #include "report.h"

@@ -12,7 +12,7 @@
 namespace glint::numerics {
 namespace {
 
-// What timed kernels multiply their inputs by, in turn.
+// The number of factors by which timed kernels multiply their inputs in turn.
 constexpr std::size_t kOnes = 16;
 
 struct Pushed {

@@ -28,7 +28,7 @@ struct ProbePipeline {
 
 struct ProbeDeviceOptions {
     std::string name;  // part of the wanted device's name; empty: the first that will do
-    // With the validation layers, on a device that can run Glint; without: on any that computes.
+    // With validation layers it uses a device that can run Glint; without them, any device that computes.
     bool validates = true;
 };
 
@@ -36,33 +36,33 @@ class ProbeDevice {
 public:
     static constexpr std::uint32_t kBatch = 65536;
 
-    // Errors: those of Context::createHeadless or createComputeDevice.
+    // Has the errors of Context::createHeadless or createComputeDevice.
     static Result<std::unique_ptr<ProbeDevice>> create(const ProbeDeviceOptions& options = {});
     ~ProbeDevice();
 
-    // The probe for up to kBatch inputs. Errors: those of compileShader, "vulkan-call".
+    // Compiles the probe for up to kBatch inputs. Errors: those of compileShader, "vulkan-call".
     Result<ProbePipeline> compile(std::string_view probe, int inputs, int outputs,
                                   ProbePrecision precision = ProbePrecision::Single);
-    // timedKernel(). Errors likewise.
+    // Compiles timedKernel(), with the same errors.
     Result<ProbePipeline> compileTimed(std::string_view probe, int inputs, int outputs,
                                        ProbePrecision precision);
 
-    // outputs.size() / pipeline.outputs elements, at most kBatch.
+    // Runs outputs.size() / pipeline.outputs elements, at most kBatch.
     Status run(const ProbePipeline& pipeline, std::span<const float> inputs, std::span<float> outputs);
 
-    // Puts the inputs of time() where pipelines find them, at most kBatch elements.
+    // Stores the inputs of time(), at most kBatch elements, where pipelines find them.
     void setInputs(std::span<const float> inputs);
-    // Milliseconds of device time of `threads` threads, at most kMaxThreads, that evaluate `repeats` times
-    // each, over `count` elements. Errors: "timings-unavailable", "vulkan-call".
+    // Returns the milliseconds of device time that `threads` threads (at most kMaxThreads) take to evaluate
+    // `repeats` times each, over `count` elements. Errors: "timings-unavailable", "vulkan-call".
     Result<double> time(const ProbePipeline& pipeline, std::uint32_t count, std::uint32_t threads,
                         std::uint32_t repeats);
     static constexpr std::uint32_t kMaxThreads = kBatch * kMaxOutputs;
 
     std::string description() const;
-    // Whether it computes in 16 bits.
+    // Returns whether the device computes in 16 bits.
     bool hasHalf() const;
     bool isCpu() const;
-    // Of the validation layers.
+    // Returns the messages of the validation layers.
     std::vector<std::string> messages() const;
 
 private:
@@ -72,17 +72,17 @@ private:
     Status createLayout();
     Result<ProbePipeline> make(std::string_view probe, const std::string& glsl, int inputs, int outputs,
                                ProbePrecision precision);
-    // Records one dispatch, which reads from `inputs`.
+    // Records one dispatch that reads from `inputs`.
     void dispatch(VkCommandBuffer commands, const ProbePipeline& pipeline, const Buffer& inputs,
                   std::uint32_t threads, std::uint32_t count, std::uint32_t repeats) const;
 
-    // One of the two.
+    // Exactly one of the two is set.
     std::unique_ptr<Context> context_;
     std::unique_ptr<Context::State> bare_;
     std::unique_ptr<MemoryPool> pool_;
     Buffer inputs_;
     Buffer outputs_;
-    // In the device's own memory: what timed kernels read.
+    // The inputs of timed kernels, in the device's own memory.
     Buffer timedInputs_;
     Buffer ones_;
     UniquePipelineLayout layout_;

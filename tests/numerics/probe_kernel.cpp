@@ -7,7 +7,8 @@
 namespace glint::numerics {
 namespace {
 
-// Between the #version line and the rest: what the scene decides, and what PROBE means on the device.
+// Returns the text between the #version line and the rest: what the scene decides, and the meaning of PROBE
+// on the device.
 std::string prelude(ProbePrecision precision) {
     const std::string relaxed = precision == ProbePrecision::Mixed
                                     ? "precision highp float;\nprecision highp int;\n"
@@ -19,7 +20,7 @@ std::string prelude(ProbePrecision precision) {
                          kMaxInputs, kMaxOutputs);
 }
 
-// With everything after the directives that must come first.
+// Returns the entry with everything after the directives that must come first.
 std::string withText(std::string entry, ProbePrecision precision) {
     std::string text(probeText());
     const std::size_t firstLine = text.find("#line");
@@ -59,7 +60,7 @@ std::string_view probeText() {
     return kText;
 }
 
-// Arrays are indexed by constants only, so that the optimiser takes them apart.
+// Arrays are indexed by constants only, so that the optimiser can split them.
 std::string probeKernel(std::string_view probe, int inputs, int outputs, ProbePrecision precision) {
     std::string text = declarations();
     text += fmt::format(

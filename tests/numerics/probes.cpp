@@ -34,7 +34,7 @@ constexpr Probe kProbes[] = {
      .outputs = 1,
      .fill = fillBinnedDirection,
      .bounds = {4e-6, 1e-6, 1.0},
-     // Many inputs are as close to an edge as they can be.
+     // Many inputs are as close to an edge as possible.
      .undecidedShare = 0.1,
      .givesEdge = true},
     {.name = "ScreenPixel",
@@ -88,7 +88,7 @@ constexpr Probe kProbes[] = {
      .inputs = 2,
      .outputs = 1,
      .fill = fillCriticalAngle,
-     // Within 1e-8 of the critical angle it is the root of a difference of nearly 0.
+     // Within 1e-8 of the critical angle the result is the root of a difference of nearly 0.
      .bounds = {1e-3, 1e-6},
      .undecidedShare = 1e-4,
      .textbook = "TextbookRefractedCosine2"},
@@ -111,7 +111,7 @@ constexpr Probe kProbes[] = {
      .inputs = 6,
      .outputs = 1,
      .fill = fillInterface,
-     // Ends with a root at the critical angle.
+     // The function ends with a root at the critical angle.
      .bounds = {1e-4, 1e-6, 1e-4},
      .undecidedShare = 1e-4,
      .textbook = "TextbookInterfacePassed"},
@@ -173,7 +173,7 @@ constexpr Probe kProbes[] = {
      .inputs = 6,
      .outputs = 3,
      .fill = fillFilm,
-     // Interference cancels: errors count against full reflectance.
+     // Interference cancels, so errors count relative to full reflectance.
      .bounds = {1e-5, 1e-6, 1.0},
      .undecidedShare = 1e-4},
     {.name = "RefractDirection",
@@ -188,7 +188,7 @@ constexpr Probe kProbes[] = {
      .inputs = 9,
      .outputs = 1,
      .fill = fillRefracted,
-     // The cosine of facets seen from the side is a difference; there little light passes.
+     // The cosine of facets seen from the side is a difference, but little light passes there.
      .bounds = {1e-4, 1e-6, 1e-2},
      .hasScale = true,
      .undecidedShare = 1e-4,
@@ -230,14 +230,14 @@ constexpr Probe kProbes[] = {
      .inputs = 36,
      .outputs = 1,
      .fill = fillPlane,
-     // Itself a bound of errors, to which a thousandth more or less is nothing.
+     // The function is itself a bound of errors, so a thousandth more or less does not matter.
      .bounds = {1e-3, 1e-6}},
     {.name = "ConeAxes",
      .function = "coneAxes",
      .inputs = 6,
      .outputs = 6,
      .fill = fillConeOnPlane,
-     // The cosine that the longer axis is divided by is a sum that cancels, down to 0.01.
+     // The cosine that divides the longer axis is a sum that cancels, down to 0.01.
      .bounds = {1e-4, 1e-6, 1.0},
      .hasScale = true,
      .textbook = "TextbookConeAxes"},
@@ -261,7 +261,7 @@ constexpr Probe kProbes[] = {
      .inputs = 16,
      .outputs = 3,
      .fill = fillLight,
-     // A cone as sharp as 1 / 1000 magnifies what its cosine rounds by as much.
+     // A cone as narrow as 1 / 1000 magnifies the rounding of its cosine by that factor.
      .bounds = {5e-4, 1e-6, 1.0},
      .hasScale = true},
     {.name = "SampleLightDirection",
@@ -312,7 +312,8 @@ constexpr Probe kProbes[] = {
      .inputs = 34,
      .outputs = 3,
      .fill = fillBsdf,
-     // What white sheen leaves near grazing is 1 - E, a difference of which E rounds by less than 1e-6.
+     // The share that white sheen leaves near grazing is 1 - E, a difference in which E is rounded by less
+     // than 1e-6.
      .bounds = {1e-4, 1e-6, 0.01},
      .hasScale = true},
     {.name = "BsdfPdf",
@@ -321,7 +322,7 @@ constexpr Probe kProbes[] = {
      .outputs = 1,
      .fill = fillBsdf,
      // The chance to pass rather than reflect ends with a root at the critical angle. A sample divides by the
-     // density that it has, which the next row checks.
+     // same density, which the next row checks.
      .bounds = {0.1, 1e-6, 0.01},
      .hasScale = true},
     {.name = "SampleBsdf",

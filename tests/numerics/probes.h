@@ -1,4 +1,5 @@
-// What is measured: each function of shaders/ that needs no device, its inputs and how exact it must be.
+// The list of measurements: each function of shaders/ that needs no device, its inputs and how exact it must
+// be.
 #pragma once
 
 #include "inputs.h"
@@ -16,7 +17,7 @@ struct Bounds {
     double floorShare = 1e-6;
 };
 
-// Directions and positions have no relative precision in a component: their errors count against their
+// Single components of directions and positions have no relative precision, so errors count relative to the
 // length.
 inline constexpr Bounds kVectorBounds{1e-5, 1e-6, 1.0};
 
@@ -28,22 +29,21 @@ struct Probe {
     int outputs = 0;
     void (*fill)(InputSource&) = nullptr;
     Bounds bounds{};
-    // After its outputs the probe gives their scale; without that it is 1.
+    // If set, the probe gives the scale of its outputs after them. Otherwise it is 1.
     bool hasScale = false;
-    // Last, the probe gives a number that says which way it decided. Where single and double precision decide
-    // otherwise, near the edge, outputs are not compared; at most this share of the inputs may do so.
+    // If not negative, the probe's last number says how it decided. If single and double precision decide
+    // differently near the edge, outputs are not compared. At most this share of the inputs may do so.
     double undecidedShare = -1.0;
-    // Output 0 is how far away the nearest edge is at which the decision changes: deciding otherwise is an
-    // error of as much.
+    // If set, output 0 is the distance to the nearest edge at which the decision changes. A different
+    // decision is an error of that size.
     bool givesEdge = false;
-    // The probe in textbook.glsl of the formula that the function stands in for, of the same inputs; may be
-    // empty.
+    // The probe in textbook.glsl with the textbook's formula for the same inputs; may be empty.
     std::string_view textbook = {};
-    // The textbook's probe is compared with itself in double precision, not with ours: the two choose
-    // differently (another frame, another origin), and each is to be exact about its own choice.
+    // If set, the textbook's probe is compared with itself in double precision, not with Glint's: the two
+    // choose differently (another frame, another origin), and each must be exact about its own choice.
     bool textbookAgainstItself = false;
 
-    // A probe that takes long is run for no more inputs than this; 0: as many as asked for.
+    // A slow probe runs for at most this many inputs; 0 for as many as asked for.
     std::uint64_t inputLimit = 0;
 
     bool decides() const {
@@ -56,7 +56,7 @@ struct Probe {
 
 std::span<const Probe> allProbes();
 
-// Its name, for messages.
+// Prints its name, for messages.
 inline std::ostream& operator<<(std::ostream& out, const Probe& probe) {
     return out << probe.name;
 }

@@ -1,4 +1,4 @@
-// Probes of what scatters light.
+// Probes of the functions that scatter light.
 #include "bsdf/constants.glsl"
 #include "bsdf/exact.glsl"
 #include "bsdf/fresnel.glsl"
@@ -31,7 +31,7 @@ PROBE(HalfCosine2) {
     o[0] = squared.x + squared.y;
 }
 
-// Near 0 its root, the cosine, is what counts.
+// Near 0 its root, the cosine, is what matters.
 PROBE(RefractedCosine2) {
     float squared = refractedCosine2(exactSquare(vec2(i[0], 0.0)), i[1]);
     o[0] = sqrt(max(squared, 0.0));
@@ -85,13 +85,14 @@ PROBE(GgxVisibilityAnisotropic) {
     o[0] = ggxVisibility(VEC3(0), VEC3(3), VEC2(6));
 }
 
-// The normal, with the ellipsoid of the microfacets stretched into a sphere: otherwise a smooth lobe hides its errors.
+// The normal, with the ellipsoid of the microfacets stretched into a sphere. Otherwise a smooth lobe hides
+// its errors.
 PROBE(SampleVisibleNormal) {
     vec3 h = sampleVisibleNormal(VEC3(0), VEC2(3), VEC2(5));
     vec3 stretched = normalize(vec3(h.x / i[3], h.y / i[4], h.z));
     WRITE3(0, stretched);
-    // The normal is that of a sum which is short where the facet is seen from the side: what a point of the sphere
-    // loses counts as much more there, and the facet as much less.
+    // The normal is that of a sum which is short if the facet is seen from the side. The rounding of a point
+    // on the sphere counts that much more there, and the facet counts that much less.
     vec3 view = normalize(vec3(i[3] * i[0], i[4] * i[1], i[2]));
     o[3] = 0.5 / max(dot(view, stretched), 1e-12);
 }
@@ -130,7 +131,7 @@ PROBE(RefractDirection) {
     o[3] = refracted ? 1.0 : 0.0;
 }
 
-// Light that a facet near the normal refracts. The scale is what a facet seen head on would bring.
+// Light that a facet near the normal refracts. The scale is the value for a facet seen head-on.
 PROBE(RefractedTransmission) {
     float cosine;
     o[0] = refractedTransmission(VEC3(0), VEC3(3), VEC2(6), i[8], cosine);
@@ -217,7 +218,7 @@ PROBE(EvaluateBsdf) {
     WRITE3(0, f);
 }
 
-// The same; the scale is the peak of its microfacets.
+// The same, with the peak of its microfacets as the scale.
 PROBE(EvaluateBsdfByPeak) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
@@ -225,7 +226,7 @@ PROBE(EvaluateBsdfByPeak) {
     o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
 }
 
-// The scale is the material without its sheen, of which white sheen leaves as good as nothing near grazing.
+// The scale is the material without its sheen, because white sheen leaves almost nothing of it near grazing.
 PROBE(EvaluateUnderSheen) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
@@ -240,13 +241,13 @@ PROBE(BsdfPdf) {
     o[1] = bsdfPdf(b, GIVEN_FEATURES_WITHOUT_SHEEN, VEC3(31)) + 1e-4;
 }
 
-// A sample in one number of which the truth is 1: its weight as it gives it, over what value and density of its
-// direction say.
+// Summarises a sample in one number whose truth is 1: the value over the density of its direction, divided by
+// the sample's own weight.
 PROBE(SampleBsdf) {
     GIVEN_BSDF(b);
     BsdfSample s = sampleBsdf(b, GIVEN_FEATURES, VEC3(31));
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, s.direction);
     float weight = s.weight.x + s.weight.y + s.weight.z;
-    // A weight that is no normal number has few digits.
+    // A weight that is not a normal number has few digits.
     o[0] = s.pdf > 0.0 && weight > 1e-30 ? (f.x + f.y + f.z) / s.pdf / weight : 1.0;
 }

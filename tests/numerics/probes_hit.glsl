@@ -1,4 +1,4 @@
-// Probes of what finds a hit, its light and its place in the picture.
+// Probes of the functions that find a hit, its light and its place in the picture.
 #include "bsdf/exact.glsl"
 #include "hit/geometry.glsl"
 #include "hit/accumulate.glsl"
@@ -30,7 +30,7 @@ PROBE(DirectionOr) {
     WRITE3(0, v);
 }
 
-// The scale is what the terms of the sum amount to.
+// The scale is the sum of the absolute terms.
 PROBE(TransformPoint) {
     vec4 rows[3];
     rows[0] = VEC4(0);
@@ -68,7 +68,8 @@ PROBE(PlaneError) {
 
 // hit/direction_bin.glsl
 
-// How far the nearest edge of the direction's bin is, in components of the direction or in cells of the map.
+// The distance to the nearest edge of the direction's bin, in components of the direction or in cells of the
+// map.
 float binEdge(vec3 v, uint binning) {
     if (binning == kBinningNone) {
         return 1.0;
@@ -90,8 +91,8 @@ PROBE(DirectionBin) {
 
 // hit/lod.glsl
 
-// Of a cone of width 1, the axis along the ray over its length. The closer the ellipse is to a circle, the less its
-// axes are decided, and matter.
+// The axis along the ray over its length, for a cone of width 1. The closer the ellipse is to a circle, the
+// less its axes are determined, and the less they matter.
 PROBE(ConeAxes) {
     vec3 across;
     vec3 along;
@@ -124,7 +125,7 @@ PROBE(SampleLight) {
     LightSample light =
         sampleLight(LightRecord(VEC3(0), uint(i[3]), VEC3(4), i[7], VEC3(8), i[11], i[12], 0.0), VEC3(13));
     WRITE3(0, light.irradiance);
-    // What the intensity becomes at the distance, before window and cone, which end at 0.
+    // The factor of the intensity at the distance, before window and cone, which end at 0.
     o[3] = uint(i[3]) == kLightDirectional ? 1.0 : 1.0 / max(light.distance * light.distance, 1e-6);
 }
 
@@ -171,8 +172,8 @@ PROBE(SequencePair) {
     ScreenRay ray = screenRay(VEC4(0), VEC4(4), VEC2(8), kFarDistance);     \
     float reach = ray.distanceOverEnd / ray.inverseEnd
 
-// A pixel of the line, in widths and heights of the image. The scale is what the sums that make the line's end amount
-// to over its w: where a ray from afar ends at the near plane, they cancel.
+// A pixel of the line, in widths and heights of the image. The scale is the size of the sums that make the
+// line's end, over its w. They cancel where a ray from far away ends at the near plane.
 PROBE(ScreenPixel) {
     GIVEN_RAY(ray);
     vec2 pixel = screenPixel(ray, i[10]) / VEC2(8);
@@ -182,7 +183,8 @@ PROBE(ScreenPixel) {
     o[2] = 1.0 + i[10] * max(max(terms.x, terms.y), terms.w) * ray.inverseEnd;
 }
 
-// How far along the ray that pixel is. The scale is the distance itself, times what w at the line's end magnifies.
+// The distance along the ray to that pixel. The scale is the distance itself, times the magnification by w at
+// the line's end.
 PROBE(ScreenDistance) {
     GIVEN_RAY(ray);
     o[0] = screenDistance(ray, i[10]);

@@ -11,7 +11,8 @@ using glm::dvec3;
 
 constexpr double kPi = std::numbers::pi;
 
-// A visible GGX normal: Heitz, "Sampling the GGX Distribution of Visible Normals" (2018), by a warped disc.
+// Samples a visible GGX normal with a warped disc: Heitz, "Sampling the GGX Distribution of Visible Normals"
+// (2018).
 dvec3 visibleNormal(const dvec3& v, const dvec2& alpha, double u1, double u2) {
     const dvec3 stretched = glm::normalize(dvec3(alpha.x * v.x, alpha.y * v.y, v.z));
     const double across = std::hypot(stretched.x, stretched.y);
@@ -25,7 +26,7 @@ dvec3 visibleNormal(const dvec3& v, const dvec2& alpha, double u1, double u2) {
     return glm::normalize(dvec3(alpha.x * n.x, alpha.y * n.y, std::max(n.z, 1e-12)));
 }
 
-// Its density: G₁(v) D(h) (v·h) / (n·v) with the tangents of Walter et al. 2007.
+// The density of visibleNormal(): G₁(v) D(h) (v·h) / (n·v), with the tangents of Walter et al. 2007.
 double visibleNormalDensity(const dvec3& v, const dvec3& h, const dvec2& alpha) {
     const double vDotH = glm::dot(v, h);
     if (h.z <= 0.0 || vDotH <= 0.0) {
@@ -38,12 +39,12 @@ double visibleNormalDensity(const dvec3& v, const dvec3& h, const dvec2& alpha) 
     const double distribution = 1.0 / (kPi * alpha.x * alpha.y * cosine4 * slopes * slopes);
     const double viewX = alpha.x * v.x;
     const double viewY = alpha.y * v.y;
-    // G₁ / (n·v), n·v multiplied in.
+    // G₁ / (n·v), with n·v multiplied in.
     const double masking = 2.0 / (v.z + std::sqrt(v.z * v.z + viewX * viewX + viewY * viewY));
     return masking * distribution * vDotH;
 }
 
-// The plane's golden points (Roberts 2018): even at any number.
+// The golden points of the plane (Roberts 2018), which are even for any number of points.
 dvec2 golden(int index) {
     constexpr double kPlastic = 1.32471795724474602596;
     const double n = index + 0.5;

@@ -1,4 +1,4 @@
-// Integrals over directions of functions that may be as sharp as a mirror. Shares no code with the shaders.
+// Integrates functions of directions that may be as sharp as a mirror. Shares no code with the shaders.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,22 +8,22 @@
 
 namespace glint::numerics {
 
-// Where a function of directions has its mass: points are put there, and weighed by the sum of all densities
-// (the balance heuristic of Veach 1997), so that any function which is bounded by a multiple of that sum
-// converges.
+// Knows where a function of directions has its mass. Points are placed there and weighted by the sum of all
+// densities (the balance heuristic of Veach 1997), so it converges for any function that is bounded by a
+// multiple of that sum.
 class Quadrature {
 public:
-    // The frame has the normal as z; view is unit, z > 0.
+    // The frame has the normal as z; view is a unit vector with z > 0.
     explicit Quadrature(const glm::dvec3& view) : view_(view) {}
 
-    // Around the mirror direction of GGX microfacets, about `normal`.
+    // Adds points around the mirror direction of GGX microfacets, about `normal`.
     void addReflection(const glm::dvec2& alpha, const glm::dvec3& normal = {0.0, 0.0, 1.0});
-    // The same, mirrored to the far side.
+    // Adds the same, mirrored to the far side.
     void addThinTransmission(const glm::dvec2& alpha);
-    // Around the refracted direction; eta = n_t / n_i, not 1.
+    // Adds points around the refracted direction; eta = n_t / n_i, which must not be 1.
     void addRefraction(const glm::dvec2& alpha, double eta);
 
-    // ∫ f over the sphere by `points` points for each place and each hemisphere.
+    // Returns ∫ f over the sphere, with `points` points for each place and each hemisphere.
     glm::dvec3 integrate(const std::function<glm::dvec3(const glm::dvec3&)>& f, int points) const;
 
 private:
@@ -43,7 +43,7 @@ private:
     std::vector<Place> places_;
 };
 
-// A direction by its cosine to z and its azimuth.
+// Returns a direction from its cosine to z and its azimuth.
 glm::dvec3 direction(double cosine, double phi);
 
 }  // namespace glint::numerics

@@ -11,14 +11,14 @@ bool within(const ErrorStatistics& statistics, const Bounds& bounds) {
            statistics.median() <= bounds.median;
 }
 
-// Inputs that fit into a table; the JSON has them all.
+// Formats inputs so that they fit into a table; the JSON has all of them.
 std::string formatShort(std::span<const float> inputs) {
     constexpr std::size_t kMost = 10;
     return inputs.size() <= kMost ? formatInputs(inputs) : fmt::format("{} numbers", inputs.size());
 }
 
 nlohmann::json jsonOf(const ErrorStatistics& statistics) {
-    // JSON has no infinity: null.
+    // JSON has no infinity, so it is null.
     const double worst = statistics.worst();
     return {{"worst", std::isfinite(worst) ? nlohmann::json(worst) : nlohmann::json(nullptr)},
             {"median", statistics.median()},

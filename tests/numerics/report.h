@@ -1,4 +1,4 @@
-// Results of probes as text.
+// Formats results of probes as text.
 #pragma once
 
 #include "measure.h"
@@ -14,7 +14,7 @@ struct ReportRow {
     Probe probe;
     ProbeResult result;
 
-    // Nothing that is not finite, errors and undecided inputs within the probe's bounds.
+    // Returns whether all values are finite, and errors and undecided inputs are within the probe's bounds.
     bool passes() const;
 };
 
@@ -24,17 +24,17 @@ struct Report {
     std::vector<ReportRow> rows;
 };
 
-// "(0.5, 1, -2e-07)", with the digits that identify a float.
+// Returns "(0.5, 1, -2e-07)", with enough digits to identify a float.
 std::string formatInputs(std::span<const float> inputs);
 
 std::string toMarkdown(const Report& report);
 std::string toJson(const Report& report);
 
-// As the table has it: "exact", "< 1e-10", "1.2e-07", "not finite".
+// Returns the form in the table: "exact", "< 1e-10", "1.2e-07", "not finite".
 std::string formatError(double error);
 
-// `document` with the text between the markers "<!-- begin NAME -->" and "<!-- end NAME -->" replaced. Error
-// "report-marker" where it lacks them.
+// Returns `document` with the text between the markers "<!-- begin NAME -->" and "<!-- end NAME -->"
+// replaced. Error "report-marker" if it lacks them.
 Result<std::string> replaceRegion(const std::string& document, const std::string& name,
                                   const std::string& region);
 

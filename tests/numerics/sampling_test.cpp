@@ -1,4 +1,4 @@
-// Samples against densities: integrals of the densities, and chi-square tests of where samples land.
+// Compares samples with densities: integrals of the densities, and chi-square tests of where samples land.
 #include "materials.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ namespace {
 constexpr std::uint64_t kSeed = 20240602;
 constexpr int kSamples = 200000;
 
-// Cells of the sphere, even in z and azimuth; one more for samples that went nowhere.
+// Counts samples in cells of the sphere, even in z and azimuth, and in one more cell for samples that went
+// nowhere.
 class Cells {
 public:
     static constexpr int kRows = 24;
@@ -32,8 +33,8 @@ public:
         ++lost_;
     }
 
-    // The probability that the true distribution is at least this far from what `density` expects. Cells that
-    // expect fewer than ten samples are taken together.
+    // Returns the probability that the true distribution is at least this far from what `density` expects.
+    // Cells that expect fewer than ten samples are joined.
     double significance(const std::function<double(const glm::dvec3&)>& density) const {
         double statistic = 0.0;
         int cells = 0;
@@ -84,7 +85,7 @@ private:
         double width = 0.0;
     };
 
-    // The midpoint rule.
+    // Uses the midpoint rule.
     static double coarseMass(const Area& area, const Density& density) {
         constexpr int kSteps = 4;
         double sum = 0.0;
@@ -97,7 +98,7 @@ private:
         return sum / (kSteps * kSteps) * area.height * area.width;
     }
 
-    // The same over quarters, and their quarters where that makes a difference that samples could show.
+    // Integrates over quarters, and over their quarters if that makes a difference that samples could show.
     static double fineMass(const Area& area, const Density& density, double coarse, int depth) {
         Area quarters[4];
         double masses[4];
@@ -118,7 +119,7 @@ private:
         return sum;
     }
 
-    // ∫ density over a cell.
+    // Returns ∫ density over a cell.
     static double massOf(int row, int column, const Density& density) {
         const Area cell{2.0 * row / kRows - 1.0, 2.0 / kRows, (2.0 * column / kColumns - 1.0) * kPi,
                         2.0 * kPi / kColumns};
@@ -129,7 +130,7 @@ private:
     double lost_ = 0.0;
 };
 
-// Wrong samplers fail by many orders of magnitude; right ones, at this level, once in 10,000 seeds.
+// Wrong samplers fail by many orders of magnitude; right ones fail at this level once in 10,000 seeds.
 constexpr double kLevel = 1e-4;
 
 TEST(VisibleNormals, DensityIntegratesToOne) {
@@ -137,7 +138,7 @@ TEST(VisibleNormals, DensityIntegratesToOne) {
                                    glm::dvec2(0.05, 0.6), glm::dvec2(1e-3, 0.9)}) {
         for (const double cosine : {1e-3, 0.1, 0.5, 1.0}) {
             const glm::dvec3 view = direction(cosine, 0.7);
-            // Over half vectors: as reflected light, whose density is less by 4 v·h.
+            // Integrates over half vectors as reflected light, whose density is smaller by 4 v·h.
             Quadrature quadrature(view);
             quadrature.addReflection(alpha);
             const double sum =
@@ -198,8 +199,8 @@ constexpr Family kFamilies[] = {
 
 class BsdfSampling : public testing::TestWithParam<Family> {
 protected:
-    // A material of the family's lobes, seen from somewhere. The closer its index to 1, the sharper it
-    // refracts.
+    // Returns a material with the family's lobes, seen from somewhere. The closer its index is to 1, the
+    // sharper it refracts.
     static TestMaterial make(Engine& engine, double leastAlpha, double leastIndexStep = 0.0) {
         TestMaterial material = randomMaterial(engine, 0, leastAlpha);
         const glsl::uint lobes = GetParam().lobes;
@@ -237,7 +238,7 @@ TEST_P(BsdfSampling, SamplesFollowTheDensity) {
     }
 }
 
-// Density and lost samples make up the whole, for lobes however sharp.
+// Density and lost samples add up to 1, however sharp the lobes are.
 TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
     Engine engine(kSeed + 1 + GetParam().lobes);
     for (int i = 0; i < 10; ++i) {
@@ -246,7 +247,7 @@ TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
             quadratureOf(seen)
                 .integrate([&](const glm::dvec3& light) { return glm::dvec3(seen.pdf(light)); }, 20000)
                 .x;
-        // Even points: fewer of them do than of random ones.
+        // With even points fewer are needed than with random ones.
         constexpr int kSide = 48;
         int lost = 0;
         for (int k = 0; k < kSide * kSide * kSide; ++k) {
@@ -275,7 +276,7 @@ TEST_P(BsdfSampling, MeanOfWeightsIsTheAlbedo) {
         const glm::dvec3 truth = albedo(seen, 100000);
         for (int channel = 0; channel < 3; ++channel) {
             const double variance = squares[channel] / kSamples - mean[channel] * mean[channel];
-            // Five standard deviations of the mean, and the quadrature's own error.
+            // The bound is five standard deviations of the mean, plus the quadrature's own error.
             EXPECT_NEAR(mean[channel], truth[channel],
                         5.0 * std::sqrt(std::max(variance, 0.0) / kSamples) + 1e-3)
                 << "material " << i << " of seed " << kSeed + 2 + GetParam().lobes << ": " << seen;
@@ -286,8 +287,8 @@ TEST_P(BsdfSampling, MeanOfWeightsIsTheAlbedo) {
 INSTANTIATE_TEST_SUITE_P(Lobes, BsdfSampling, testing::ValuesIn(kFamilies),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Sobol's points are a (0, m, 2)-net, and Owen's scrambling leaves them one: of 2^m samples each elementary
-// interval of area 2^-m has one, whatever its shape.
+// Sobol's points are a (0, m, 2)-net, and remain one under Owen's scrambling: of 2^m samples, each elementary
+// interval of area 2^-m contains one, whatever its shape.
 TEST(Sequence, EveryElementaryIntervalHasOneSample) {
     for (const std::uint32_t pixel : {0U, 1U, 4095U, 0xFFFFFFFFU}) {
         for (std::uint32_t pair = 0; pair < 3; ++pair) {

@@ -1,5 +1,5 @@
-// The shaders' functions in double precision, in namespace glsl. Whether lobes make up for multiple
-// scattering is a variable here; a test that changes it sets it back.
+// The shaders' functions in double precision, in namespace glsl. Energy compensation is a variable here; a
+// test that changes it must set it back.
 #pragma once
 
 namespace glsl {

@@ -1,4 +1,4 @@
-// The formulas as textbooks have them, of the same arguments as the probes that are named after them.
+// The textbook forms of formulas, with the same arguments as the probes that they are named after.
 
 PROBE(TextbookBuildBasis) {
     vec3 n = VEC3(0);
@@ -128,8 +128,8 @@ PROBE(TextbookClearcoatLobe) {
     o[1] = lit ? 1.0 : 0.0;
 }
 
-// Akenine-Möller et al. 2021, on anisotropic lookups: both axes by projection, divided by what of them is at right
-// angles to the ray.
+// Akenine-Möller et al. 2021, on anisotropic lookups: both axes by projection, divided by their part that is
+// perpendicular to the ray.
 PROBE(TextbookConeAxes) {
     vec3 direction = VEC3(0);
     vec3 n = VEC3(3);
@@ -142,7 +142,7 @@ PROBE(TextbookConeAxes) {
     o[6] = 0.0;
 }
 
-// Squares of the area, unscaled.
+// Uses squares of the area, without scaling.
 PROBE(TextbookInEdges) {
     vec3 normal = cross(VEC3(3), VEC3(6));
     o[0] = dot(cross(VEC3(0), VEC3(6)), normal) / dot(normal, normal);

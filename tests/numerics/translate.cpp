@@ -31,7 +31,7 @@ std::size_t wordEnd(std::string_view text, std::size_t at) {
     return at;
 }
 
-// "1.5e-3" and "0x1Fu" are one number each.
+// Finds the end of a number; "1.5e-3" and "0x1Fu" are one number each.
 std::size_t numberEnd(std::string_view text, std::size_t at) {
     const bool hexadecimal = text.substr(at, 2) == "0x" || text.substr(at, 2) == "0X";
     while (at < text.size()) {
@@ -45,7 +45,7 @@ std::size_t numberEnd(std::string_view text, std::size_t at) {
     return at;
 }
 
-// Spaces and comments.
+// Skips spaces and comments.
 std::size_t spaceEnd(std::string_view text, std::size_t at) {
     if (text.substr(at, 2) == "//") {
         return std::min(text.find('\n', at), text.size());
@@ -77,7 +77,7 @@ std::vector<Token> tokenize(std::string_view text) {
             kind = Kind::Number;
             end = numberEnd(text, at + (pointFirst ? 1 : 0));
         } else if (text[at] == '#') {
-            // Macros are translated like any text: a directive is its first word, or a whole line of those
+            // Macros are translated like any text. A directive is its first word, or one of the whole lines
             // below.
             const std::size_t word = text.find_first_not_of(" \t", at + 1);
             const std::string_view name = text.substr(word, wordEnd(text, word) - word);
@@ -126,10 +126,10 @@ private:
     Status translate(std::size_t i);
     Status translateWord(std::size_t i);
     Status translateSwizzle(std::size_t i);
-    // The structure's constructor, or an array's, from the bracket at `open`.
+    // Translates the constructor of a structure or an array, from the bracket at `open`.
     Status makeBraces(std::size_t open);
 
-    // The next token that is no space; an empty one at the end.
+    // Returns the next token that is no space; an empty one at the end.
     std::size_t next(std::size_t i) const {
         do {
             ++i;
@@ -191,7 +191,7 @@ Status Translator::translateWord(std::size_t i) {
     } else if (structures_.contains(word) && text(next(i)) == "(") {
         return makeBraces(next(i));
     } else if (text(next(i)) == "[") {
-        // T[N](…); N is a number or nothing.
+        // This is T[N](…), where N is a number or nothing.
         const std::size_t open = next(i);
         const std::size_t close = text(next(open)) == "]" ? next(open) : next(next(open));
         if (text(close) == "]" && text(next(close)) == "(") {

@@ -1,4 +1,4 @@
-// Flattened GLSL as C++, for functions that need no device.
+// Translates flattened GLSL to C++, for functions that need no device.
 #pragma once
 
 #include <glint/result.h>
@@ -8,7 +8,7 @@
 
 namespace glint::numerics {
 
-// Keeps every expression as it stands and changes what C++ spells in another way:
+// Keeps every expression as it is, and changes what C++ spells differently:
 //
 //   float, 1.5              Real, Real(1.5)
 //   out vec3 n              vec3& n
@@ -18,7 +18,8 @@ namespace glint::numerics {
 //   #version, #extension, precision qualifiers   dropped
 //
 // #line directives stay, so that a compiler's message names the shader file.
-// Errors: "glsl-swizzle" (a swizzle is assigned to: as a copy, C++ would lose the value), "glsl-bracket".
+// Errors: "glsl-swizzle" (a swizzle is assigned to: C++ would lose the value, because it is a copy),
+// "glsl-bracket".
 Result<std::string> translateToCpp(std::string_view glsl);
 
 }  // namespace glint::numerics

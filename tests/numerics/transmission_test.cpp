@@ -1,4 +1,4 @@
-// Fresnel reflectance, refraction, volumes and films against what optics says of them.
+// Compares Fresnel reflectance, refraction, volumes and films with the laws of optics.
 #include "materials.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr std::array kIors{1.0, 1.0 + 1e-7, 1.0001, 1.01, 1.33, 1.5, 2.42, 3.0};
 constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
 
-// With the error of the square, as the functions of an interface take it.
+// Returns the square with its error, as the functions of an interface take it.
 glm::dvec2 squared(double cosine) {
     return glsl::exactSquare(glm::dvec2(cosine, 0.0));
 }
@@ -63,7 +63,7 @@ TEST(Refraction, FollowsSnell) {
     }
 }
 
-// On either side of the critical angle, as close as double precision can tell.
+// Tests both sides of the critical angle, as close as double precision allows.
 TEST(Refraction, EndsAtTheCriticalAngle) {
     for (const double ior : {1.01, 1.33, 1.5, 2.42, 3.0}) {
         const double eta = 1.0 / ior;
@@ -86,7 +86,7 @@ TEST(Refraction, EndsAtTheCriticalAngle) {
     }
 }
 
-// Clear glass loses and makes no light, whatever its index, from either side and at any angle.
+// Clear glass neither loses nor makes light, whatever its index, from either side and at any angle.
 TEST(Transmission, SmoothGlassKeepsAllLight) {
     for (const double ior : kIors) {
         for (const bool leaves : {false, true}) {
@@ -138,7 +138,7 @@ TEST(Volume, TransmittanceIsThatOfBeerAndLambert) {
     EXPECT_EQ(glsl::volumeTransmittance(glm::dvec3(0.0), 1e5), glm::dvec3(1.0));
 }
 
-// Abbe numbers are (n_d - 1) / (n_F - n_C), and the extension's value is 20 over that.
+// The Abbe number is (n_d - 1) / (n_F - n_C), and the extension's value is 20 over it.
 TEST(Volume, DispersionSpreadsByTheAbbeNumber) {
     for (const double abbe : {20.0, 32.0, 64.0}) {
         const glm::dvec3 ior = glsl::dispersedIor(1.5, 20.0 / abbe);
@@ -154,8 +154,8 @@ TEST(Film, OfNoThicknessIsTheBareSurfaceUpToSchlicksAir) {
         for (const double f0 : {0.02, 0.04, 0.5, 0.95}) {
             const double film = glsl::iridescentFresnel(cosine, glm::dvec3(f0), 1.8, 0.0).x;
             const double bare = glsl::fresnelSchlick(glm::dvec3(f0), 1.0, cosine).x;
-            // Schlick's approximation lets even a film of air reflect (1 - cosine)⁵; the two amplitudes add
-            // at most. Below 1e-5 the product of reflectances is cut, and the second order adds some.
+            // With Schlick's approximation even a film of air reflects (1 - cosine)⁵, and the two amplitudes
+            // at most add. Below 1e-5 the product of reflectances is limited, and the second order adds some.
             const double air = std::pow(1.0 - cosine, 5);
             const double interference = 2.0 * std::sqrt(std::max(air * bare, 1e-5)) + 0.01;
             EXPECT_GE(film, bare - interference) << "f0 " << f0 << ", cosine " << cosine;

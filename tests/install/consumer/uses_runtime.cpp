@@ -1,4 +1,5 @@
-// A program with the runtime alone. What the README shows of it stands here, so that it compiles.
+// A program that links the runtime alone. It contains the code that the README shows, so that this code
+// compiles.
 #include <glint/renderer.h>
 
 #include <iostream>
@@ -9,7 +10,7 @@ struct Reflections {
     std::unique_ptr<glint::Renderer> renderer;
 };
 
-// Once: on your device, with your geometry.
+// Called once, with your device and your geometry.
 glint::Result<Reflections> createReflections(const glint::DeviceHandles& device, const glint::SceneView& view,
                                              const char* packageFolder) {
     Reflections made;
@@ -37,7 +38,7 @@ glint::Result<Reflections> createReflections(const glint::DeviceHandles& device,
     return made;
 }
 
-// Every frame: into your command buffer. The picture is then in renderer->output().
+// Called every frame, with your command buffer. The picture is then in renderer->output().
 glint::Status recordReflections(Reflections& reflections, VkCommandBuffer commands,
                                 const glint::CameraView& camera) {
     glint::FrameOptions frame;
@@ -46,7 +47,7 @@ glint::Status recordReflections(Reflections& reflections, VkCommandBuffer comman
 }
 
 int main(int argc, char** argv) {
-    // There is no such package: the error is a value that says so, and no device was needed to find out.
+    // There is no such package, and the error is a value that says so. No device was needed to find out.
     const glint::Result<Reflections> made = createReflections({}, {}, argc > 1 ? argv[1] : "");
     if (made || made.error().message.empty()) {
         return 1;

@@ -1,4 +1,4 @@
-// A program with the generated headers of two packages, and no library of Glint.
+// A program that uses the generated headers of two packages, and no library of Glint.
 #include "both/glint_tables.h"
 #include "cubes/glint_tables.h"
 
