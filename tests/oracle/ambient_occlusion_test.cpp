@@ -1,4 +1,4 @@
-// Ambient occlusion of a sphere over a plane, by the device and by the oracle.
+// Tests ambient occlusion of a sphere over a plane, by the device and by the oracle.
 #include "oracle/comparison.h"
 #include "oracle/device.h"
 #include "oracle/occlusion.h"
@@ -15,7 +15,7 @@ constexpr std::uint32_t kHeight = 27;
 constexpr Vec3 kCenter(0.0, 0.6, 0.0);
 constexpr double kRadius = 0.5;
 
-// A white sphere over a white floor. Under a sky of 1 each shows its openness.
+// Returns a white sphere over a white floor. Under a sky of 1 each shows its openness.
 Scene sphereOverFloor() {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial());
@@ -56,9 +56,8 @@ protected:
     View view_;
 };
 
-// Facets are inside the sphere by up to 1.3e-4 of its radius, and hide that
-// much less; beside its own facets the sphere's shading normal sees 1e-3 of
-// what lies below.
+// Facets are inside the sphere by up to 1.3e-4 of its radius, and hide that much less. Near its own facets,
+// the sphere's shading normal sees 1e-3 of what lies below.
 constexpr double kFacets = 3e-4;
 
 TEST_F(AmbientOcclusion, IsThatOfTheOracle) {
@@ -66,7 +65,7 @@ TEST_F(AmbientOcclusion, IsThatOfTheOracle) {
     expectAgrees(image, truths({}),
                  {"ambient-occlusion", "a sphere over a floor, no limit", "quadrature", 1,
                   samplesOf(kSamples), 1.0, kFacets});
-    // The floor alone, by the closed form.
+    // The closed form covers the floor alone.
     const auto closed = pixelTruths(
         view_, {8, 4}, [&](const Ray& ray) { return world_.meetsGround(ray); },
         [&](const Ray& ray, Random&) {

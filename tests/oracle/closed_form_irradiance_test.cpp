@@ -1,4 +1,4 @@
-// Irradiance by quadrature against closed forms.
+// Compares irradiance by quadrature with closed forms.
 #include "oracle/expect.h"
 #include "oracle/irradiance.h"
 #include "oracle/scene_file.h"
@@ -27,7 +27,7 @@ TEST(OracleIrradiance, OfOneBrightWallIsItsFormFactor) {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial());
     const int bright = file.addMaterial(emissiveMaterial({3.0, 2.0, 1.0}));
-    // Upper y: the ceiling.
+    // The side at the upper y is the ceiling.
     file.addBox({white, white, white, bright, white, white}, {-1, 0, -2}, {1, 1, 2}, true);
     const World world(file.import());
     Random random(2);
@@ -45,8 +45,9 @@ TEST(OracleIrradiance, OfOneBrightWallIsItsFormFactor) {
     }
 }
 
-// Above an edge of a rectangle a × b at the height c: the catalogue's formula for a plane element parallel to
-// a rectangle, with the normal through a corner (Howell, differential element to rectangle).
+// The point is above a corner of a rectangle a × b, at the height c. This is the catalogue's formula for a
+// plane element parallel to a rectangle, with the normal through a corner (Howell, differential element to
+// rectangle).
 TEST(OracleIrradiance, FormFactorsAreThoseOfTheTables) {
     constexpr double kA = 0.7;
     constexpr double kB = 1.3;
@@ -59,8 +60,8 @@ TEST(OracleIrradiance, FormFactorsAreThoseOfTheTables) {
     EXPECT_NEAR(formFactorOfQuad(Vec3(0.0), kUp, {0, kC, 0}, {kA, 0, 0}, {0, 0, kB}), table, 1e-12);
 }
 
-// Over a sky with a gradient. Upwards: 2 ∫ (h + (z - h) μ) μ dμ = h + 2/3 (z - h). Sideways the two halves
-// count alike: the mean of |y| under cosine / π about the horizon is 4 / (3 π).
+// A sky with a gradient. Upwards: 2 ∫ (h + (z - h) μ) μ dμ = h + 2/3 (z - h). Sideways both halves count
+// alike: the mean of |y| under cosine / π about the horizon is 4 / (3 π).
 TEST(OracleIrradiance, OfAGradient) {
     const World world;
     const GradientSky sky{Vec3(3.0), Vec3(1.0), Vec3(0.5)};

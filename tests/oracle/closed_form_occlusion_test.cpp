@@ -1,4 +1,4 @@
-// Ambient occlusion by quadrature against closed forms.
+// Compares ambient occlusion by quadrature with closed forms.
 #include "oracle/expect.h"
 #include "oracle/occlusion.h"
 #include "oracle/scene_file.h"
@@ -19,7 +19,7 @@ TEST(OracleOcclusion, OfASphereOverAPlane) {
         const Vec3 position(x, 0.0, 0.3);
         const Estimate estimate = openness(world, position, kUp, {}, Faces::Culled, {128, 4}, random);
         expectEstimate(estimate, opennessUnderSphere(position, kUp, center, 0.5), 5e-4);
-        // A ray is free or not.
+        // A ray is either free or not.
         EXPECT_NEAR(estimate.square.x, estimate.mean.x, 1e-12);
     }
 }
@@ -35,9 +35,9 @@ TEST(OracleOcclusion, OfATouchingSphere) {
     }
 }
 
-// A ceiling at the height h without an end: hits at t = h / cos θ. Within the radius R they fill the cone of
-// cosine h / R, and 1/π ∫ cos θ over it is 1 - (h / R)²; weighed by 1 - t / R it is less by 2 (h / R) (1 - h
-// / R).
+// An infinite ceiling at the height h is hit at t = h / cos θ. Within the radius R the hits fill the cone of
+// cosine h / R, and 1/π ∫ cos θ over it is 1 - (h / R)². Weighted by 1 - t / R it is smaller by 2 (h / R) (1
+// - h / R).
 TEST(OracleOcclusion, OfACeilingByRadiusAndFalloff) {
     SceneFile file;
     const int material = file.addMaterial(diffuseMaterial());
@@ -53,7 +53,7 @@ TEST(OracleOcclusion, OfACeilingByRadiusAndFalloff) {
             openness(world, Vec3(0.0), kUp, {radius, true}, Faces::Culled, {128, 4}, random);
         expectEstimate(linear, ratio * ratio + 2.0 * ratio * (1.0 - ratio), 5e-4);
     }
-    // All but what passes 50 m away: less than (0.5 / 50)².
+    // Everything is occluded except what passes 50 m away: less than (0.5 / 50)².
     expectEstimate(openness(world, Vec3(0.0), kUp, {}, Faces::Culled, {128, 4}, random), 0.0, 5e-4, 1e-4);
 }
 

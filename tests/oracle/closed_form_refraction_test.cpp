@@ -1,4 +1,4 @@
-// Paths through dielectrics against Snell, Beer, Fresnel and sums of series.
+// Compares paths through dielectrics with Snell, Beer, Fresnel and sums of series.
 #include "oracle/refraction.h"
 #include "oracle/scene_file.h"
 
@@ -21,7 +21,7 @@ Ray falling(double angle) {
     return {Vec3(-std::sin(angle), std::cos(angle), 0.0) * 3.0, {std::sin(angle), -std::cos(angle), 0.0}};
 }
 
-// A slab between y = 0 and y = -0.4, wide enough for every path.
+// Returns a slab between y = 0 and y = -0.4 that is wide enough for every path.
 World slab() {
     SceneFile file;
     const int glass = file.addMaterial(glassMaterial({}));
@@ -38,19 +38,19 @@ TEST(OracleRefraction, FresnelHasItsKnownValues) {
         const double critical = std::sqrt(1.0 - 1.0 / 2.25);
         EXPECT_EQ(reflectance(fresnel, 1.5, 1.0, critical - 1e-9), 1.0);
         EXPECT_LT(reflectance(fresnel, 1.5, 1.0, critical + 1e-2), 0.7);
-        // The same from both sides of the interface.
+        // The reflectance is the same from both sides of the interface.
         const double outside = std::cos(0.7);
         const double inside = std::sqrt(1.0 - std::pow(std::sin(0.7) / 1.5, 2.0));
         EXPECT_NEAR(reflectance(fresnel, 1.0, 1.5, outside), reflectance(fresnel, 1.5, 1.0, inside), 1e-12);
     }
-    // Brewster's angle: only the perpendicular part, ((n² - 1) / (n² + 1))² / 2.
+    // At Brewster's angle only the perpendicular part is left, ((n² - 1) / (n² + 1))² / 2.
     const double brewster = std::atan(1.5);
     EXPECT_NEAR(reflectance(Fresnel::Exact, 1.0, 1.5, std::cos(brewster)),
                 0.5 * std::pow((2.25 - 1.0) / (2.25 + 1.0), 2.0), 1e-12);
 }
 
-// The exact sum over internal reflections: through (1 - F)² a / (1 - F² a²), back (1 - F)² F a² / (1 - F²
-// a²).
+// The exact sum over internal reflections: (1 - F)² a / (1 - F² a²) goes through, (1 - F)² F a² / (1 - F² a²)
+// goes back.
 TEST(OracleRefraction, ASlabIsASeries) {
     const World world = slab();
     const Dielectric glass{Vec3(1.5), absorptionOf({0.2, 0.5, 0.9}, 0.3)};
@@ -71,7 +71,7 @@ TEST(OracleRefraction, ASlabIsASeries) {
             for (int channel = 0; channel < 3; ++channel) {
                 const double a = std::exp(-glass.absorption[channel] * 0.4 / inside);
                 const double series = (1.0 - f) * (1.0 - f) * a / (1.0 - f * f * a * a);
-                // The sky is as bright as the direction is steep, and the slab does not turn it.
+                // The sky is as bright as the direction is steep, and the slab does not change the direction.
                 EXPECT_NEAR(through.radiance[channel], series * std::cos(angle), 1e-7);
                 EXPECT_NEAR(back.radiance[channel], series * f * a * std::cos(angle), 1e-7);
                 EXPECT_LE(through.left[channel], 1e-7);
@@ -80,7 +80,7 @@ TEST(OracleRefraction, ASlabIsASeries) {
     }
 }
 
-// A ray that goes through a slab is displaced by t sin(θ - θ') / cos θ'.
+// A ray through a slab is displaced by t sin(θ - θ') / cos θ'.
 TEST(OracleRefraction, ASlabDisplaces) {
     SceneFile file;
     const int glassy = file.addMaterial(glassMaterial({}));
@@ -117,8 +117,8 @@ TEST(OracleRefraction, ASlabDisplaces) {
     }
 }
 
-// Every meeting with a sphere's inside is at the first angle: chords of 2 r cos θ', each crossing turns by θ
-// - θ', each reflection by π - 2 θ'.
+// The ray meets a sphere's inside always at the first angle: chords are 2 r cos θ', each crossing turns it by
+// θ - θ', and each reflection by π - 2 θ'.
 TEST(OracleRefraction, ASphereTurnsLightByKnownAngles) {
     World world;
     world.addSphere(Vec3(0.0), 0.8);
@@ -136,7 +136,7 @@ TEST(OracleRefraction, ASphereTurnsLightByKnownAngles) {
             refractedLight(world, ray, *hit, always(glass), black, sky, {Fresnel::Exact, 100, 1e-9});
         Vec3 expected(0.0);
         double weight = (1.0 - f) * (1.0 - f) * a;
-        // The direction as an angle from -y towards -x: a ray beside the axis is turned towards it.
+        // The direction is an angle from -y towards -x: a ray beside the axis turns towards it.
         double turned = 2.0 * (theta - inner);
         for (int order = 0; order < 60; ++order) {
             expected += weight * sky({-std::sin(turned), -std::cos(turned), 0.0});
@@ -149,8 +149,8 @@ TEST(OracleRefraction, ASphereTurnsLightByKnownAngles) {
     }
 }
 
-// Rough interfaces. All but smooth, the light is that of the smooth one. Where the index is 1 nothing bends
-// or is reflected, and only what facets hide of each other is missing.
+// Tests rough interfaces. If nearly smooth, the light is that of the smooth interface. At the index 1 nothing
+// bends or is reflected, and only the light that facets hide from each other is missing.
 TEST(OracleRefraction, ARoughInterfaceHasItsLimits) {
     const World world;
     const auto sky = [](const Vec3& d) { return Vec3(1.0 - d.y, 1.0, 1.0 + d.x); };
@@ -167,7 +167,7 @@ TEST(OracleRefraction, ARoughInterfaceHasItsLimits) {
         for (int channel = 0; channel < 3; ++channel) {
             EXPECT_NEAR(nearlySmooth.mean[channel], passes * sky(inward)[channel], 1e-4);
         }
-        // Air in air: straight on, masked by Λ of both sides, which are alike.
+        // From air to air: the light goes straight on, masked by Λ of both sides, which are equal.
         const Dielectric air{Vec3(1.0), Vec3(0.0)};
         const double alpha = 0.5;
         const double tangent = std::tan(angle);
@@ -178,8 +178,8 @@ TEST(OracleRefraction, ARoughInterfaceHasItsLimits) {
     }
 }
 
-// The same integral over all facets by their own distribution, cos θ D of GGX, whether seen or not: Walter et
-// al. 2007, equation 21, as an integral over half vectors.
+// The same integral over all facets by their own distribution, cos θ D of GGX, whether they are visible or
+// not: Walter et al. 2007, equation 21, as an integral over half vectors.
 TEST(OracleRefraction, ARoughInterfaceIsTheIntegralOverItsFacets) {
     const World world;
     const auto sky = [](const Vec3& d) { return Vec3(1.0 - d.y, 1.0, 1.0 + d.x); };
@@ -218,7 +218,7 @@ TEST(OracleRefraction, ARoughInterfaceIsTheIntegralOverItsFacets) {
     }
 }
 
-// Without absorption all that enters comes out.
+// Without absorption, all light that enters comes out.
 TEST(OracleRefraction, EnergyIsKept) {
     SceneFile file;
     const int glassy = file.addMaterial(glassMaterial({}));

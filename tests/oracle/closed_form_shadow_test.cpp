@@ -1,4 +1,4 @@
-// Shares of lights by quadrature against closed forms.
+// Compares visible shares of lights by quadrature with closed forms.
 #include "oracle/expect.h"
 #include "oracle/light.h"
 #include "oracle/scene_file.h"
@@ -25,7 +25,7 @@ Estimate shareOfSun(const World& world, const Vec3& position, Random& random) {
     return visibleShare(world, cap, position, kUp, {kStrata, 4}, random);
 }
 
-// A half plane at height 1 over x < 0: seen from (x, 0, 0) its edge is atan(x) beside the zenith.
+// A half plane at height 1 covers x < 0. Seen from (x, 0, 0), its edge is atan(x) beside the zenith.
 TEST(OracleShadow, OfAStraightEdgeBeforeTheSun) {
     SceneFile file;
     file.addQuad(file.addMaterial(diffuseMaterial()), {-100, 1, -100}, {0, 0, 200}, {100, 0, 0});
@@ -37,7 +37,7 @@ TEST(OracleShadow, OfAStraightEdgeBeforeTheSun) {
     }
 }
 
-// The plane's segment in the limit of a small sun: (acos h - h sqrt(1 - h²)) / π.
+// The segment that a plane cuts off, in the limit of a small sun: (acos h - h sqrt(1 - h²)) / π.
 TEST(OracleShadow, TheSegmentOfASmallSunIsThatOfADisk) {
     constexpr double kSmall = 1e-3;
     for (const double h : {-0.9, -0.3, 0.0, 0.4, 0.8}) {
@@ -56,14 +56,14 @@ TEST(OracleShadow, OfASphereBeforeTheSun) {
         const double distance = glm::length(center - position);
         const double apart = std::atan(x / 3.0);
         const Estimate estimate = shareOfSun(world, position, random);
-        // On the axis the edge of the shadow runs along the strata, and the repeats need not differ by a
-        // point.
+        // On the axis the edge of the shadow runs along the strata, so the repeats need not differ even by
+        // one point.
         expectEstimate(estimate, shareBesidesCap(kSun, std::asin(0.4 / distance), apart), 1e-3,
                        1.0 / (4.0 * kStrata * kStrata));
     }
 }
 
-// Under the middle of a disk that is smaller than the sun: the ratio of two caps.
+// Under the middle of a disk that is smaller than the sun, the share is the ratio of two caps.
 TEST(OracleShadow, OfADiskBeforeTheSun) {
     SceneFile file;
     constexpr int kCorners = 256;
@@ -71,13 +71,14 @@ TEST(OracleShadow, OfADiskBeforeTheSun) {
     const World world(file.import());
     Random random(3);
     const double hidden = (1.0 - std::cos(std::atan(0.125))) / (1.0 - std::cos(kSun));
-    // The disk's polygon has its area, not its outline: the cap differs by less than the square of the sun.
+    // The disk's polygon has its area, but not its outline. The cap differs by less than the square of the
+    // sun.
     expectEstimate(shareOfSun(world, {0, 0, 0}, random), 1.0 - hidden, 1e-3, 1e-4);
     EXPECT_NEAR(shareBesidesCap(kSun, std::atan(0.125), 0.0), 1.0 - hidden, 1e-12);
 }
 
-// The same from beside the disk's axis. Shares of arcs are known where they are simple: all of a disk within
-// the sun, and the limit of a small sun, whose disk is a plane's.
+// The same from beside the disk's axis. Shares of arcs are known in simple cases: a disk that is completely
+// within the sun, and the limit of a small sun, where the caps are disks in a plane.
 TEST(OracleShadow, OfADiskAsideOfTheSun) {
     SceneFile file;
     file.addDisk(file.addMaterial(diffuseMaterial()), {0, 2, 0}, {0, 1, 0}, 0.25, 256);
@@ -91,12 +92,12 @@ TEST(OracleShadow, OfADiskAsideOfTheSun) {
                 1.0 - (1.0 - std::cos(std::atan(0.125))) / (1.0 - std::cos(kSun)), 1e-6);
     EXPECT_EQ(shareBesidesDisk(kSun, 0.125, 1.0), 1.0);
     EXPECT_NEAR(shareBesidesDisk(kSun, 1.0, 0.5), 0.0, 1e-6);
-    // Two circles of radius r, r apart: the lens is 2/3 - sqrt(3) / (2 π) of either.
+    // For two circles of radius r whose centres are r apart, the lens is 2/3 - sqrt(3) / (2 π) of either.
     EXPECT_NEAR(shareBesidesDisk(1e-4, std::tan(1e-4), std::tan(1e-4)),
                 1.0 / 3.0 + std::sqrt(3.0) / (2.0 * kPi), 1e-6);
 }
 
-// A disk between a point and a lamp of a radius: they are two caps about one axis. A disk behind the lamp
+// A disk between a point and a lamp with a radius: they are two caps about one axis. A disk behind the lamp
 // hides nothing.
 TEST(OracleShadow, OfADiskBeforeALamp) {
     SceneFile file;

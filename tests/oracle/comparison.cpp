@@ -15,14 +15,14 @@ namespace {
 // ln(2 / 1e-5).
 constexpr double kExponent = 12.2;
 
-// Bernstein: the mean of n independent values with this variance, within `range` of their mean, is off by
-// more than this with a chance of 2 exp(-kExponent) at most.
+// Bernstein's inequality: the mean of n independent values with this variance, within `range` of their mean,
+// is off by more than this with a probability of at most 2 exp(-kExponent).
 double bernstein(double variance, double range, double n) {
     const double linear = kExponent * range / (3.0 * n);
     return linear + std::sqrt(linear * linear + 2.0 * kExponent * variance / n);
 }
 
-// A picture is of single precision: what the sum of a few such numbers is off by.
+// Pictures have single precision. This bounds the error of the sum of a few such numbers.
 double rounding(double value) {
     return 4e-6 * std::max(1.0, value);
 }
@@ -49,7 +49,7 @@ struct Tile {
     }
 };
 
-// Truths by their places.
+// Finds truths by their places.
 class Neighbours {
 public:
     explicit Neighbours(const std::vector<PixelTruth>& truths) {
@@ -57,8 +57,8 @@ public:
             means_[{truth.x, truth.y}] = truth.light.mean;
         }
     }
-    // Twice the difference between the largest and the least mean of a pixel and those around it: an edge of
-    // which the pixel has a corner shows in a neighbour.
+    // Returns twice the difference between the largest and the smallest mean of a pixel and those around it.
+    // An edge that only touches a corner of the pixel shows in a neighbour.
     double span(const PixelTruth& truth, std::uint32_t channel) const {
         double low = truth.light.mean[static_cast<int>(channel)];
         double high = low;
@@ -79,7 +79,7 @@ private:
 
 bool wholePixel(const View& view, std::uint32_t x, std::uint32_t y, const Selector& selected) {
     constexpr int kSteps = 16;
-    // Where the rasteriser rounds to 1/256 of a pixel.
+    // The rasteriser rounds to 1/256 of a pixel.
     constexpr double kMargin = 0.005;
     for (int i = 0; i <= kSteps; ++i) {
         for (int k = 0; k <= kSteps; ++k) {

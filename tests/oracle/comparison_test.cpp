@@ -1,4 +1,4 @@
-// The comparison itself: it accepts a picture of the truth and sees small faults.
+// Tests the comparison itself: it accepts a picture of the truth and sees small faults.
 #include "oracle/comparison.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kHeight = 25;
 constexpr std::uint32_t kSamples = 256;
 
-// Pixels of which a random sample is 1 with a chance between 0 and 0.8, else 0.
+// Returns pixels for which a random sample is 1 with a probability between 0 and 0.8, else 0.
 std::vector<PixelTruth> chances() {
     std::vector<PixelTruth> truths;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -22,7 +22,7 @@ std::vector<PixelTruth> chances() {
     return truths;
 }
 
-// What a device would make of them whose samples count `scale` and are off by `offset`.
+// Returns what a device would render whose samples count `scale` and are off by `offset`.
 LinearImage picture(const std::vector<PixelTruth>& truths, std::uint64_t seed, double scale = 1.0,
                     double offset = 0.0) {
     LinearImage image{kWidth, kHeight, {}};
@@ -69,7 +69,7 @@ TEST(OracleComparison, SeesOneWrongPixelAndAPictureThatIsNoNumber) {
     EXPECT_EQ(compare(image, truths, kSubject).objections.size(), 3U);
 }
 
-// Neither the mean nor any pixel tells.
+// Neither the mean nor any pixel shows the fault.
 TEST(OracleComparison, SeesAPictureTooBrightOnOneSideAndTooDarkOnTheOther) {
     const auto truths = chances();
     LinearImage image = picture(truths, 1);
@@ -84,7 +84,7 @@ TEST(OracleComparison, SeesAPictureTooBrightOnOneSideAndTooDarkOnTheOther) {
 
 TEST(OracleComparison, SeesPixelsThatSpreadTooFar) {
     const auto truths = chances();
-    // As of half the samples.
+    // The picture has the noise of half the samples.
     Subject subject = kSubject;
     subject.samples = 2 * kSamples;
     EXPECT_FALSE(compare(picture(truths, 1), truths, subject).objections.empty());

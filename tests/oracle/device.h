@@ -1,4 +1,4 @@
-// Pictures that the device makes of a scene of the oracle's tests.
+// Renders scenes of the oracle's tests on the device.
 #pragma once
 
 #include "oracle/irradiance.h"
@@ -10,10 +10,10 @@
 
 namespace glint::oracle {
 
-// Samples of a test times GLINT_ORACLE_SAMPLES, which is 1 if it is not set.
+// Returns the samples of a test times GLINT_ORACLE_SAMPLES, which is 1 if it is not set.
 std::uint32_t samplesOf(std::uint32_t samples);
 
-// What of the effects a picture is made with.
+// The settings of effects for a picture.
 struct EffectOptions {
     std::uint32_t effects = 0;  // package::kEffect bits
     OcclusionSettings occlusion;
@@ -23,11 +23,11 @@ struct EffectOptions {
     float maxRoughness = 0.0F;     // of surfaces that reflect
 };
 
-// Compiles the scene with these effects and no other. An empty picture where anything failed; the test has
-// failed then.
+// Compiles the scene with these effects only, and renders it. If anything failed, the test fails and the
+// picture is empty.
 LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testing::RenderSetup setup);
 
-// By the scene's first camera.
+// Uses the scene's first camera.
 testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height,
                              std::uint32_t samples, const GradientSky& sky);
 

@@ -1,4 +1,4 @@
-// Hard shadows of lights without a size.
+// Tests hard shadows of lights without a size.
 #include "oracle/comparison.h"
 #include "oracle/device.h"
 #include "oracle/light.h"
@@ -12,7 +12,7 @@ using namespace glint::testing;
 
 constexpr std::uint32_t kSamples = 256;
 
-// Direct light of the scene's only light on diffuse surfaces, of albedo 1.
+// Returns direct light of the scene's only light on diffuse surfaces with albedo 1.
 Estimate lightOf(const World& world, const Light& light, const Ray& ray) {
     const Hit hit = *world.closest(ray, Faces::Culled);
     const LightCap cap = lightCap(light, {}, hit.position);
@@ -42,7 +42,7 @@ void compare(const Scene& scene, const std::string& what) {
         view, {22, 4}, [&](const Ray& ray) { return world.closest(ray, Faces::Culled).has_value(); },
         [&](const Ray& ray, Random&) { return lightOf(world, scene.lights[0], ray); });
     EXPECT_GT(truths.size(), 1000U);
-    // The rasteriser sees an edge within 1/256 of a pixel; and the golden points of the pixel are not
+    // The rasteriser sees an edge within 1/256 of a pixel, and the golden points of the pixel are not
     // independent.
     expectAgrees(image, truths, {"shadow", what, "quadrature", 1, samplesOf(kSamples), 0.0, 1e-4});
 }

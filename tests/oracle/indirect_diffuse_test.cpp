@@ -1,4 +1,4 @@
-// One bounce of light, by the device and by the oracle.
+// Tests one bounce of light, by the device and by the oracle.
 #include "oracle/comparison.h"
 #include "oracle/device.h"
 #include "oracle/irradiance.h"
@@ -17,7 +17,7 @@ constexpr std::uint32_t kSamples = 256;
 constexpr Vec3 kLow(-1, 0, -1);
 constexpr Vec3 kHigh(1, 2, 1);
 
-// Materials of a room whose surfaces reflect diffusely.
+// The materials of a room whose surfaces reflect diffusely.
 struct Room {
     std::vector<Vec3> albedos;
     std::vector<Vec3> emissions;
@@ -41,8 +41,8 @@ EffectOptions indirectDiffuse(unsigned more = 0) {
     return options;
 }
 
-// Light that leaves a surface, of what arrives there at first hand: emission, a
-// lamp with its hard shadow, and a uniform sky that hits take for unoccluded.
+// Returns the light that leaves a surface from its direct light: emission, a lamp with its hard shadow, and a
+// uniform sky that hits treat as unoccluded.
 Vec3 firstHand(const World& world, const Scene& scene, const Room& room, double sky, const Hit& hit) {
     Vec3 arriving(sky);
     for (const Light& light : scene.lights) {
@@ -60,7 +60,7 @@ Selector meets(const World& world) {
     return [&world](const Ray& ray) { return world.closest(ray, Faces::Culled).has_value(); };
 }
 
-// A pixel's light: its own, and one bounce in the place of the sky's.
+// Returns each pixel's light: its own, and one bounce instead of the sky's light.
 std::vector<PixelTruth> byQuadrature(const Scene& scene, const Room& room, double sky) {
     const World world(scene);
     return pixelTruths(
@@ -84,8 +84,7 @@ LinearImage render(const Scene& scene, const EffectOptions& options, double sky)
                         setupOf(scene, kWidth, kHeight, kSamples, {Vec3(sky), Vec3(sky), Vec3(sky)}));
 }
 
-// Every ray finds a wall that shows the sky's light once: albedo² of it,
-// without noise.
+// Every ray finds a wall that shows the sky's light once: albedo² of it, without noise.
 TEST(IndirectDiffuse, OfAClosedWhiteBoxUnderTheSkyIsExact) {
     SceneFile file;
     Room room;
@@ -100,7 +99,7 @@ TEST(IndirectDiffuse, OfAClosedWhiteBoxUnderTheSkyIsExact) {
                                         return Estimate{Vec3(0.64), Vec3(0.0), Vec3(0.64 * 0.64)};
                                     });
     RenderSetup setup = setupOf(scene, kWidth, kHeight, kSamples, {Vec3(1.0), Vec3(1.0), Vec3(1.0)});
-    // However many samples the others take: of about 10⁵ rays one that starts where two walls meet leaves the
+    // This number of samples is fixed: of about 10⁵ rays, one that starts where two walls meet leaves the
     // box.
     setup.samples = 16;
     expectAgrees(renderEffect(scene, indirectDiffuse(), setup), truths,
@@ -138,8 +137,7 @@ TEST(IndirectDiffuse, OfABrightCeilingIsItsFormFactor) {
                  {"indirect-diffuse", "its floor", "Lambert's formula", 3, samplesOf(kSamples), 3.0, 0.0});
 }
 
-// Walls lit by a lamp light each other; a block throws a shadow that the bounce
-// sees.
+// Walls lit by a lamp light each other. A block casts a shadow that the bounce sees.
 TEST(IndirectDiffuse, OfARoomWithALamp) {
     SceneFile file;
     Room room;
@@ -156,8 +154,7 @@ TEST(IndirectDiffuse, OfARoomWithALamp) {
                   2.5, 2e-4});
 }
 
-// Under a sky: what misses brings it, what hits shows the sky as hits have it,
-// without a second bounce.
+// Under a sky, rays that miss bring the sky, and hits show the sky's light without a second bounce.
 TEST(IndirectDiffuse, OfABlockUnderTheSky) {
     SceneFile file;
     Room room;

@@ -14,7 +14,7 @@ double clampedArcCosine(double cosine) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-// Angle at C of the spherical triangle with sides a, b and c.
+// Returns the angle at C of the spherical triangle with sides a, b and c.
 double angleOf(double a, double b, double c) {
     return clampedArcCosine((std::cos(c) - std::cos(a) * std::cos(b)) / (std::sin(a) * std::sin(b)));
 }
@@ -97,7 +97,7 @@ double shareBesidesCap(double halfAngle, double hiding, double apart) {
     if (apart <= std::abs(halfAngle - hiding)) {
         return hiding >= halfAngle ? 0.0 : 1.0 - 2.0 * kPi * (1.0 - std::cos(hiding)) / whole;
     }
-    // Half angles of the lens at either axis, and that between the circles where they cross.
+    // The half angles of the lens at either axis, and the angle between the circles where they cross.
     const double atLight = angleOf(halfAngle, apart, hiding);
     const double atHiding = angleOf(hiding, apart, halfAngle);
     const double between = angleOf(halfAngle, hiding, apart);
@@ -107,8 +107,8 @@ double shareBesidesCap(double halfAngle, double hiding, double apart) {
 }
 
 double shareBesidesDisk(double halfAngle, double radius, double aside) {
-    // On the plane at height 1 a direction of tangent r is hidden where a circle of radius r runs through the
-    // disk.
+    // On the plane at height 1, a direction of tangent r is hidden where a circle of radius r runs through
+    // the disk.
     const auto hidden = [&](double tangent) {
         if (tangent <= radius - aside) {
             return 1.0;
@@ -119,8 +119,8 @@ double shareBesidesDisk(double halfAngle, double radius, double aside) {
         const double cosine = (tangent * tangent + aside * aside - radius * radius) / (2.0 * tangent * aside);
         return clampedArcCosine(cosine) / kPi;
     };
-    // The arc has roots at the ends of where it is partly hidden: Simpson's rule between them, with points
-    // that crowd there as those of Chebyshev.
+    // The arc has roots at the ends of the interval in which it is partly hidden. So Simpson's rule is used
+    // between them, with points that crowd there like those of Chebyshev.
     std::array<double, 4> ends{0.0, std::atan(std::abs(radius - aside)), std::atan(radius + aside),
                                halfAngle};
     constexpr int kSteps = 48;

@@ -51,7 +51,7 @@ Vec3 cosineDirection(Vec2 point) {
 }
 
 Vec3 capDirection(Vec2 point, double halfAngle) {
-    // 1 - cosine, which a narrow cap would lose.
+    // The plain 1 - cosine would lose a narrow cap.
     const double half = std::sin(0.5 * halfAngle);
     const double height = 2.0 * half * half * point.x;
     const double sine = std::sqrt(height * (2.0 - height));

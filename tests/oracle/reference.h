@@ -1,5 +1,5 @@
-// A reference renderer: direct light of punctual lights with hard shadows, emission, and one mirror
-// reflection, in double precision. No light of the sky.
+// A reference renderer in double precision: direct light of punctual lights with hard shadows, emission, and
+// one mirror reflection. It has no light from the sky.
 #pragma once
 
 #include "gltf/scene.h"
@@ -10,11 +10,11 @@ namespace glint::oracle {
 
 class Reference {
 public:
-    // Both must outlive it.
+    // Both must outlive the object.
     Reference(const Scene& scene, const World& world) : scene_(scene), world_(world) {}
 
-    // Of what a ray meets first, culled; black where it meets nothing. Surfaces that are smoother than
-    // `mirrorRoughness` mirror what they see, once.
+    // Returns the radiance of the first surface that a ray meets, with back faces culled; black if it meets
+    // nothing. Surfaces that are smoother than `mirrorRoughness` reflect once.
     Vec3 radiance(const Ray& ray, double mirrorRoughness = 0.0) const;
 
 private:

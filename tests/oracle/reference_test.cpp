@@ -1,4 +1,4 @@
-// Whole pictures of direct light and mirrors against the reference renderer.
+// Compares whole pictures of direct light and mirrors with the reference renderer.
 #include "oracle/reference.h"
 
 #include "oracle/comparison.h"
@@ -14,8 +14,8 @@ using namespace glint::testing;
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 36;
 constexpr std::uint32_t kSamples = 256;
-// What single precision of positions and normals makes of highlights and silhouettes: 3e-4 at most when
-// measured.
+// The error that single precision of positions and normals causes at highlights and silhouettes; at most 3e-4
+// was measured.
 constexpr double kSinglePrecision = 5e-4;
 
 Json material(const Vec3& color, double metallic, double roughness) {
@@ -25,7 +25,7 @@ Json material(const Vec3& color, double metallic, double roughness) {
               {"roughnessFactor", roughness}}}};
 }
 
-// Six spheres of materials on a floor.
+// Returns six spheres with different materials on a floor.
 SceneFile spheresOnFloor(const Json& floor) {
     SceneFile file;
     Json coated = material({0.6, 0.1, 0.1}, 0.0, 0.6);
@@ -52,7 +52,7 @@ SceneFile spheresOnFloor(const Json& floor) {
     return file;
 }
 
-// `what` of the mean over pixels, and at their centres.
+// Compares the mean over pixels, and the pixels' centres.
 void compare(const Scene& scene, std::uint32_t effects, double mirrorRoughness, const std::string& effect,
              const std::string& what) {
     EffectOptions options;
@@ -87,8 +87,8 @@ TEST(Reference, DirectLightOfASunAndALampOnManyMaterials) {
     compare(scene, package::kEffectShadow, -1.0, "direct light", "six materials under a sun and a lamp");
 }
 
-// The mirror is metal: its Fresnel is 1 for white whatever the angle, and the fitted albedo by which the
-// device weighs mirrors is exact there.
+// The mirror is white metal: its Fresnel is 1 at any angle, and the fitted albedo by which the device weighs
+// mirrors is exact there.
 TEST(Reference, AMirrorShowsTheDirectLightOfWhatItSees) {
     SceneFile file = spheresOnFloor(material({1.0, 1.0, 1.0}, 1.0, 0.0));
     file.addLight({{"type", "directional"}, {"intensity", 2.0}}, {2, 3, 2}, {0, 0, 0});

@@ -5,7 +5,7 @@
 namespace glint::oracle {
 namespace {
 
-// A walk of one wavelength, with every branch taken.
+// Follows one wavelength and takes every branch.
 class Walk {
 public:
     Walk(const World& world, const DielectricOf& dielectricOf, const HitRadiance& hitRadiance,
@@ -21,8 +21,8 @@ public:
     double square = 0.0;
     double left = 0.0;
 
-    // The light that a ray finds. `medium` is null in air; `chance` is the product of Fresnel's shares since
-    // the first interface, `weight` what was absorbed, and the first interface's share.
+    // Adds the light that a ray finds. `medium` is null in air. `chance` is the product of Fresnel's shares
+    // since the first interface; `weight` is the absorption times the first interface's share.
     void follow(const Ray& ray, const Dielectric* medium, double chance, double weight, int interfaces) {
         const std::optional<Hit> hit = world_.closest(ray, Faces::All);
         if (hit && medium != nullptr) {

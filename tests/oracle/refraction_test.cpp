@@ -1,5 +1,4 @@
-// Light through glass, by the device and by the oracle: a walk of chance
-// against the sum of all paths.
+// Tests light through glass: a random walk on the device against the oracle's sum of all paths.
 #include "oracle/refraction.h"
 
 #include "oracle/comparison.h"
@@ -16,8 +15,8 @@ constexpr std::uint32_t kWidth = 48;
 constexpr std::uint32_t kHeight = 27;
 constexpr std::uint32_t kSamples = 256;
 
-// A floor of this half width whose colour is linear in x and z, so that it tells where a ray arrives: unlit.
-// The sky is black.
+// Adds an unlit floor of this half width whose colour is linear in x and z, so that it tells where a ray
+// arrives. The sky is black.
 void addFloor(SceneFile& file, double half) {
     file.addColoredQuad(file.addMaterial(unlitMaterial()), {-half, 0, half}, {2 * half, 0, 0},
                         {0, 0, -2 * half},
@@ -37,9 +36,8 @@ bool isOf(const World& world, const Ray& ray, int material) {
     return hit && hit->material == material;
 }
 
-// Pixels that glass fills and of which no path worth 1e-4 is left out.
-// `spread`: of the variance by which a walk of one wavelength exceeds one of
-// all.
+// Returns pixels that glass fills and whose omitted paths are worth less than 1e-4. `spread` is the factor of
+// the variance of a walk with one wavelength over a walk with all.
 std::vector<PixelTruth> throughGlass(const View& view, const World& world, int glassMaterial,
                                      const Dielectric& glass, double spread = 1.0) {
     const DielectricOf dielectricOf = [&](int material) {
@@ -68,7 +66,7 @@ LinearImage render(const Scene& scene) {
     return renderEffect(scene, options, setupOf(scene, kWidth, kHeight, kSamples, {}));
 }
 
-// Snell's displacement and Beer's path.
+// Tests Snell's displacement and Beer's path.
 TEST(Refraction, OfASlab) {
     for (const bool clear : {true, false}) {
         SceneFile file;
@@ -110,7 +108,7 @@ TEST(Refraction, OfASphere) {
     expectAgrees(image, facets,
                  {"refraction", "a sphere that absorbs, of facets", "sum of paths", 3, samplesOf(kSamples),
                   1.0, 3e-4});
-    // A sphere without facets.
+    // This is the same scene without the sphere.
     SceneFile without;
     addFloor(without, 4.0);
     World world(without.import());
@@ -119,15 +117,15 @@ TEST(Refraction, OfASphere) {
                  {"refraction", "the same", "sum of paths, no facets", 3, samplesOf(kSamples), 1.0, 2e-3});
 }
 
-// KHR_materials_dispersion: indices of red, green and blue; each wavelength goes its own way. The prism's
-// sides are left out: what goes there is lost.
+// KHR_materials_dispersion: red, green and blue have their own indices, and each wavelength its own way. The
+// prism's sides are left out, and light that goes there is lost.
 TEST(Refraction, OfAPrism) {
     SceneFile file;
     addFloor(file, 1.5);
     const Glass glass{1.6, 1.0, 0.0, Vec3(1.0), 10.0};
     const int material = file.addMaterial(glassMaterial(glass));
     file.addQuad(material, {-1, 2, 1}, {2, 0, 0}, {0, 0, -2});
-    // From x = -1, y = 0.9 to x = 1, y = 1.9: 27°.
+    // The face goes from x = -1, y = 0.9 to x = 1, y = 1.9, which is 27°.
     file.addQuad(material, {-1, 0.9, -1}, {2, 1, 0}, {0, 0, 2});
     file.addCamera({0.0, 5.0, 0.5}, {0, 2, 0}, 20);
     file.addDarkness();
@@ -142,7 +140,7 @@ TEST(Refraction, OfAPrism) {
         {"refraction", "a prism of dispersion 10", "sum of paths", 3, samplesOf(kSamples), 3.0, 3e-4});
 }
 
-// One rough interface: the surface of a pool whose ground is in the medium.
+// There is one rough interface: the surface of a pool whose ground is in the medium.
 TEST(Refraction, OfARoughSurface) {
     for (const double roughness : {0.3, 0.6}) {
         SceneFile file;
@@ -172,7 +170,7 @@ TEST(Refraction, OfARoughSurface) {
     }
 }
 
-// A thin wall lets through what it does not reflect, straight.
+// A thin wall transmits what it does not reflect, without bending it.
 TEST(Refraction, OfAThinWall) {
     SceneFile file;
     addFloor(file, 10.0);

@@ -7,12 +7,12 @@ double squared(double x) {
     return x * x;
 }
 
-// A visible normal, of a uniform point: Heitz, "Sampling the GGX Distribution of Visible Normals" (2018),
-// listing 1. view.z > 0.
+// Returns a visible normal for a uniform point: Heitz, "Sampling the GGX Distribution of Visible Normals"
+// (2018), listing 1. Requires view.z > 0.
 Vec3 visibleNormal(const Vec3& view, double alpha, Vec2 point) {
     const Vec3 stretched = glm::normalize(Vec3(alpha * view.x, alpha * view.y, view.z));
     const glm::dmat3 frame = frameAbout(stretched);
-    // The disk's half that faces away from the pole is squeezed, along the tangent that rises.
+    // The half of the disk that faces away from the pole is squeezed, along the tangent that rises.
     const Vec3 up(0.0, 0.0, 1.0);
     const Vec3 level = glm::cross(up, stretched);
     const Vec3 across = glm::length(level) > 1e-12 ? glm::normalize(level) : frame[0];

@@ -22,7 +22,7 @@ Json array(const Vec3& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
-// The -Z axis points from a place to another, +Y upwards as far as it can.
+// The -Z axis points from one place to the other, and +Y as far upwards as possible.
 Json lookingAt(const Vec3& from, const Vec3& to) {
     const Vec3 backwards = glm::normalize(from - to);
     const Vec3 up = std::abs(backwards.y) < 0.999 ? Vec3(0.0, 1.0, 0.0) : Vec3(0.0, 0.0, -1.0);

@@ -1,5 +1,5 @@
-// Scenes of the oracle's tests, written as glTF files and imported again, so that both renderers read one
-// file.
+// Builds scenes of the oracle's tests. They are written as glTF files and imported again, so that both
+// renderers read one file.
 #pragma once
 
 #include "oracle/vectors.h"
@@ -14,29 +14,29 @@ using test::Json;
 
 class SceneFile {
 public:
-    // Appends a material as glTF has it; its extensions are declared. Returns its index.
+    // Appends a material as in glTF; its extensions are declared. Returns its index.
     int addMaterial(Json material);
-    // Front side towards right × up.
+    // Adds a quad whose front faces right × up.
     void addQuad(int material, const Vec3& corner, const Vec3& right, const Vec3& up);
-    // As addQuad(), with COLOR_0 at corner, + right, + right + up, + up.
+    // Like addQuad(), with COLOR_0 at corner, + right, + right + up, + up.
     void addColoredQuad(int material, const Vec3& corner, const Vec3& right, const Vec3& up,
                         const std::vector<Vec3>& colors);
-    // A regular polygon about `center` whose front is towards `axis`, of the area of a disk of that radius.
+    // Adds a regular polygon about `center` whose front faces `axis`, with the area of a disk of that radius.
     void addDisk(int material, const Vec3& center, const Vec3& axis, double radius, int corners);
-    // Meridians and parallels with the sphere's own normals; `rings` from pole to pole, twice as many around.
-    // The corners are on the sphere, so that the solid is a little smaller.
+    // Adds a sphere of meridians and parallels with its own normals, with `rings` from pole to pole and twice
+    // as many around. The corners are on the sphere, so the solid is a little smaller.
     void addSphere(int material, const Vec3& center, double radius, int rings);
-    // Six quads; the fronts are inside if `inwards`.
+    // Adds six quads. The fronts are inside if `inwards` is set.
     void addBox(const std::vector<int>& materials, const Vec3& low, const Vec3& high, bool inwards);
-    // Perspective, from a place towards another.
+    // Adds a perspective camera at one place that looks at another.
     void addCamera(const Vec3& from, const Vec3& to, double verticalDegrees);
-    // A light as KHR_lights_punctual has it, at a place, shining towards another.
+    // Adds a light as in KHR_lights_punctual, at one place, shining towards another.
     void addLight(Json light, const Vec3& from, const Vec3& to);
-    // A light of no intensity, for scenes that the sky alone lights: viewers add a sun to scenes without a
-    // light.
+    // Adds a light without intensity, for scenes that only the sky lights: viewers add a sun to scenes
+    // without a light.
     void addDarkness();
 
-    // A failure of the importer, and any of its warnings, fails the test.
+    // Imports the scene. A failure of the importer, or a warning, fails the test.
     Scene import() const;
     const test::GltfBuilder& builder() const {
         return builder_;
@@ -50,11 +50,12 @@ private:
     test::GltfBuilder builder_;
 };
 
-// White by default; reflects diffusely alone: no specular lobe, neither at normal incidence nor at grazing.
+// Returns a material, white by default, that reflects only diffusely: it has no specular lobe, neither at
+// normal incidence nor at grazing.
 Json diffuseMaterial(const Vec3& color = Vec3(1.0), bool doubleSided = false);
-// Unlit, of that color.
+// Returns an unlit material of that color.
 Json unlitMaterial(const Vec3& color = Vec3(1.0), bool doubleSided = false);
-// Gives off light and reflects nothing.
+// Returns a material that emits light and reflects nothing.
 Json emissiveMaterial(const Vec3& radiance);
 
 struct Glass {
@@ -64,7 +65,7 @@ struct Glass {
     Vec3 attenuationColor{1.0};
     double dispersion = 0.0;
 };
-// Smooth and clear.
+// Returns a smooth and clear material.
 Json glassMaterial(const Glass& glass);
 
 }  // namespace glint::oracle

@@ -72,7 +72,7 @@ Vec3 Shading::baseColor() const {
 }
 
 Vec3 Shading::emission() const {
-    // KHR_materials_clearcoat: the coat lets through of emission what it does not reflect.
+    // KHR_materials_clearcoat: the coat transmits the part of the emission that it does not reflect.
     const double coat = material_.clearcoat.factor * reflectedByCoat();
     return toVec(material_.emissiveFactor) * static_cast<double>(material_.emissiveStrength) * (1.0 - coat);
 }

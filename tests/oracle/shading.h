@@ -1,6 +1,5 @@
 // Surfaces under light in double precision: the shaders' own BSDF, compiled as C++ (tests/numerics), with
-// what the factors of a glTF material make of it. For scenes whose pictures need a whole renderer as their
-// truth.
+// parameters from the factors of a glTF material. It is for scenes whose truth needs a whole renderer.
 #pragma once
 
 #include "oracle/world.h"
@@ -8,8 +7,8 @@
 
 namespace glint::oracle {
 
-// A hit with its material: metallic-roughness, emissive strength, ior, specular, clearcoat, sheen; of unlit
-// materials the colour alone. Textures are not read. Energy compensation is on, as it is by default.
+// A hit with its material: metallic-roughness, emissive strength, ior, specular, clearcoat, sheen; for unlit
+// materials only the colour. Textures are not read. Energy compensation is on, which is the default.
 class Shading {
 public:
     Shading(const Material& material, const Hit& hit, const Vec3& incoming);
@@ -17,15 +16,16 @@ public:
     bool unlit() const {
         return material_.unlit;
     }
-    // COLOR_0 counts.
+    // COLOR_0 is a factor.
     Vec3 baseColor() const;
     Vec3 emission() const;
-    // BSDF times the cosine, for light from a direction; 0 where normal and geometric normal disagree about
-    // its side.
+    // Returns the BSDF times the cosine, for light from a direction; 0 if normal and geometric normal
+    // disagree about its side.
     Vec3 scattered(const Vec3& toLight) const;
-    // Of a smooth surface without coat or sheen: Schlick's Fresnel at the view, and where it reflects to.
+    // Returns Schlick's Fresnel at the view for a smooth surface without coat or sheen, and sets the
+    // direction of reflection.
     Vec3 mirrored(Vec3& direction) const;
-    // On the viewer's side.
+    // Returns the normal on the viewer's side.
     Vec3 normal() const {
         return frame_[2];
     }
@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    // Schlick's, of the coat's index 1.5.
+    // Returns Schlick's approximation for the coat's index 1.5.
     double reflectedByCoat() const;
 
     const Material& material_;

@@ -1,4 +1,4 @@
-// Shadows of lights with a size, by the device and by the oracle.
+// Tests shadows of lights with a size, by the device and by the oracle.
 #include "oracle/comparison.h"
 #include "oracle/device.h"
 #include "oracle/light.h"
@@ -17,8 +17,7 @@ constexpr double kSunDegrees = 24.0;
 constexpr double kDisk = 0.5;
 constexpr double kDiskHeight = 1.0;
 
-// A disk over a floor, both white and lit from both sides; the camera looks
-// below the disk.
+// Returns a disk over a floor, both white and lit from both sides. The camera looks below the disk.
 SceneFile diskOverFloor() {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial(Vec3(1.0), true));
@@ -28,15 +27,15 @@ SceneFile diskOverFloor() {
     return file;
 }
 
-// What a point of the floor shows of the light, with a share of it visible:
-// albedo / π E cos θ. The cosine is of the centre.
+// Returns the light that a point of the floor shows if a share of the light is visible: albedo / π E cos θ.
+// The cosine is that of the centre.
 Estimate lit(const Light& light, const Hit& hit, const Vec3& toLight, const Estimate& share) {
     const Vec3 whole =
         irradianceFrom(light, hit.position) * (std::max(glm::dot(hit.normal, toLight), 0.0) / kPi);
     return {share.mean * whole, share.error * whole, share.square * whole * whole};
 }
 
-// Of the floor.
+// Returns the truths of the floor.
 std::vector<PixelTruth> truths(const Scene& scene, const World& world, const Strata& strata,
                                const std::function<Estimate(const Hit&, Random&)>& light) {
     return pixelTruths(
@@ -100,7 +99,7 @@ TEST(SoftShadow, OfADiskUnderALamp) {
     }
 }
 
-// What a ray hits takes one ray to the light: here of the floor that a mirror shows.
+// A hit of a ray takes one ray to the light; here it is the floor that a mirror shows.
 TEST(SoftShadow, OfADiskInAMirror) {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial(Vec3(1.0), true));

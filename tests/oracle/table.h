@@ -6,8 +6,8 @@ namespace glint::oracle {
 struct Subject;
 struct Comparison;
 
-// Printed at once. When the program ends, all rows are written as Markdown into effects_accuracy.md beside
-// it.
+// Prints the row at once. When the program ends, all rows are written as Markdown into effects_accuracy.md
+// beside it.
 void addRow(const Subject& subject, const Comparison& comparison);
 
 }  // namespace glint::oracle

@@ -33,7 +33,7 @@ struct Triangles::Embree {
 
 namespace {
 
-// Where the ray meets the triangle's plane: Möller and Trumbore (1997), without their tests.
+// Returns where the ray meets the triangle's plane: Möller and Trumbore (1997), without their tests.
 TriangleHit planeHit(const Triangle& triangle, const Vec3& origin, const Vec3& direction) {
     const Vec3 edge1 = triangle.positions[1] - triangle.positions[0];
     const Vec3 edge2 = triangle.positions[2] - triangle.positions[0];
@@ -48,7 +48,8 @@ TriangleHit planeHit(const Triangle& triangle, const Vec3& origin, const Vec3& d
     return hit;
 }
 
-// What Embree hands on to the filter: the context comes first, so that a pointer to it is one to this.
+// The data that Embree passes to the filter. The context comes first, so that a pointer to it is also a
+// pointer to this.
 struct Query {
     QueryContext context;
     const Triangles& triangles;
@@ -65,8 +66,8 @@ TriangleHit hitOf(const Query& query, std::uint32_t index) {
     return hit;
 }
 
-// Leaves out what the ray starts on, what is too far, and what is not there. Embree goes on behind it, to
-// what stands in the same place first.
+// Leaves out the start of the ray, hits that are too far, and surfaces that do not exist there. Embree
+// continues behind a rejected hit, first with others in the same place.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     const Query& query = *reinterpret_cast<const Query*>(arguments->context);
     const TriangleHit hit = hitOf(query, RTCHitN_primID(arguments->hit, arguments->N, 0));
@@ -179,7 +180,7 @@ bool Triangles::blocked(const Vec3& origin, const Vec3& direction, double neares
     rtcInitIntersectContext(&query.context);
     rtcOccluded1(embree_->scene, &query.context, &ray);
 #endif
-    // Embree marks a ray that is blocked so.
+    // Embree marks a blocked ray in this way.
     return ray.tfar < 0.0F;
 }
 

@@ -1,4 +1,4 @@
-// Triangles by Embree.
+// Intersects triangles with Embree.
 #pragma once
 
 #include "oracle/vectors.h"
@@ -26,16 +26,16 @@ struct TriangleHit {
     double v = 0.0;
 };
 
-// Whether a triangle is there where a ray meets it.
+// Returns whether a triangle exists where a ray meets it.
 using Accepts = std::function<bool(const TriangleHit&)>;
 
-// Embree's rays and triangles are of single precision (with RTC_SCENE_FLAG_ROBUST, which leaves no gaps
-// between triangles); they say which triangle is hit. Where is then worked out in double precision on the
-// triangle itself. A ray that passes an edge within single precision, 1e-7 of the coordinates, may be given
-// either neighbour.
+// Embree's rays and triangles have single precision (with RTC_SCENE_FLAG_ROBUST, which leaves no gaps between
+// triangles). They decide which triangle is hit. The place is then computed in double precision on the
+// triangle itself. A ray that passes an edge within single precision, 1e-7 of the coordinates, may get either
+// neighbour.
 class Triangles {
 public:
-    // Aborts where Embree fails.
+    // Aborts if Embree fails.
     explicit Triangles(std::vector<Triangle> triangles);
     ~Triangles();
     Triangles(const Triangles&) = delete;
@@ -44,16 +44,17 @@ public:
     const Triangle& at(std::uint32_t index) const {
         return triangles_[index];
     }
-    // The nearest hit in (nearest, farthest); `culled`: back faces of single-sided triangles are not there.
+    // Returns the nearest hit in (nearest, farthest). If `culled` is set, back faces of single-sided
+    // triangles are ignored.
     bool closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest, bool culled,
                  TriangleHit& hit) const;
-    // The same of those that are accepted.
+    // Returns the nearest hit that is accepted.
     bool closest(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
                  const Accepts& accepts, TriangleHit& hit) const;
-    // Whether any is in (nearest, farthest) and accepted.
+    // Returns whether any hit in (nearest, farthest) is accepted.
     bool blocked(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
                  const Accepts& accepts) const;
-    // From behind, by the winding.
+    // Returns whether the triangle is seen from behind, by its winding.
     bool showsBack(std::uint32_t index, const Vec3& direction) const;
 
 private:

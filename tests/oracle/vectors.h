@@ -1,4 +1,4 @@
-// Vectors of the oracle: double precision throughout.
+// The vectors of the oracle, in double precision throughout.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@ using Vec3 = glm::dvec3;
 
 inline constexpr double kPi = std::numbers::pi;
 
-// Columns: two tangents and the axis, which is unit.
+// Returns the columns of a frame: two tangents and the axis, which must be a unit vector.
 inline glm::dmat3 frameAbout(const Vec3& axis) {
     const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
     const Vec3 tangent = glm::normalize(helper - axis * glm::dot(helper, axis));

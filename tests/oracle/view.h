@@ -1,4 +1,4 @@
-// Rays of a glTF camera.
+// The rays of a glTF camera.
 #pragma once
 
 #include "gltf/scene.h"
@@ -8,17 +8,17 @@
 
 namespace glint::oracle {
 
-// glTF 2.0, 3.10.3. A perspective camera's vertical field of view is its own, the width
-// follows the image.
+// Source: glTF 2.0, 3.10.3. A perspective camera keeps its vertical field of view; the width follows the
+// image.
 class View {
 public:
     View(const Camera& camera, std::uint32_t width, std::uint32_t height);
-    // Rays start at `near`, metres along the view. `right` and `up`: from the middle of the image to its
-    // edges, on the plane at distance 1 or, if rays are parallel, as they are.
+    // Rays start at `near`, metres along the view. `right` and `up` go from the middle of the image to its
+    // edges, on the plane at distance 1 or, if rays are parallel, in world units.
     View(const Ray& middle, const Vec3& right, const Vec3& up, bool parallel, double near,
          std::uint32_t width, std::uint32_t height);
 
-    // Through a place of the image in pixels from the top left corner.
+    // Returns the ray through a place of the image, in pixels from the top left corner.
     Ray ray(double x, double y) const;
     std::uint32_t width() const {
         return width_;

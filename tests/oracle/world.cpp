@@ -40,7 +40,7 @@ void appendPrimitive(const Scene& scene, const Primitive& primitive, const glm::
         std::array<std::uint32_t, 3> corners{primitive.indices[i], primitive.indices[i + 1],
                                              primitive.indices[i + 2]};
         if (mirrored) {
-            // glTF: a negative determinant turns the winding.
+            // In glTF a negative determinant reverses the winding.
             std::swap(corners[1], corners[2]);
         }
         for (std::size_t k = 0; k < 3; ++k) {
@@ -135,7 +135,7 @@ void World::hitSphere(const Sphere& sphere, const Ray& ray, Faces faces, double 
         hit.distance = distance;
         hit.normal = glm::normalize(ray.origin + distance * ray.direction - sphere.center);
         hit.geometricNormal = hit.normal;
-        // On the sphere to the last place, so that the next ray starts on it.
+        // The position is exactly on the sphere, so that the next ray starts on it.
         hit.position = sphere.center + sphere.radius * hit.normal;
         hit.material = sphere.material;
         hit.front = entry;

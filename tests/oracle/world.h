@@ -1,4 +1,4 @@
-// What rays of the oracle meet: the triangles of a scene, and spheres.
+// What the oracle's rays can hit: the triangles of a scene, and spheres.
 #pragma once
 
 #include "gltf/scene.h"
@@ -27,27 +27,27 @@ struct Hit {
     bool front = true;  // the ray came from the front
 };
 
-// All: rays meet both sides of everything. Culled: they pass the backs of what is single-sided.
+// All: rays hit both sides of everything. Culled: they pass the backs of single-sided surfaces.
 enum class Faces { All, Culled };
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class World {
 public:
-    // Without triangles.
+    // Makes a world without triangles.
     World();
-    // Every primitive of every node, in the world. Only factors of materials are looked at, and COLOR_0.
+    // Takes every primitive of every node, in the world. Only factors of materials and COLOR_0 are read.
     explicit World(const Scene& scene);
 
-    // A sphere without facets, front outside.
+    // Adds a sphere without facets, with its front outside.
     void addSphere(const Vec3& center, double radius, int material = 0);
 
-    // The nearest hit. A ray may start on a surface: what it meets within 1e-9 of the scene's size is that
-    // surface.
+    // Returns the nearest hit. A ray may start on a surface: a hit within 1e-9 of the scene's size is on that
+    // surface, and is ignored.
     std::optional<Hit> closest(const Ray& ray, Faces faces, double farthest = kInfinity) const;
-    // Whether a ray first meets the front of something in the plane y = 0, culled: the floors of the tests.
+    // Returns whether a ray first hits a front in the plane y = 0, culled: the floors of the tests.
     bool meetsGround(const Ray& ray) const;
-    // Whether nothing, front or back, stands nearer than `distance`.
+    // Returns whether nothing, front or back, is nearer than `distance`.
     bool visible(const Ray& ray, double distance = kInfinity) const;
 
 private:

@@ -1,4 +1,4 @@
-// What rays meet, and where.
+// Tests what rays hit, and where.
 #include "oracle/world.h"
 
 #include "oracle/expect.h"
@@ -14,7 +14,7 @@ TEST(OracleWorld, RaysMeetTrianglesInDoublePrecision) {
     SceneFile file;
     file.addQuad(file.addMaterial(diffuseMaterial()), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
     const World world(file.import());
-    // 1/3 is no number of single precision, nor are the distances.
+    // Neither 1/3 nor the distances are numbers of single precision.
     const Ray ray{{1.0 / 3.0, 1.0 / 7.0, 10.0 / 3.0}, glm::normalize(Vec3(0.1, -0.2, -1.0))};
     const std::optional<Hit> hit = world.closest(ray, Faces::Culled);
     ASSERT_TRUE(hit);
@@ -23,7 +23,7 @@ TEST(OracleWorld, RaysMeetTrianglesInDoublePrecision) {
     EXPECT_NEAR(hit->position.y, 1.0 / 7.0 - 2.0 / 3.0, 1e-14);
     EXPECT_NEAR(hit->position.z, 0.0, 1e-14);
     EXPECT_TRUE(hit->front);
-    // Away from where it starts, on the surface itself.
+    // A ray that leaves the surface where it starts does not hit it.
     EXPECT_FALSE(world.closest({hit->position, {0, 0, 1}}, Faces::All));
     EXPECT_FALSE(world.closest({hit->position, {0, 0, -1}}, Faces::All));
 }
@@ -77,7 +77,7 @@ TEST(OracleWorld, SpheresAndTheirTrianglesAgree) {
             EXPECT_LE(a->distance, b->distance + 1.5 * sag / cosine);
             EXPECT_LE(glm::length(a->normal - b->normal), 1e-3);
         }
-        // Out again on the far side.
+        // The ray leaves on the far side.
         const Ray onwards{b->position, ray.direction};
         const std::optional<Hit> exit = sphere.closest(onwards, Faces::All);
         ASSERT_TRUE(exit);
@@ -104,8 +104,8 @@ TEST(OracleWorld, CornersOfTheImageAreAtTheFieldOfView) {
 }
 
 TEST(OracleQuadrature, ErrorsFallAsTheyAreSaidTo) {
-    // Smooth: ∫ sin(πx) eʸ; with an edge: a quarter disk. The first falls as strata⁻², the second as
-    // strata^-1.5.
+    // The smooth function is ∫ sin(πx) eʸ; the one with an edge is a quarter disk. The error of the first
+    // falls as strata⁻², that of the second as strata^-1.5.
     const double smooth = 2.0 / kPi * (std::numbers::e - 1.0);
     const auto rootMeanSquare = [](int strata, double truth, const auto& f) {
         double squares = 0.0;
@@ -117,7 +117,7 @@ TEST(OracleQuadrature, ErrorsFallAsTheyAreSaidTo) {
             squares += std::pow(estimate.mean.x - truth, 2.0) / kSeeds;
             stated += estimate.error.x * estimate.error.x / kSeeds;
         }
-        // 64 seeds know the ratio of the two to about 20 %.
+        // 64 seeds give the ratio of the two to about 20 %.
         EXPECT_NEAR(std::sqrt(stated / squares), 1.0, 0.4);
         return std::sqrt(squares);
     };
@@ -131,7 +131,7 @@ TEST(OracleQuadrature, ErrorsFallAsTheyAreSaidTo) {
 
 TEST(OracleQuadrature, DirectionsHaveTheirDensities) {
     Random random(3);
-    // Means of the cosine: 2/3 under cosine / π, (1 + cos a) / 2 over a cap.
+    // Means of the cosine: 2/3 under cosine / π, and (1 + cos a) / 2 over a cap.
     const Estimate cosine = average({64, 4}, random, [](Vec2 p) { return Vec3(cosineDirection(p).z); });
     expectEstimate(cosine, 2.0 / 3.0, 1e-4);
     for (const double angle : {0.004, 0.3, 1.2}) {

@@ -11,7 +11,8 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
-# WCAG 2.1, "relative luminance" and "contrast ratio", of an element's ink against the first opaque colour behind it.
+# WCAG 2.1, "relative luminance" and "contrast ratio", for an element's text colour against the first opaque
+# colour behind it.
 CONTRAST = """
     const node = document.querySelector(arguments[0]);
     const channels = (color) => color.match(/[0-9.]+/g).map(Number);
@@ -58,7 +59,7 @@ class Browser:
     def resize(self, width):
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
-        # Charts are drawn anew in the frame after.
+        # Charts are drawn again in the following frame.
         self.driver.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
 
     def prefer(self, scheme):

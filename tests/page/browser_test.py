@@ -152,7 +152,7 @@ class Chart(Page):
                 for other in boxes[:i]:
                     across = min(right, other[1]) - max(left, other[0])
                     down = min(bottom, other[3]) - max(top, other[2])
-                    # The boxes of text are as high as the font's line, which is more than its letters.
+                    # Text boxes have the height of the font's line, which is more than that of its letters.
                     self.assertFalse(across > 0 and down > 3, (boxes[i], other))
 
 

@@ -23,7 +23,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
     return count;
 }
 
-// What the script element of this id holds.
+// Returns the content of the script element with this id.
 Json dataOf(const std::string& html, const std::string& id) {
     const std::string open = "<script type=\"application/json\" id=\"" + id + "\">";
     const std::size_t start = html.find(open) + open.size();
@@ -71,7 +71,8 @@ TEST(Page, IsOneDocumentWithEveryPart) {
     EXPECT_EQ(html.find("{{{"), std::string::npos);
 }
 
-// Nothing is fetched: no address but the name of SVG's elements, and a policy that forbids it.
+// Nothing is fetched: the page contains no address except the name of SVG's elements, and its policy forbids
+// fetching.
 TEST(Page, RefersToNothingOutside) {
     const std::string html = htmlOf(samplePage());
     const std::regex address(R"((https?:)?//[a-z0-9.]+\.[a-z]{2,}[^\s"']*)");
@@ -91,7 +92,7 @@ TEST(Page, NamesStayData) {
     EXPECT_EQ(countOf(html, "</script>"), 3U);
     EXPECT_EQ(html.find("<!-- <img"), std::string::npos);
     EXPECT_EQ(html.find("<img src=x"), std::string::npos);
-    // Placeholders of a name are not filled in, and bytes that are not UTF-8 are replaced.
+    // Placeholders in a name are not filled in, and bytes that are not UTF-8 are replaced.
     const std::string name = dataOf(html, "report-data").at("scene").at("name");
     EXPECT_NE(name.find("</script><script>"), std::string::npos);
     EXPECT_NE(name.find("{{{css}}} {{report}}"), std::string::npos);

@@ -72,7 +72,7 @@ void Maker::addErrors(Json& point, double factor) {
               {"low", 0.004 * (factor - 1.0) - 0.002},
               {"high", 0.004 * (factor - 1.0) + 0.002}};
     Json psnr = interval(-20.0 * std::log10(rmse), 0.01);
-    // A picture that happens to be exact in one measure.
+    // This picture happens to be exact in one measure.
     if (point.at("id") == 7) {
         psnr = nullptr;
     }
@@ -182,7 +182,7 @@ void Maker::addCombinations() {
              {{"spp", "32"}, {"max-roughness", "1"}, {"shadow-samples", "4"}, {"texture-lod", "mip0"}});
 }
 
-// Those that no other beats in time and relMSE, by their medians.
+// Marks the points that no other beats in time and relMSE, by their medians.
 void Maker::markFront() {
     Json& points = page_.report["points"];
     std::vector<std::size_t> order;

@@ -1,5 +1,5 @@
-// Reports as `glint bench` writes them, made up: what the page is to show is known, and cases that a machine
-// seldom gives are there.
+// Made-up reports in the form that `glint bench` writes. Their content is known, and they contain cases that
+// a machine seldom gives.
 #pragma once
 
 #include "bench/page.h"
@@ -11,20 +11,20 @@
 
 namespace glint::testing {
 
-// NOLINTNEXTLINE(bugprone-exception-escape): the move of Json, which throws nothing that can be thrown here.
+// Moving the Json can't throw here. NOLINTNEXTLINE(bugprone-exception-escape)
 struct SamplePage {
     nlohmann::ordered_json report;
     std::vector<PageImage> images;
 };
 
-// About 60 points: singles, pairs, a search, other packages; ties, skipped values, an infinite PSNR, a bias
-// whose interval holds 0.
+// Returns about 60 points: singles, pairs, a search, other packages; ties, skipped values, an infinite PSNR,
+// a bias whose interval contains 0.
 SamplePage samplePage();
 
-// One whose names try to be markup, script or an end of the element that they are in.
+// Returns a report whose names try to be markup, script or an end of the element that contains them.
 SamplePage hostilePage();
 
-// One point, and everything null or empty that may be.
+// Returns one point, with everything null or empty that may be.
 SamplePage sparsePage();
 
 }  // namespace glint::testing

@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// What a value of a setting does to time and to error, as factors.
+// The effect of a setting's value on time and on error, as factors.
 struct Value {
     const char* name;
     double time;
@@ -26,7 +26,7 @@ struct Setting {
 
 const std::vector<Setting>& sampleSettings();
 
-// As the report lists them, with one more that has a single value.
+// Returns the settings as the report lists them, plus one that has a single value.
 nlohmann::ordered_json sampleSettingsJson();
 
 }  // namespace glint::testing

@@ -1,5 +1,5 @@
-// Functions of the hit shaders where single precision could fail: directions of any length, means of many
-// samples.
+// Tests functions of the hit shaders in which single precision could fail: directions of any length, means of
+// many samples.
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
 
@@ -21,7 +21,7 @@ using Double3 = std::array<double, 3>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// The kernels here read no scene, but are compiled for one.
+// The kernels here read no scene, but have to be compiled for one.
 Scene anyScene() {
     Scene scene = emptyScene();
     const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
@@ -73,7 +73,7 @@ TEST(Directions, OfEveryLength) {
     }
 }
 
-// shaders/hit/random.glsl on the host.
+// Repeats shaders/hit/random.glsl on the host.
 std::uint32_t pcgHash(std::uint32_t value) {
     const std::uint32_t state = value * 747796405U + 2891336453U;
     const std::uint32_t word = ((state >> ((state >> 28U) + 4U)) ^ state) * 277803737U;
@@ -113,7 +113,7 @@ TEST(RunningMean, OfManySamplesIsThatInDoublePrecision) {
     for (std::size_t kind = 0; kind < 3; ++kind) {
         RecordProperty("relativeError" + std::to_string(kind), std::to_string(largest[kind]));
         std::cout << "largest relative error of kind " << kind << ": " << largest[kind] << "\n";
-        // One rounding of the mean, and what the residuals' own rounding leaves.
+        // The bound is one rounding of the mean, plus what the residuals' own rounding leaves.
         EXPECT_LE(largest[kind], 2e-7) << "kind " << kind;
     }
     expectNoValidationMessages();

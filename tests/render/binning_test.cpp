@@ -1,4 +1,4 @@
-// Rays are sorted by direction within their workgroup: the list stays whole, and the picture the same.
+// Rays are sorted by direction within their workgroup. The list must stay complete, and the picture the same.
 #include "render/scene_builder.h"
 #include "render/traced_frame.h"
 
@@ -16,7 +16,7 @@ using namespace glint::testing;
 
 constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedral};
 
-// Mirrors that send rays all round, before unlit walls.
+// Returns mirrors that send rays in all directions, in front of unlit walls.
 Scene mirrors() {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -34,7 +34,7 @@ RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t heigh
     return defaultSetup(scene, width, height);
 }
 
-// Each pixel that a ray went out for is in the list once, and nothing else is.
+// Expects that the list contains each pixel that sent a ray exactly once, and nothing else.
 void expectWhole(const TracedFrame& frame) {
     std::set<std::uint32_t> pixels;
     for (const gpu::RayRecord& ray : frame.rays) {
@@ -57,7 +57,8 @@ std::array<double, 2> octahedral(const gpu::vec3& v) {
     return {std::copysign(1.0 - std::abs(y), x), std::copysign(1.0 - std::abs(x), y)};
 }
 
-// The bin of a direction; -1 where the rounding of another machine might put it into a neighbour.
+// Returns the bin of a direction, or -1 if the rounding of another machine might put it into a neighbouring
+// bin.
 int binOf(const gpu::vec3& v, Binning binning) {
     if (binning == Binning::Sign) {
         return (v.x < 0.0F ? 1 : 0) + (v.y < 0.0F ? 2 : 0) + (v.z < 0.0F ? 4 : 0);
@@ -75,7 +76,8 @@ int binOf(const gpu::vec3& v, Binning binning) {
     return bin;
 }
 
-// The rays of a workgroup follow each other in the list, bin by bin. Returns the most bins of one workgroup.
+// Expects that the rays of a workgroup follow each other in the list, bin by bin. Returns the most bins of
+// one workgroup.
 std::size_t expectSorted(const TracedFrame& frame, Binning binning, std::uint32_t width) {
     const std::uint32_t tilesAcross = (width + gpu::kPixelGroupSize - 1) / gpu::kPixelGroupSize;
     std::map<std::uint32_t, std::set<int>> binsOfTile;
@@ -121,7 +123,7 @@ TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
             expectWhole(frame);
             if (binning != Binning::None) {
                 const std::size_t bins = expectSorted(frame, binning, width);
-                // Nothing would be sorted otherwise.
+                // Otherwise nothing would be sorted.
                 EXPECT_TRUE(width != 65 || bins > 3) << bins;
             }
             if (reference.pixels.empty()) {

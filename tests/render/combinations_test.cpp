@@ -1,5 +1,5 @@
-// Whatever way a hit is traced, recorded, ordered, merged and shadowed, the linear image is the same: a sweep
-// in which every two values of two settings meet.
+// The linear image is the same however a hit is traced, recorded, ordered, merged and shadowed. The sweep
+// covers every pair of values of two settings.
 #include "render/harness.h"
 #include "render/rooms.h"
 
@@ -26,7 +26,7 @@ struct Room {
     package::ShadowPlacement profileShadows;
 };
 
-// What a renderer chooses, for one strategy and tracer.
+// The choices of a renderer, for one strategy and tracer.
 struct Way {
     package::Strategy strategy;
     package::Tracer tracer;
@@ -44,7 +44,7 @@ std::vector<Way> waysOf(std::uint32_t tracers) {
     return ways;
 }
 
-// A profile under which keys are hot, never hit and cold by turns; the last one it does not know.
+// Makes a profile in which keys are hot, never hit and cold in turn. It does not contain the last key.
 std::map<FeatureMask, std::uint64_t> makeUpHits(const std::vector<Key>& keys) {
     constexpr std::uint64_t kHits[] = {1000, 0, 1};
     std::map<FeatureMask, std::uint64_t> hits;
@@ -54,7 +54,7 @@ std::map<FeatureMask, std::uint64_t> makeUpHits(const std::vector<Key>& keys) {
     return hits;
 }
 
-// The profile was heeded: hot keys are apart, and of the others some share.
+// Expects that the profile was used: hot keys are separate, and some of the others share a case.
 void expectMergedByHits(const Plan& plan) {
     bool isHot = false;
     bool shares = false;
@@ -77,8 +77,8 @@ protected:
         return setup;
     }
 
-    // Every way of one package; orderings and binnings take turns, so that each meets each way over the
-    // packages.
+    // Renders every way of one package. Orderings and binnings take turns, so that each meets each way over
+    // the packages.
     void sweep(const Scene& scene, const CompileSettings& settings) {
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
@@ -136,7 +136,7 @@ TEST_P(Combinations, GiveOneImage) {
             sweep(scene, settings);
         }
     }
-    // One placement of shadows a room, so that each meets the policy.
+    // Each room has one placement of shadows, so that each placement meets the policy.
     settings.shadows = GetParam().profileShadows;
     settings.plan.merge = MergePolicy::Profile;
     settings.plan.maxShaders = 4;
@@ -145,7 +145,7 @@ TEST_P(Combinations, GiveOneImage) {
     expectMergedByHits(plan_);
 }
 
-// Half the memory costs what its barycentrics and cone widths lose, and nothing else.
+// Half the memory costs only the precision of its barycentrics and cone widths.
 TEST_P(Combinations, PackedHitsAreClose) {
     const Scene scene = GetParam().make();
     CompileSettings settings;
@@ -164,7 +164,8 @@ TEST_P(Combinations, PackedHitsAreClose) {
     double sum = 0.0;
     for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel) {
-            // Against what is there: a sharp highlight that moves by a few per cent outweighs all else.
+            // The error is relative to the value, because a sharp highlight that moves by a few per cent
+            // would otherwise dominate.
             const double truth = exact.pixels[i][channel];
             const double difference = visibility.pixels[i][channel] - truth;
             sum += difference * difference / (truth * truth + 0.01);

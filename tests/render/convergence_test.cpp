@@ -1,4 +1,4 @@
-// Glossy reflections converge to one picture, whatever the strategy.
+// Glossy reflections converge to one picture with every strategy.
 #include "render/harness.h"
 #include "render/rooms.h"
 
@@ -37,8 +37,8 @@ double mean(const LinearImage& image) {
     return sum / (3.0 * static_cast<double>(image.pixels.size()));
 }
 
-// Without highlights of points of light in smooth surfaces: a rare sample of one is as bright as the lobe is
-// narrow, and no picture of 4,096 samples has met them all.
+// Removes highlights of point lights in smooth surfaces: a rare sample of one is as bright as the lobe is
+// narrow, and no picture of 4,096 samples has found them all.
 Scene roomWithoutSharpHighlights() {
     Scene scene = roomOfMaterials();
     for (Material& material : scene.materials) {
@@ -69,8 +69,8 @@ protected:
     std::optional<LoadedScene> loaded_;
 };
 
-// The slope of error over samples, log over log: -0.5 for independent samples; the scrambled sequence is
-// steeper where what it samples is smooth.
+// The slope of error over samples, log over log, is -0.5 for independent samples. The scrambled sequence is
+// steeper where the function that it samples is smooth.
 TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
     ASSERT_TRUE(loaded_->ok());
     const LinearImage reference = render(package::kStrategyUber, 4096, 1);
@@ -103,7 +103,7 @@ TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
     EXPECT_NEAR(slope, -0.5, 0.1);
 }
 
-// Each strategy with seeds of its own.
+// Each strategy has its own seeds.
 TEST_F(Convergence, StrategiesHaveTheSameMean) {
     ASSERT_TRUE(loaded_->ok());
     constexpr int kSeeds = 12;
@@ -134,7 +134,8 @@ TEST_F(Convergence, StrategiesHaveTheSameMean) {
     }
     for (const Estimate& a : estimates) {
         for (const Estimate& b : estimates) {
-            // Four standard errors of the difference: with fixed seeds, a bias shows and chance does not.
+            // The bound is four standard errors of the difference. As seeds are fixed, a bias shows and
+            // chance does not.
             EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.error, b.error));
         }
     }

@@ -1,4 +1,4 @@
-// A package has what its scene calls for and nothing else: modules, pipelines, images, buffers, passes.
+// A package has exactly what its scene calls for: modules, pipelines, images, buffers, passes.
 #include "render/harness.h"
 #include "render/scene_builder.h"
 
@@ -14,7 +14,7 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-// What a scene has.
+// The properties of a scene.
 struct Properties {
     bool light;
     bool smooth;
@@ -55,7 +55,7 @@ std::string describe(const Properties& has) {
            (has.smooth ? ", smooth" : "") + (has.glass ? ", glass" : "");
 }
 
-// Names of the modules without those of cases, and the number of those.
+// The names of the modules, without those of cases, and the number of cases' modules.
 struct Modules {
     std::multiset<std::string> roles;
     std::size_t cases = 0;
@@ -78,7 +78,7 @@ std::vector<std::string> passesOf(Renderer& renderer) {
     EXPECT_TRUE(timings);
     std::vector<std::string> names;
     for (const PassTiming& timing : timings ? *timings : std::vector<PassTiming>{}) {
-        // One a case, and the name of the case.
+        // Counts one for each case, without the name of the case.
         names.push_back(timing.name.starts_with("shade ") && timing.name != "shade miss" ? "shade"
                                                                                          : timing.name);
     }
@@ -101,7 +101,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
 
-    // By hand: what each property calls for.
+    // The expectation for each property is written by hand.
     const bool shadow = has.lit && has.light;
     const bool reflection = has.lit && has.smooth;
     const bool refraction = has.lit && has.glass;
@@ -126,7 +126,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     EXPECT_EQ(modules.roles, expected);
     const std::size_t keys = loaded.compiled().plan.keys.size();
     EXPECT_EQ(modules.cases, rays ? keys : 0);
-    // Without shadows nothing but the list's own passes traces.
+    // Without shadows, only the list's own passes trace.
     for (const CompiledModule& module : loaded.compiled().modules) {
         const bool traces = module.statistics.rayQueries > 0;
         const bool mayTrace =
@@ -144,7 +144,8 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
         Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
     ASSERT_TRUE(renderer) << toString(renderer.error());
     const Renderer::Footprint footprint = (*renderer)->footprint();
-    // G-buffer, lighting, compose; the list's: dispatch, trace, count, offset, copy, misses, cases.
+    // G-buffer, lighting, compose; and the list's passes: dispatch, trace, count, offset, copy, misses,
+    // cases.
     const std::uint32_t cases =
         static_cast<std::uint32_t>(loaded.compiled().uniqueSpirv > 0 && rays ? keys : 0);
     std::uint32_t pipelines = 3;
@@ -152,9 +153,11 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     pipelines += reflection ? 1 : 0;
     pipelines += refraction ? 2 : 0;
     EXPECT_EQ(footprint.pipelines, pipelines);
-    // Surface, radiance, mean, residual, depth; the march over the screen has positions.
+    // The images are surface, radiance, mean, residual and depth; the march over the screen also needs
+    // positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
-    // Constants, counters, read-back; samples, radiance, rays, hits, order, buckets and two dispatches.
+    // The buffers are constants, counters, read-back; samples, radiance, rays, hits, order, buckets and two
+    // dispatches.
     EXPECT_EQ(footprint.buffers, 3U + (rays ? 11U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;

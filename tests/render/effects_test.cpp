@@ -1,4 +1,5 @@
-// Effects in pictures: ways to run them agree, gates are counted, and what is off changes nothing.
+// Effects in pictures: the ways to run them agree, gates are counted, and effects that are off change
+// nothing.
 #include "render/pixel_test.h"
 #include "render/rooms.h"
 
@@ -39,7 +40,7 @@ RendererOptions optionsOf(package::Strategy strategy, package::Tracer tracer) {
     return options;
 }
 
-// The room through panes of glass: one thin, one thick, both partly clear.
+// Returns the room behind panes of glass: one thin, one thick, both partly clear.
 Scene roomBehindGlass() {
     Scene scene = roomOfMaterials();
     Material pane;
@@ -118,7 +119,7 @@ TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
     const LinearImage a = plain.render(package::kStrategyVisibility, setup);
     const LinearImage b = packed.render(package::kStrategyVisibility, setup);
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
-    // Packed records round barycentrics and directions: shadows at edges and refracted paths may change.
+    // Packed records round barycentrics and directions, so shadows at edges and refracted paths may change.
     std::size_t different = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -129,7 +130,7 @@ TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
     EXPECT_LT(different, a.pixels.size() / 50);
 }
 
-// Effects that are off at run time leave the picture of a package without them.
+// If effects are off at run time, the picture is that of a package without them.
 TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
     const Scene scene = roomOfMaterials();
     const RenderSetup setup = smallSetup(scene);
@@ -148,7 +149,7 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
     expectSameImage(image, bare.render(package::kStrategyUber, setup), "off");
 }
 
-// What a sky without borders lights: indirect light and occlusion then change nothing.
+// Under a uniform sky, indirect light and occlusion change nothing.
 TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -165,14 +166,14 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     settings.effects.named = package::kEffectIndirectDiffuse | package::kEffectAmbientOcclusion;
     const LoadedScene traced(scene, settings);
     ASSERT_TRUE(sky.ok() && traced.ok());
-    // Every ray of a flat wall leaves the scene, and the sky is white all over.
+    // Every ray of a flat wall leaves the scene, and the sky is white everywhere.
     FrameCounters counters;
     const LinearImage image = traced.render(package::kStrategyUber, setup, &counters);
     expectSameImage(image, sky.render(package::kStrategyUber, setup), "traced");
     EXPECT_EQ(counters.of(package::kEffectIndirectDiffuse).misses, 32U * 32U);
 }
 
-// Glass that reflects nothing, so that a path is no matter of chance.
+// Returns glass that reflects nothing, so that a path does not depend on chance.
 Material clearGlass(float ior) {
     Material glass;
     glass.metallicFactor = 0.0F;
@@ -185,7 +186,8 @@ Material clearGlass(float ior) {
     return glass;
 }
 
-// A block before the camera, as wide as it sees, from `near` to `far` along its axis; fronts outside.
+// Adds a block in front of the camera, as wide as its view, from `near` to `far` along its axis, with fronts
+// outside.
 void addBlock(Scene& scene, int material, float near, float far, float half) {
     const auto face = [&](Float3 corner, Float3 right, Float3 up) {
         addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
@@ -200,7 +202,7 @@ void addBlock(Scene& scene, int material, float near, float far, float half) {
     face({-half, -half, -far}, {size, 0, 0}, {0, 0, depth});
 }
 
-// A wall of coloured squares, which shows where a ray goes.
+// Returns a wall of coloured squares that shows where a ray goes.
 Scene squaresBehind() {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -227,7 +229,7 @@ LinearImage refracted(const Scene& scene) {
     return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
 }
 
-// Share of the pixels that differ by more than the edge of a square may.
+// Returns the share of pixels that differ by more than the edge of a square may.
 double differingShare(const LinearImage& a, const LinearImage& b) {
     EXPECT_EQ(a.pixels.size(), b.pixels.size());
     std::size_t count = 0;
@@ -246,7 +248,7 @@ TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
     addBlock(whole, addMaterial(whole, clearGlass(1.5F)), 1.0F, 4.0F, 12.0F);
     const LinearImage block = refracted(whole);
 
-    // A block of the same index within is not to be seen.
+    // A block with the same index within is invisible.
     Scene matched = whole;
     addBlock(matched, addMaterial(matched, clearGlass(1.5F)), 2.0F, 3.0F, 11.0F);
     EXPECT_LT(differingShare(refracted(matched), block), 0.02);
@@ -264,7 +266,7 @@ TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
     EXPECT_GT(differingShare(block, refracted(squaresBehind())), 0.2) << "nor does glass";
 }
 
-// A weight below the bound sends no ray, and is counted.
+// A sample whose weight is below the bound sends no ray, and is counted.
 TEST(Gates, FaintSamplesAreSkipped) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -288,7 +290,7 @@ TEST(Gates, FaintSamplesAreSkipped) {
     EXPECT_FALSE(image.pixels.empty());
 }
 
-// A spot light that misses half of the wall, and a point light whose range ends before it.
+// A spot light misses half of the wall, and the range of a point light ends in front of it.
 TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
     Scene scene = emptyScene();
     addCamera(scene);

@@ -1,4 +1,4 @@
-// Pictures lit by environment maps whose pixels can be worked out on paper.
+// Tests pictures lit by environment maps whose pixels can be computed by hand.
 #include "context_state.h"
 #include "render/pixel_test.h"
 
@@ -18,7 +18,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 using Value = std::function<Float3(Float3)>;
 
-// `value` at the centre of each texel: u from +X towards +Z, its middle at +X; v from +Y down.
+// Makes a map with `value` at the centre of each texel: u goes from +X towards +Z, with +X in the middle; v
+// goes from +Y down.
 LinearImage makeMap(std::uint32_t width, std::uint32_t height, const Value& value) {
     LinearImage image{width, height, {}};
     for (std::uint32_t row = 0; row < height; ++row) {
@@ -47,8 +48,8 @@ std::unique_ptr<Environment> makeEnvironment(std::uint32_t width, std::uint32_t 
 constexpr Float3 kAxisColors[6] = {{1, 0, 0}, {0, 1, 1}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 0}};
 constexpr Float3 kAxes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 
-// The colour of the axis that the direction is nearest to: +X red, +Y blue, +Z magenta; the opposites
-// complementary.
+// Returns the colour of the axis that is nearest to the direction: +X red, +Y blue, +Z magenta; opposite axes
+// have complementary colours.
 Float3 axisColor(Float3 d) {
     std::size_t nearest = 0;
     float most = -2.0F;
@@ -87,7 +88,7 @@ Scene wallScene(const Material& material) {
     Scene scene = emptySceneWithCamera();
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
-    // Nothing but the sky lights it.
+    // Only the sky lights the scene.
     addDirectionalLight(scene, {0, 0, 1}, 0.0F);
     return scene;
 }
@@ -115,7 +116,7 @@ TEST_F(EnvironmentMap, StandsAsItsAxesSay) {
         ASSERT_FALSE(image.pixels.empty());
         expectColor(at(image, 16, 16), kAxisColors[i], 1e-5F, "centre");
     }
-    // With +X ahead and +Y up, +Z is to the right.
+    // With +X ahead and +Y up, +Z is on the right.
     RenderSetup setup = setupWith(scene, environment.get());
     setup.frame.camera.forward = {0.8F, 0.0F, 0.6F};
     const LinearImage image = loaded.render(package::kStrategyVisibility, setup);
@@ -128,7 +129,7 @@ TEST_F(EnvironmentMap, TurnsAboutTheVertical) {
     const LoadedScene loaded = loadForMap(scene);
     const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, axisColor);
     ASSERT_TRUE(loaded.ok() && environment);
-    // The camera looks along -Z. Counter-clockwise from above, +X comes to -Z, and -Z to -X.
+    // The camera looks along -Z. Turned counter-clockwise as seen from above, +X moves to -Z, and -Z to -X.
     for (const auto& [turns, axis] : {std::pair{0.25F, 0}, {0.5F, 4}, {-0.25F, 1}, {-7.0F, 5}, {1e4F, 5}}) {
         RenderSetup setup = setupWith(scene, environment.get());
         setup.frame.environmentRotation = 2.0F * kPi * turns;
@@ -139,7 +140,7 @@ TEST_F(EnvironmentMap, TurnsAboutTheVertical) {
     }
 }
 
-// The map is smooth where u jumps from 1 to 0, at -X, as everywhere.
+// At -X, where u jumps from 1 to 0, the map is as smooth as everywhere else.
 TEST_F(EnvironmentMap, HasNoSeam) {
     const Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
@@ -152,7 +153,7 @@ TEST_F(EnvironmentMap, HasNoSeam) {
     ASSERT_FALSE(image.pixels.empty());
     for (std::uint32_t y = 0; y < 33; ++y) {
         for (std::uint32_t x = 0; x < 33; ++x) {
-            // Right of -X, with +Y up, is -Z.
+            // To the right of -X, with +Y up, is -Z.
             const float right = (static_cast<float>(x) - 16.0F) / 16.5F;
             const float up = (16.0F - static_cast<float>(y)) / 16.5F;
             const float length = std::sqrt(1.0F + right * right + up * up);
@@ -173,7 +174,7 @@ TEST_F(EnvironmentMap, ShowsInMirrorsOfEveryStrategy) {
     }
 }
 
-// A sky of one colour is the same by a map and by a gradient, for every lobe that takes light from it.
+// A sky of one colour gives the same by a map and by a gradient, for every lobe that takes light from it.
 TEST_F(EnvironmentMap, OfOneColourEqualsTheGradient) {
     constexpr Float3 kColor{0.75F, 1.5F, 3.0F};
     Material coated;
@@ -196,7 +197,7 @@ TEST_F(EnvironmentMap, OfOneColourEqualsTheGradient) {
                     forGradient.render(package::kStrategyVisibility, gradient), "one colour");
 }
 
-// Towards +Z a sky of 1 + z is worth 2 to a mirror, and 1 + 2/3 to a metal of roughness 1: its lobe is then a
+// Towards +Z, a sky of 1 + z gives 2 for a mirror, and 1 + 2/3 for a metal of roughness 1, whose lobe is a
 // cosine.
 TEST_F(EnvironmentMap, RoughSurfacesSeeItsLevels) {
     for (const auto& [roughness, worth] : {std::pair{0.0F, 2.0F}, {1.0F, 5.0F / 3.0F}}) {
@@ -218,7 +219,8 @@ TEST_F(EnvironmentMap, RoughSurfacesSeeItsLevels) {
     }
 }
 
-// Diffuse light from one side: 1 + 2/3 of a sky of 1 + z towards +Z, 1 + 2/3 cos 60° once it has turned.
+// Diffuse light from one side: for a sky of 1 + z it is 1 + 2/3 towards +Z, and 1 + 2/3 cos 60° after
+// turning.
 TEST_F(EnvironmentMap, DiffuseLightTurnsWithIt) {
     Material material;
     material.metallicFactor = 0.0F;
@@ -240,7 +242,7 @@ TEST_F(EnvironmentMap, DiffuseLightTurnsWithIt) {
     EXPECT_NEAR(after[1] / after[2], 1.0F - 2.0F / 3.0F * std::sin(kPi / 3.0F), 1e-3F);
 }
 
-// A device that filters no 32-bit images gets 16-bit ones; what is above their range is scaled, not lost.
+// A device that can't filter 32-bit images gets 16-bit ones. Values above their range are scaled, not lost.
 TEST_F(EnvironmentMap, HalfFloatsShowTheSame) {
     const auto sky = [](Float3 d) { return d[2] > 0.9F ? Float3{4e6F, 2e6F, 1e6F} : Float3{800, 40, 2}; };
     const Scene scene = wallScene(roughMetal(0.0F));
@@ -288,7 +290,7 @@ TEST_F(EnvironmentMap, PackageAndFrameMustAgree) {
     expectNoValidationMessages();
 }
 
-// A renderer keeps the map of its last frame, and takes another for the next.
+// A renderer keeps the map of its last frame, and takes another one for the next frame.
 TEST_F(EnvironmentMap, ChangesBetweenFrames) {
     const Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);

@@ -1,4 +1,4 @@
-// Shading in 16 bits beside that in 32: nothing that is infinite or no number, and nearly the same picture.
+// Compares shading in 16 bits with shading in 32: everything is finite, and the pictures are nearly the same.
 #include "gltf/import.h"
 #include "image/compare.h"
 #include "render/pixel_test.h"
@@ -34,7 +34,7 @@ LinearImage rendered(const Scene& scene, package::Strategy strategy, package::Sh
     return image;
 }
 
-// `bound`: of relMSE, about eight times what was measured on lavapipe.
+// `bound` limits relMSE; it is about eight times what was measured on lavapipe.
 void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
     RenderSetup setup = defaultSetup(scene, 64, 36);
     setup.frame.maxReflectionRoughness = 1.0F;
@@ -48,7 +48,7 @@ void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
     EXPECT_EQ(difference->nonFinite, 0U);
     EXPECT_EQ(difference->referenceNonFinite, 0U);
     EXPECT_LE(difference->relMse, bound);
-    // 16 bits were used.
+    // The pictures must differ, or 16 bits were not used.
     EXPECT_GT(difference->relMse, 0.0);
     std::printf("relMSE %.2e, largest relative error %.2e\n", difference->relMse, difference->relative.value);
     expectNoValidationMessages();
@@ -70,7 +70,7 @@ TEST(Half, HitShadersShadeSoToo) {
     expectAlike(roomWithFence(), package::kStrategyHitShaders, 2e-7);
 }
 
-// Each at an end of what files may say.
+// Returns materials that each are at a limit of what files may contain.
 std::vector<Material> extremeMaterials() {
     std::vector<Material> list;
     for (const float roughness : {0.0F, 0.01F, 1.0F}) {
@@ -115,8 +115,8 @@ std::vector<Material> extremeMaterials() {
     return list;
 }
 
-// Quads of those materials, from facing the camera to edge-on, with vertex colours from 0 to 1e6, under lamps
-// of a millionth and a million.
+// Returns quads of those materials, from facing the camera to edge-on, with vertex colours from 0 to 1e6,
+// under lamps of a millionth and a million.
 Scene extremeScene() {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -156,7 +156,7 @@ TEST(Half, ExtremesStayFinite) {
     expectNoValidationMessages();
 }
 
-// A device that was made without the feature says so, by its name.
+// A device that was made without the feature is refused, and the error names the feature.
 TEST(Half, NeedsTheFeature) {
     const Scene scene = roomWithFence();
     const auto compiled =

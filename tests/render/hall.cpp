@@ -24,7 +24,7 @@ Material coatedMaterial(Float3 color) {
     return material;
 }
 
-// A chequerboard of holes.
+// Returns a chequerboard of holes.
 Material fenceMaterial(Scene& scene) {
     Material material = glossyMaterial({0.9F, 0.8F, 0.3F}, 0.4F);
     material.alphaMode = AlphaMode::Mask;
@@ -56,7 +56,7 @@ Scene hallScene() {
                        makeQuad(fence, {-1, -0.9F, -3}, {2, 0, 0}, {0, 1.5F, 0})};
     scene.meshes.push_back(wall);
     addInstance(scene, static_cast<int>(scene.meshes.size()) - 1);
-    // Once more, mirrored, with its fence before the walls of the first.
+    // A second, mirrored instance stands with its fence in front of the walls of the first.
     addInstance(scene, static_cast<int>(scene.meshes.size()) - 1, scaling(-1.2, 0.9, 1.1));
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
     Light lamp;

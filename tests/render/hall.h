@@ -5,9 +5,9 @@
 
 namespace glint::testing {
 
-// A mirror floor before a wall of several materials, behind a fence with holes; instances of several
-// geometries, so that the records of a shader binding table count. Nothing touches: at a seam the last bit of
-// a point decides whether it is in the shadow. Cases without textures have the fence in their light.
+// Returns a mirror floor in front of a wall of several materials, behind a fence with holes. Instances have
+// several geometries, so that the records of a shader binding table matter. Nothing touches: at a seam the
+// last bit of a point would decide whether it is in shadow. The fence shades cases without textures.
 Scene hallScene();
 
 }  // namespace glint::testing

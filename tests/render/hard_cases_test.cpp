@@ -1,5 +1,5 @@
-// What breaks renderers: numbers that are none, degenerate geometry, extreme transforms, very bright
-// surfaces. Each holds for both strategies.
+// Tests what breaks renderers: NaN and infinity, degenerate geometry, extreme transforms, very bright
+// surfaces. Each test holds for both strategies.
 #include "image/image_file.h"
 #include "render/pixel_test.h"
 #include "support/temporary_folder.h"
@@ -31,8 +31,8 @@ bool allFinite(const LinearImage& image) {
     return !image.pixels.empty();
 }
 
-// Two quads side by side in front of the camera, the left one with a NaN among its vertex colours: the
-// importer repairs such a file, a host application may hand it over.
+// Two quads are side by side in front of the camera, and the left one has a NaN among its vertex colours. The
+// importer repairs such a file, but a host application may upload it.
 TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -52,7 +52,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     FrameCounters counters;
     const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
-    // Jitter takes samples of the middle columns to either side, and those of the border off the quads.
+    // Jitter moves samples of the middle columns to either side, and those of the border off the quads.
     for (std::uint32_t y = 1; y < 31; ++y) {
         for (std::uint32_t x = 1; x < 31; ++x) {
             if (x < 15) {
@@ -65,7 +65,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     const std::uint32_t half = 16U * 32U * setup.samples;
     EXPECT_NEAR(counters.nonFinite, half, 32U * setup.samples);
 
-    // A new accumulation counts anew, and a scene of numbers counts nothing.
+    // A new accumulation starts to count again, and a scene without NaN counts nothing.
     scene.meshes[0].primitives[0].colors[0][1] = 1.0F;
     const LinearImage sound = render(scene, setup, AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
@@ -109,7 +109,7 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
     ASSERT_TRUE(writeImage(file, image, 0.0));
     const Result<LinearImage> read = readImage(file);
     ASSERT_TRUE(read) << toString(read.error());
-    // Above 65504, where half floats end.
+    // The value is above 65504, where half floats end.
     const Pixel pixel = at(*read, 16, 16);
     EXPECT_NEAR(pixel[0], 1e5F, 1.0F);
     EXPECT_NEAR(pixel[1], 0.5e5F, 1.0F);
@@ -118,7 +118,7 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
     EXPECT_EQ(read->pixels, image.pixels);
 }
 
-// A lit quad that fills the view and, on the right, a mirror of one behind the camera.
+// Returns a lit quad that fills the view and, on the right, a mirror of one behind the camera.
 Scene litScene(Primitive quad, const Matrix4& world) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -135,7 +135,7 @@ Scene litScene(Primitive quad, const Matrix4& world) {
     return scene;
 }
 
-// In front of the camera on the left and behind it on all sides, both facing it.
+// Returns walls that face the camera: in front of it on the left, and behind it on all sides.
 Primitive roomWalls() {
     Primitive walls = makeQuad(0, {-3, -3, -2}, {3, 0, 0}, {0, 6, 0});
     const Primitive behind = makeQuad(0, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
@@ -150,7 +150,7 @@ Primitive roomWalls() {
     return walls;
 }
 
-// The same walls in the space of an instance: positions by the inverse of its linear part, normals by its
+// Moves the walls into the space of an instance: positions by the inverse of its linear part, normals by its
 // transpose.
 struct Space {
     const char* name;
@@ -237,7 +237,7 @@ TEST_P(HardCases, FlattenedInstancesAreNotThere) {
     EXPECT_EQ(counters.nonFinite, 0U);
 }
 
-// A point, a line with a vertex twice, a line of three vertices, and every vertex twice over.
+// The triangles are a point, a line with a repeated vertex, a line of three vertices, and every vertex twice.
 TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
     const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
@@ -264,7 +264,7 @@ TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
     EXPECT_EQ(counters.nonFinite, 0U);
 }
 
-// A normal texture that is flat shows the wall as without it, whatever becomes of the texture's frame.
+// A flat normal texture gives the same wall as no texture, whatever happens to the texture's frame.
 TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
     const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
@@ -280,7 +280,8 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
         Primitive walls = roomWalls();
         walls.texCoords0 = layouts[i];
         Scene scene = litScene(std::move(walls), scaling(1, 1, 1));
-        // 16 bits, so that flat is flat but for 1 / 65535: an 8-bit texel is half a level off.
+        // The texel has 16 bits, so that it is flat up to 1 / 65535; an 8-bit texel would be off by half a
+        // level.
         const int texture = addTexture(scene, 1, 1, {0x00, 0x80, 0x00, 0x80, 0xFF, 0xFF, 0xFF, 0xFF});
         scene.images.back().format = PixelFormat::Rgba16;
         scene.materials[0].texture(TextureSlot::Normal).texture = texture;
@@ -292,7 +293,8 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
     }
 }
 
-// A fine checkerboard far off: cones blend it to grey; mip 0, read at level 0, keeps black and white.
+// A fine checkerboard is far away: cones blend it to grey, while mip 0, read at level 0, keeps black and
+// white.
 TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -320,7 +322,7 @@ TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
             if (lod == TextureLod::Mip0) {
                 EXPECT_TRUE(pixel[0] == 0.0F || pixel[0] == 1.0F) << pixel[0];
             } else {
-                // Half of the texels' light, in 8 bits of sRGB.
+                // The value is half of the texels' light, in 8 bits of sRGB.
                 EXPECT_NEAR(pixel[0], 0.5F, 0.01F);
             }
         }

@@ -1,4 +1,4 @@
-// Renders scenes in process, with the validation layers always on.
+// Renders scenes in process, always with the validation layers.
 #pragma once
 
 #include "cli/scene_view.h"
@@ -16,11 +16,11 @@
 
 namespace glint::testing {
 
-// A device shared by the tests of a program, with synchronisation validation. Fails the test where there is
-// none.
+// Returns a device that the tests of a program share, with synchronisation validation. Fails the test if
+// there is none.
 Context& sharedContext();
 
-// Fails the test for each message of the validation layers so far that an earlier call has not reported.
+// Fails the test for each message of the validation layers that no earlier call has reported.
 void expectNoValidationMessages();
 
 struct RenderSetup {
@@ -30,12 +30,12 @@ struct RenderSetup {
     FrameOptions frame;
 };
 
-// A scene compiled under one policy, loaded through the package on disk and uploaded.
+// A scene that is compiled with one policy, loaded through a package on disk, and uploaded.
 class LoadedScene {
 public:
-    // Compiles into a temporary folder of its own. On failure ok() is false and the test has failed.
+    // Compiles into its own temporary folder. On failure ok() is false and the test fails.
     LoadedScene(const Scene& scene, const PlanOptions& plan);
-    // `change`, if there is one, is called on what is uploaded.
+    // `change`, if there is one, is called with the data before they are uploaded.
     LoadedScene(const Scene& scene, const CompileSettings& settings,
                 const std::function<void(SceneViewData&)>& change = {});
     ~LoadedScene();
@@ -46,14 +46,14 @@ public:
     const CompiledPackage& compiled() const {
         return compiled_;
     }
-    // Only if ok().
+    // Requires ok().
     const Package& package() const {
         return *package_;
     }
     GpuScene& gpuScene() const {
         return *gpuScene_;
     }
-    // An image of no size where rendering failed; the test has failed then. `counters` may be null.
+    // Renders an image. If that fails, the test fails and the image has no size. `counters` may be null.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
     // The size is that of the setup.
@@ -69,10 +69,11 @@ private:
     std::unique_ptr<GpuScene> gpuScene_;
 };
 
-// The scene's first camera or a framing one, and a sun where the scene has no light, as `glint render` does.
+// Returns the scene's first camera or a framing one, and a sun if the scene has no light, as `glint render`
+// does.
 RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t height);
 
-// Expects |a - b| <= 1e-4 max(1, |b|) on every channel of every pixel, and no NaN or infinity.
+// Expects |a - b| <= 1e-4 max(1, |b|) for every channel of every pixel, and no NaN or infinity.
 void expectSameImage(const LinearImage& image, const LinearImage& reference, const std::string& what);
 
 }  // namespace glint::testing

@@ -1,4 +1,4 @@
-// Levels of detail of given hits, against the same in double precision.
+// Compares levels of detail of given hits with a computation in double precision.
 #include "render/hit_query.h"
 #include "render/scene_builder.h"
 
@@ -17,8 +17,7 @@ using namespace glint::testing;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// A square metre with 1024 x 512 texels, so that a footprint of w metres has w * sqrt(1024 * 512) texels a
-// side.
+// A square metre has 1024 x 512 texels, so a footprint of w metres has w * sqrt(1024 * 512) texels a side.
 constexpr std::array<double, 2> kTexels{1024.0, 512.0};
 
 Scene squareScene(const std::vector<double>& scales) {
@@ -37,8 +36,8 @@ double texelsAlong(const Float2& gradient) {
     return std::hypot(gradient[0] * kTexels[0], gradient[1] * kTexels[1]);
 }
 
-// What a sampler without anisotropy reads: Vulkan 1.3, section "Scale Factor Operation, LOD Operation and
-// Image Level(s) Selection".
+// Returns the level that a sampler without anisotropy reads: Vulkan 1.3, section "Scale Factor Operation, LOD
+// Operation and Image Level(s) Selection".
 double levelOf(const Values& values) {
     const double longest = std::max(texelsAlong(values.gradientAcross), texelsAlong(values.gradientAlong));
     return longest > 1.0 ? std::log2(longest) : 0.0;
@@ -56,8 +55,8 @@ TEST(HitFootprint, LevelOfDetailOfAPlaneIsAnalytic) {
     std::vector<double> expected;
     for (std::uint32_t i = 0; i < scales.size(); ++i) {
         for (const double texels : {0.5, 1.0, 3.0, 1000.0, 1e9}) {
-            // Straight down, and under a cosine of 0.36: without anisotropy the footprint counts by its area,
-            // which is its width's square over the cosine.
+            // The rays go straight down, and under a cosine of 0.36. Without anisotropy the area of the
+            // footprint counts, which is the square of its width over the cosine.
             for (const double cosine : {1.0, 0.36}) {
                 const double width = texels * scales[i] / std::sqrt(kTexels[0] * kTexels[1]);
                 const auto sine = static_cast<float>(std::sqrt(1.0 - cosine * cosine));
@@ -77,8 +76,7 @@ TEST(HitFootprint, LevelOfDetailOfAPlaneIsAnalytic) {
     }
 }
 
-// The ellipse in which a cone meets the square: its axes as (Δu, Δv), which are (x, -y) there as V points
-// down.
+// A cone meets the square in an ellipse. Its axes as (Δu, Δv) are (x, -y) there, because V points down.
 TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
     constexpr double kWidth = 0.01;
     constexpr float kAnisotropy = 16.0F;
@@ -88,7 +86,7 @@ TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
         double turn;
         double elongation;  // of the axis along the ray
     };
-    // The last is below the least cosine.
+    // The last one is below the smallest cosine.
     const Expectation expectations[] = {{0.8, 0.0, 1.25}, {0.5, 0.3, 2.0},  {0.25, 2.0, 4.0},
                                         {0.1, 4.0, 10.0}, {0.1, 1.5, 10.0}, {0.001, 0.7, 100.0}};
     std::vector<Query> queries;
@@ -109,13 +107,14 @@ TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
         const std::array<double, 2> along{kWidth * e.elongation * std::cos(e.turn),
                                           -kWidth * e.elongation * std::sin(e.turn)};
         const std::array<double, 2> across{kWidth * std::sin(e.turn), kWidth * std::cos(e.turn)};
-        // What the sampler does not cover is cut to the level of the ellipse's area over the anisotropy.
+        // The part that the sampler does not cover is cut to the level of the ellipse's area over the
+        // anisotropy.
         const double longest = std::max(std::hypot(along[0] * kTexels[0], along[1] * kTexels[1]),
                                         std::hypot(across[0] * kTexels[0], across[1] * kTexels[1]));
         const double area = kWidth * kWidth * e.elongation * kTexels[0] * kTexels[1];
         const double cut = std::min(1.0, std::sqrt(kAnisotropy * area) / longest);
         const double bound = 1e-5 * kWidth * e.elongation;
-        // Either sign is the same axis.
+        // Both signs mean the same axis.
         const double sign =
             along[0] * values[i].gradientAlong[0] + along[1] * values[i].gradientAlong[1] < 0.0 ? -1.0 : 1.0;
         const double signAcross =
@@ -129,8 +128,8 @@ TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
 }
 
 TEST(HitFootprint, NoLevelOfDetailWithoutAnArea) {
-    // After the square's two triangles: one without texels, one whose texels are on a line, one without an
-    // area in the world, one without either.
+    // After the square's two triangles come: one without texels, one whose texels are on a line, one without
+    // an area in the world, and one without either.
     Scene scene = squareScene({1.0});
     Primitive& square = scene.meshes[0].primitives[0];
     for (const bool flat : {false, true}) {

@@ -1,4 +1,4 @@
-// Runs a compute shader of the tests over a loaded scene: it may include what the product's passes include.
+// Runs a compute shader of the tests over a loaded scene. It may include what the product's passes include.
 #pragma once
 
 #include "commands.h"
@@ -16,13 +16,14 @@ namespace glint::testing {
 
 class HitKernel {
 public:
-    // `shader`: a file of tests/render/shaders. It finds the scene through FrameConstants, `width`
-    // invocations in workgroups of kRayGroupSize, its input in `rays` and `lights`, and writes words to
-    // `counters`. Errors: those of compileShader, "vulkan-call". `scene` must outlive the kernel.
+    // `shader` is a file of tests/render/shaders. It finds the scene through FrameConstants, runs `width`
+    // invocations in workgroups of kRayGroupSize, reads its input from `rays` and `lights`, and writes words
+    // to `counters`. Errors: those of compileShader, "vulkan-call". `scene` must outlive the kernel.
     static Result<std::unique_ptr<HitKernel>> create(const Scene& scene, const LoadedScene& loaded,
                                                      const std::string& shader);
 
-    // The first `outputs` words, 0 where the shader wrote none. `constants` may hold further inputs.
+    // Returns the first `outputs` words; words that the shader did not write are 0. `constants` may hold
+    // further inputs.
     Result<std::vector<std::uint32_t>> run(gpu::FrameConstants constants,
                                            std::span<const gpu::RayRecord> rays, std::uint32_t invocations,
                                            std::size_t outputs);

@@ -1,4 +1,4 @@
-// What fetchHit() makes of given hits of a scene.
+// Calls fetchHit() for given hits of a scene.
 #pragma once
 
 #include "gltf/scene.h"
@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// What the kernel hit_values.comp writes for each hit: 26 words.
+// The values that the kernel hit_values.comp writes for each hit: 26 words.
 struct Values {
     Float3 position;
     Float3 geometricNormal;
@@ -33,7 +33,8 @@ struct Query {
     float anisotropy = 1.0F;
 };
 
-// In the order of the queries; empty where the scene could not be loaded, and the test has failed then.
+// Returns values in the order of the queries. If the scene could not be loaded, the test fails and the result
+// is empty.
 std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries);
 
 }  // namespace glint::testing

@@ -1,4 +1,4 @@
-// Positions, normals and attributes of given hits, against the same in double precision.
+// Compares positions, normals and attributes of given hits with a computation in double precision.
 #include "cli/scene_view.h"
 #include "render/hit_query.h"
 #include "render/scene_builder.h"
@@ -55,7 +55,7 @@ Double3 rowOf(const std::array<float, 12>& rows, std::size_t row) {
     return {rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]};
 }
 
-// A normal under a transform: the inverse transpose, times the determinant's magnitude.
+// Transforms a normal by the inverse transpose, times the determinant's magnitude.
 Double3 transformNormal(const std::array<float, 12>& rows, const Double3& n) {
     Double3 result{};
     for (std::size_t row = 0; row < 3; ++row) {
@@ -102,7 +102,7 @@ Scene triangleScene(const std::vector<Matrix4>& placements) {
     return scene;
 }
 
-// Column-major from the rows of the linear part and a translation.
+// Returns a column-major matrix from the rows of the linear part and a translation.
 Matrix4 matrix(const std::array<Double3, 3>& linear, const Double3& translation, double scale) {
     Matrix4 result{};
     for (std::size_t row = 0; row < 3; ++row) {
@@ -120,7 +120,8 @@ constexpr std::array<Double3, 3> kMirrored{{{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}
 constexpr std::array<Double3, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
 constexpr std::array<Double3, 3> kStretched{{{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0.6}, {0.0, 0.6e-3, 0.8}}};
 
-// Rounding in and after the sums of a normal: a few units in the last place, more where a shear cancels.
+// The rounding in and after the sums of a normal is a few units in the last place, and more where a shear
+// cancels.
 constexpr double kNormalError = 4e-6;
 
 void expectSameDirection(const Float3& got, const Double3& expected, const std::string& where) {
@@ -184,7 +185,8 @@ TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
     }
 }
 
-// Along edges and inside, what is the same at all vertices stays: the weights sum to 1.
+// Along edges and inside, a value that is the same at all vertices stays the same, because the weights sum to
+// 1.
 TEST(HitValues, WeightsSumToOne) {
     Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
     scene.meshes[0].primitives[0].texCoords0.assign(3, {0.7F, 1234.5F});
@@ -197,7 +199,7 @@ TEST(HitValues, WeightsSumToOne) {
         }
     }
     for (const Values& value : ask(scene, queries)) {
-        // A rounding for each product and sum.
+        // The bound is one rounding for each product and sum.
         EXPECT_NEAR(value.texCoord[0], 0.7F, 4 * 0x1p-24F);
         EXPECT_NEAR(value.texCoord[1], 1234.5F, 4 * 1234.5F * 0x1p-24F);
     }
@@ -211,7 +213,8 @@ bool hasFiniteGradients(const Values& values) {
 
 TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
     Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
-    // A point, a line with a vertex twice, a line of three vertices, and a triangle whose area is no float.
+    // The triangles are a point, a line with a repeated vertex, a line of three vertices, and one whose area
+    // underflows a float.
     Primitive& primitive = scene.meshes[0].primitives[0];
     primitive.positions.push_back({0.55F, 0.25F, 0.2F});
     primitive.positions.push_back({0.1F, 0.2F, 0.3F});
@@ -239,7 +242,7 @@ TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
     EXPECT_NEAR(values[0].normal[2], 0.64F, 1e-6F) << "without a side, it faces the viewer";
 }
 
-// A ray that leaves a wall must still meet what stands close to it.
+// A ray that leaves a wall must still hit what is close to it.
 TEST(HitValues, NoLightLeaksThroughThinGaps) {
     for (const float gap : {1e-3F, 5e-5F}) {
         Scene scene = emptyScene();

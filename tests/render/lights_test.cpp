@@ -1,4 +1,4 @@
-// Light, shadow and alpha at single pixels, worked out on paper. Each holds for both strategies.
+// Tests light, shadow and alpha at single pixels, computed by hand. Each test holds for both strategies.
 #include "render/pixel_test.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-// The formulas below are of light that microfacets reflect once.
+// The formulas below are for light that microfacets reflect once.
 class Lights : public PixelTest {
 protected:
     void SetUp() override {
@@ -24,8 +24,8 @@ INSTANTIATE_TEST_SUITE_P(Strategies, Lights,
                          ::testing::Values(package::kStrategyUber, package::kStrategyVisibility),
                          strategyName);
 
-// Of a diffuse surface: f0 = 0 by a metallic factor of 1 and black, plus emission, would hide the light, so
-// this takes the dielectric BRDF at normal incidence: (1 - F) albedo / π + F D V with F = 0.04.
+// Tests a diffuse surface. f0 = 0 by a metallic factor of 1 and black, plus emission, would hide the light,
+// so this uses the dielectric BRDF at normal incidence: (1 - F) albedo / π + F D V with F = 0.04.
 TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -40,13 +40,14 @@ TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
-    // alpha = 1: D = 1/π, V = 1/4 at normal incidence.
+    // For alpha = 1, D = 1/π and V = 1/4 at normal incidence.
     const float pi = std::numbers::pi_v<float>;
     const float expected = 2.0F * (0.96F * 0.5F / pi + 0.04F / pi * 0.25F);
     expectColor(at(image, 16, 16), {expected, expected, expected}, 1e-5F, "centre");
 }
 
-// What a diffuse wall at z = -1 sends along the axis under a light of `intensity` lux at normal incidence.
+// Returns what a diffuse wall at z = -1 sends along the axis under a light of `irradiance` lux at normal
+// incidence.
 float wallRadiance(float irradiance) {
     const float pi = std::numbers::pi_v<float>;
     return irradiance * (0.96F * 0.5F / pi + 0.04F / pi * 0.25F);
@@ -96,7 +97,7 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
     EXPECT_NEAR(litWall(spot, toImage), 0.0F, 1e-6F) << "outside";
 }
 
-// What a light can be at worst: finite, and dark where it has no direction or does not reach.
+// Extreme lights stay finite, and are dark if they have no direction or do not reach the surface.
 TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     const auto toImage = [&](const Scene& scene, const RenderSetup& setup) {
         FrameCounters counters;
@@ -145,21 +146,22 @@ TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     EXPECT_EQ(litWall(sun, toImage), 0.0F) << "sun without a direction";
 }
 
-// A hit takes one light by chance; over many samples it shows the sum of all, which a primary surface shows
-// at once.
+// A hit takes one random light. Over many samples it shows the sum of all, which a primary surface shows at
+// once.
 TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material white;
     white.metallicFactor = 0.0F;
     const int wall = addMaterial(scene, white);
-    // Left half of the view: the wall behind the camera in a mirror. Right half: the same wall in front,
-    // mirrored about the mirror's plane, so that both see it from the same distance and angle.
+    // The left half of the view shows the wall behind the camera in a mirror. The right half shows the same
+    // wall in front, mirrored about the mirror's plane, so that both see it from the same distance and angle.
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {1, 0, 0},
                                                {0, 2, 0})));
     addInstance(scene, addMesh(scene, makeQuad(wall, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
     addInstance(scene, addMesh(scene, makeQuad(wall, {0.001F, -9, -5}, {9, 0, 0}, {0, 18, 0})));
-    // Two lights before each wall, mirrored likewise; their range ends before the other wall.
+    // Two lights are in front of each wall, mirrored in the same way. Their range ends in front of the other
+    // wall.
     Light light;
     light.type = LightType::Point;
     light.range = 5.0F;
@@ -182,16 +184,16 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
             ratios.push_back(at(image, x, y)[0] / at(image, 31 - x, y)[0]);
         }
     }
-    // Jitter moves both halves the same way, so that pixels on a slope differ by up to 2 %; the lights' own
-    // images in the mirror outshine a few.
+    // Jitter moves both halves the same way, so pixels on a slope differ by up to 2 %. The lights' own images
+    // in the mirror outshine a few.
     std::ranges::sort(ratios);
     EXPECT_NEAR(ratios[ratios.size() / 2], 1.0, 0.005);
     EXPECT_NEAR(ratios[ratios.size() / 20], 1.0, 0.02);
     EXPECT_NEAR(ratios[ratios.size() * 19 / 20], 1.0, 0.02);
 }
 
-// A wall lit by the sun with a plate between: the plate's shadow lies on the wall, in the picture and in a
-// mirror.
+// A wall is lit by the sun with a plate in between. The plate's shadow lies on the wall, in the picture and
+// in a mirror.
 Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -207,7 +209,7 @@ Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
     const int plateMaterial = addMaterial(scene, plate);
     if (!shadeInMirror) {
         addInstance(scene, addMesh(scene, makeQuad(wall, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
-        // Above the frustum's centre line, in the sun's way to the wall's middle.
+        // The plate is above the frustum's centre line, between the sun and the wall's middle.
         addInstance(scene, addMesh(scene, makeQuad(plateMaterial, {-1, 3, -1.0F}, {2, 0, 0}, {0, 0, -0.5F})));
         addDirectionalLight(scene, {0.0F, -0.9284767F, -0.3713907F}, 3.0F);
     } else {
@@ -226,8 +228,8 @@ TEST_P(Lights, AShadowFallsOnAWall) {
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
-    // Plate at y = 3, z in [-1.5, -1]; the sun falls 2.5 for each 1 in -z: shadow on z = -2 at y in
-    // [0.5, 1.75].
+    // The plate is at y = 3, z in [-1.5, -1]. The sun falls by 2.5 for each 1 in -z, so the shadow is on z =
+    // -2 at y in [0.5, 1.75].
     expectColor(at(image, 16, 7), {0, 0, 0}, 1e-6F, "in the shadow, y = 1.06");
     EXPECT_GT(at(image, 16, 24)[1], 0.1F) << "below the shadow";
     EXPECT_GT(at(image, 2, 7)[1], 0.1F) << "beside the shadow";
@@ -239,8 +241,8 @@ TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
-    // Shadow on z = 3 at y in [3 - 2.5 * 1.5, 3 - 2.5 * 0.8] = [-0.75, 1]. The ray of row r meets z = 3 after
-    // 5 units of depth in all: y = 5 p.
+    // The shadow is on z = 3 at y in [3 - 2.5 * 1.5, 3 - 2.5 * 0.8] = [-0.75, 1]. The ray of row r meets z =
+    // 3 after 5 units of depth in all: y = 5 p.
     expectColor(at(image, 16, 16), {0, 0, 0}, 1e-6F, "in the shadow, y = -0.16");
     EXPECT_GT(at(image, 16, 0)[1], 0.1F) << "above the shadow, past the plate";
     EXPECT_GT(at(image, 28, 16)[1], 0.1F) << "beside the shadow";

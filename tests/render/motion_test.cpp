@@ -1,4 +1,4 @@
-// Scenes that move: each pose is the picture of the same scene uploaded in that pose.
+// Tests scenes that move: each pose must give the picture of the same scene uploaded in that pose.
 #include "cli/camera.h"
 #include "cli/scene_view.h"
 #include "gpu_scene_state.h"
@@ -34,7 +34,7 @@ struct Moving {
         return gpuScene != nullptr;
     }
 
-    // To where `scene` is now.
+    // Moves the uploaded scene to the current pose of `scene`.
     MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule) {
         poseSceneView(scene, data);
         MotionView motion = data.motion();
@@ -76,7 +76,7 @@ LinearImage renderStill(const Scene& scene) {
     return still.ok() ? still.render() : LinearImage{};
 }
 
-// Vertices that the host rounds otherwise than the device move edges: of a few pixels the colour is another.
+// Host and device round vertices differently, which moves edges and changes the colour of a few pixels.
 void expectAlike(const LinearImage& image, const LinearImage& reference, const std::string& what) {
     ASSERT_EQ(image.pixels.size(), reference.pixels.size()) << what;
     std::size_t off = 0;
@@ -90,7 +90,7 @@ void expectAlike(const LinearImage& image, const LinearImage& reference, const s
     EXPECT_LE(off, image.pixels.size() / 200) << what << ": more pixels differ than edges have";
 }
 
-// A difference that must be there: 1 in 40 pixels.
+// Expects a visible difference: in 1 of 40 pixels.
 void expectUnlike(const LinearImage& image, const LinearImage& other, const std::string& what) {
     std::size_t off = 0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -123,7 +123,7 @@ TEST(Motion, TheTopLevelFollowsItsRule) {
     EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept) << "nothing has moved";
     moving.scene.nodes[1].world = placed(-1, 0.5, -3);
     EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Updated);
-    // The quad is 1.41 m from corner to corner.
+    // The quad measures 1.41 m from corner to corner.
     moving.scene.nodes[1].world = placed(-1, 1.5, -3);
     EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Rebuilt);
     moving.scene.nodes[1].world = placed(-1, 1.6, -3);
@@ -145,7 +145,7 @@ TEST(Motion, FlattenedInstancesHideAndComeBack) {
     moving.scene.nodes[1].world = placed(-1, 0, -3);
     moving.update();
     expectSameImage(moving.render(), whole, "back again");
-    // One that is flat at upload appears later.
+    // An instance that is flat at upload appears later.
     Scene flat = moving.scene;
     flat.nodes[2].world = scaling(0.0, 0.0, 0.0);
     Moving later(flat);
@@ -186,8 +186,8 @@ TEST(Motion, RefitsSeeWhatRebuildsSee) {
     }
 }
 
-// A mesh that follows one joint alone is that mesh in the joint's place: normals and tangents, too, where the
-// joint stretches and mirrors.
+// A mesh that follows only one joint equals that mesh in the joint's place, including normals and tangents if
+// the joint stretches and mirrors.
 TEST(Motion, OneJointIsATransform) {
     for (const double stretch : {1.5, -1.5}) {
         Scene scene = skinnedScene(0.0);
@@ -207,7 +207,7 @@ TEST(Motion, OneJointIsATransform) {
         }
         scene.skins[0] = {"", {2}, {placed(0, 0, 0)}};
         scene.nodes[2].world = place;
-        // Its own transform says which side is the front.
+        // The mesh's own transform decides which side is the front.
         scene.nodes[1].world = place;
         Scene rigid = scene;
         rigid.nodes[1].skin = -1;
@@ -228,7 +228,7 @@ TEST(Motion, TargetsMorphMeshes) {
     expectUnlike(morphed, rest, "morphed");
 }
 
-// Differences of normals turn them as if the mesh had others from the start.
+// Differences of normals turn them as if the mesh had been made with other normals.
 TEST(Motion, TargetsTurnNormals) {
     Scene scene = morphedScene({1.0, 0.0});
     Primitive& strip = scene.meshes[1].primitives[0];
@@ -278,14 +278,14 @@ TEST(Motion, NothingOfItIsThereInScenesThatStay) {
     EXPECT_FALSE(hasDeformModule(still.package.package()));
     EXPECT_EQ(still.gpuScene->state().motion, nullptr);
     EXPECT_TRUE(still.gpuScene->state().deformed.buffers.empty());
-    // Nodes that move need no pass that deforms.
+    // Nodes that move need no deforming pass.
     const Moving rigid(rigidScene());
     ASSERT_TRUE(rigid.ok());
     EXPECT_FALSE(hasDeformModule(rigid.package.package()));
     EXPECT_EQ(rigid.gpuScene->state().motion->deformer, nullptr);
     EXPECT_EQ(rigid.gpuScene->state().motion->blases, nullptr);
     EXPECT_EQ(rigid.gpuScene->statistics().blasBytes, still.gpuScene->statistics().blasBytes);
-    // A picture of a pose is deformed once and built as if it had no other.
+    // A picture of a single pose is deformed once, and built as if it had no other pose.
     const Moving posed(skinnedScene(0.3), false);
     ASSERT_TRUE(posed.ok());
     EXPECT_TRUE(hasDeformModule(posed.package.package()));
@@ -324,7 +324,7 @@ TEST(Motion, RefusesWhatIsNotItsScene) {
     EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "scene-motion");
     joints[1][3] = 0.0F;
     EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "done");
-    // A package of the scene without its skin has no pass for it.
+    // A package of the scene without its skin lacks the pass.
     Scene rigid = skinnedScene(0.0);
     rigid.nodes[1].skin = -1;
     const LoadedScene other(rigid, PlanOptions{});

@@ -20,7 +20,7 @@ Material coloured(Float3 color) {
     return material;
 }
 
-// A mirror below, that shows in reflections what the TLAS has.
+// Adds a mirror below, whose reflections show the content of the TLAS.
 void addRoom(Scene& scene) {
     addCamera(scene);
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
@@ -28,7 +28,8 @@ void addRoom(Scene& scene) {
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8})));
 }
 
-// A strip of 1 x 2 m of `segments` rows above (0, 0, 0), all of whose vertices have normals and tangents.
+// Returns a strip of 1 x 2 m with `segments` rows above (0, 0, 0). All its vertices have normals and
+// tangents.
 Primitive makeStrip(int material, std::uint32_t segments) {
     Primitive strip;
     strip.pointer = "/meshes/1/primitives/0";
@@ -76,7 +77,7 @@ Scene skinnedScene(double angle) {
         strip.influences.joints.insert(strip.influences.joints.end(), {0, 1});
         strip.influences.weights.insert(strip.influences.weights.end(), {1.0F - up, up});
     }
-    // The node's own place counts for nothing.
+    // The node's own transform has no effect.
     addInstance(scene, addMesh(scene, std::move(strip)), placed(40, 40, 40));
     Node joint;
     joint.world = placed(0, -0.8, -2.5);

@@ -1,5 +1,5 @@
-// Scenes whose nodes, skins and morph targets can be posed. All have a mirror below, that shows in
-// reflections what the TLAS has, a camera and a sun.
+// Scenes whose nodes, skins and morph targets can be posed. All of them have a camera, a sun and a mirror
+// below, whose reflections show the content of the TLAS.
 #pragma once
 
 #include "gltf/scene.h"
@@ -8,20 +8,20 @@
 
 namespace glint::testing {
 
-// A place, turned about Z by `angle` radians.
+// Returns a translation, turned about Z by `angle` radians.
 Matrix4 placed(double x, double y, double z, double angle = 0.0);
 
-// Two squares: the nodes 1 and 2.
+// Returns two squares: the nodes 1 and 2.
 Scene rigidScene();
 
-// A strip, node 1, that follows two joints at its ends, nodes 2 and 3; the second is turned by `angle`
-// radians.
+// Returns a strip, node 1, that follows two joints at its ends, nodes 2 and 3. The second joint is turned by
+// `angle` radians.
 Scene skinnedScene(double angle);
 
-// A strip, node 1, with two morph targets.
+// Returns a strip, node 1, with two morph targets.
 Scene morphedScene(std::vector<double> weights);
 
-// The same with vertices of node 1 that the host has moved.
+// Returns the same scene with vertices of node 1 that the host has moved.
 Scene bakedScene(const Scene& scene);
 
 }  // namespace glint::testing

@@ -1,7 +1,7 @@
-// Times the orderings: device time of all passes by number of hits, of buckets and spread of the hits, beside
-// a plain copy of as many words in the same run. Each round runs everything once, in the same order, so that
-// what else the machine does slows all alike; each run goes over several copies of the problem, so that no
-// cache keeps it from the run before.
+// Times the orderings: device time of all passes by number of hits, number of buckets and spread of the hits,
+// beside a plain copy of as many words in the same run. Each round runs everything once, in the same order,
+// so that other load on the machine slows all of them alike. Each run goes over several copies of the
+// problem, so that no cache keeps data from the previous run.
 #include "render/order_problems.h"
 
 #include <CLI/CLI.hpp>
@@ -27,7 +27,7 @@ using package::Ordering;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kOrderingCount = static_cast<std::uint32_t>(Ordering::Count);
-// Together larger than what a GPU caches.
+// Together they are larger than the caches of a GPU.
 constexpr std::uint64_t kWordsOfCopies = 64U << 20U;
 
 struct Arguments {
@@ -47,7 +47,7 @@ double quantile(std::vector<double> values, double q) {
     return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-// Milliseconds of one ordering, a value a run.
+// The milliseconds of one ordering, with one value for each run.
 struct Times {
     std::vector<double> count;
     std::vector<double> offset;
@@ -68,7 +68,7 @@ bool holds(Ordering ordering, std::uint32_t buckets) {
     return !isLocal || buckets <= gpu::kMaxLocalBuckets;
 }
 
-// Whether every hit has one slot of its bucket.
+// Returns whether every hit has one slot of its bucket.
 bool isOrdered(const OrderProblem& problem, std::uint32_t buckets, const OrderResult& result) {
     std::vector<bool> seen(problem.hits.size());
     std::uint64_t found = 0;
@@ -111,7 +111,7 @@ Status measure(OrderKernel& kernel, const Arguments& arguments, const OrderProbl
             return status;
         }
     }
-    // Clocks rise with work.
+    // Clocks rise under load.
     const Clock::time_point start = Clock::now();
     while (Clock::now() - start < std::chrono::milliseconds(arguments.warmUpMs)) {
         if (const Result<std::vector<double>> copy = kernel.copyTimes(); !copy) {
@@ -141,7 +141,7 @@ Status measure(OrderKernel& kernel, const Arguments& arguments, const OrderProbl
     return okStatus();
 }
 
-// Bytes that an ordering has to move: each key read twice, each slot written.
+// Returns the bytes that an ordering has to move: each key is read twice, each slot is written once.
 std::uint64_t bytesMoved(const Row& row) {
     const std::uint64_t keyBytes = row.buckets <= 0x100 ? 1 : 2;
     return row.hits * (2 * keyBytes + sizeof(std::uint32_t));

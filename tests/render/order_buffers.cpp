@@ -22,7 +22,7 @@ std::vector<std::uint8_t> hitBytes(const OrderProblem& problem, package::HitReco
         const std::uint32_t geometry = problem.hits[i];
         if (packed) {
             gpu::PackedHitRecord record{};
-            // The width of the cone is not of the bucket's business.
+            // The width of the cone must not affect the bucket.
             record.geometry24_coneLog8 =
                 geometry == gpu::kMissGeometry ? geometry : geometry << 8U | static_cast<std::uint8_t>(i);
             std::memcpy(&bytes[i * stride], &record, stride);
@@ -35,7 +35,7 @@ std::vector<std::uint8_t> hitBytes(const OrderProblem& problem, package::HitReco
     return bytes;
 }
 
-// As the trace pass leaves them, and behind them what tile-sort may read.
+// Returns the keys as the trace pass leaves them, followed by bytes that tile-sort may read.
 std::vector<std::uint8_t> keyBytes(const OrderProblem& problem, std::uint32_t bucketCount) {
     const std::size_t stride = bucketCount <= 0x100 ? 1 : bucketCount <= 0x10000 ? 2 : 4;
     const std::size_t keys =
@@ -162,18 +162,18 @@ void recordInput(Context::State& context, VkCommandBuffer commands, const OrderB
     }
     vk.CmdUpdateBuffer(commands, buffers.constants.handle.get(), 0, sizeof(buffers.values), &buffers.values);
     vk.CmdFillBuffer(commands, buffers.visited.handle.get(), 0, VK_WHOLE_SIZE, 0);
-    // What nobody writes is seen.
+    // A fill makes visible which words nobody writes.
     for (const Buffer* const buffer : {&buffers.slots, &buffers.begins, &buffers.bucketDispatch}) {
         vk.CmdFillBuffer(commands, buffer->handle.get(), 0, VK_WHOLE_SIZE, gpu::kNoHit - 1);
     }
-    // Side by side: two fills of one word would need a barrier in between.
+    // The fills are adjacent, because two fills of one word would need a barrier in between.
     static_assert(gpu::kCounterRays == 0);
     vk.CmdFillBuffer(commands, buffers.counters.handle.get(), 0, kWord, buffers.rays);
     vk.CmdFillBuffer(commands, buffers.counters.handle.get(), kWord, VK_WHOLE_SIZE, 0);
     recordDependency(context, commands, kEverything);
 }
 
-// In the order in which readResult() takes them.
+// Copies in the order in which readResult() reads.
 void recordOutput(Context::State& context, VkCommandBuffer commands, const OrderBuffers& buffers) {
     VkDeviceSize offset = 0;
     for (const Buffer* const from : {&buffers.counters, &buffers.counts, &buffers.begins, &buffers.cursors,

@@ -1,4 +1,4 @@
-// What an OrderKernel reads and writes on the device.
+// The data that an OrderKernel reads and writes on the device.
 #pragma once
 
 #include "context_state.h"
@@ -11,7 +11,7 @@
 
 namespace glint::testing {
 
-// Between commands of any kind.
+// A dependency between commands of any kind.
 inline constexpr MemoryDependency kEverything{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
@@ -38,12 +38,12 @@ struct OrderBuffers {
     std::uint32_t rays = 0;
 };
 
-// Errors: "vulkan-call" and those of memory. Without hits only the check cannot run.
+// Errors: "vulkan-call" and those of memory. Without hits only the check can't run.
 Result<std::unique_ptr<OrderBuffers>> createOrderBuffers(Context::State& context, const OrderProblem& problem,
                                                          std::uint32_t bucketCount,
                                                          package::HitRecordFormat hitRecord, bool withHits);
 
-// The problem; elsewhere words that nobody writes, so that what is left out is seen.
+// Uploads the problem. All other words get a value that nobody writes, so that omissions are visible.
 void recordInput(Context::State& context, VkCommandBuffer commands, const OrderBuffers& buffers);
 
 // Copies results to where readResult() finds them.

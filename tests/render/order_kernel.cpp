@@ -21,7 +21,7 @@ using package::ModuleRole;
 constexpr ModuleRole kRoles[] = {ModuleRole::RayDispatch, ModuleRole::BucketCount, ModuleRole::BucketOffset,
                                  ModuleRole::BucketCopy, ModuleRole::OrderCheck};
 
-// 16 bytes a thread from one address to another.
+// Each thread copies 16 bytes from one address to another.
 constexpr const char* kPlainCopy = R"(#version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
@@ -41,7 +41,7 @@ void main() {
 }
 )";
 
-// The modules of a plan with that many cases, whatever they shade.
+// Compiles the modules of a plan with that many cases, whatever they shade.
 Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
                                                     package::HitRecordFormat hitRecord) {
     Plan plan;

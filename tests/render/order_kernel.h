@@ -41,7 +41,7 @@ struct OrderResult {
     std::uint32_t errors = 0;                        // that the check found
 };
 
-// Device time, milliseconds.
+// Device times in milliseconds.
 struct OrderTime {
     double count = 0.0;
     double offset = 0.0;  // 0 where there is no such pass
@@ -61,25 +61,25 @@ public:
     OrderKernel(const OrderKernel&) = delete;
     OrderKernel& operator=(const OrderKernel&) = delete;
 
-    // What run() puts in order, until the next call.
+    // Loads the problem that run() orders, until the next call.
     Status load(const OrderProblem& problem);
-    // Slots that hold no hit are kNoHit.
+    // Slots without a hit are kNoHit.
     Result<OrderResult> run(package::Ordering ordering, std::span<const OrderFault> faults = {});
 
-    // The same problem several times over, for times(): so that caches do not keep what the run before read.
-    // Without records of the hits, which only the check reads.
+    // Loads the same problem several times, for times(), so that caches do not keep what the previous run
+    // read. Records of the hits are left out, because only the check reads them.
     Status loadForTimes(const OrderProblem& problem, std::uint32_t copies);
-    // A run on each of the copies, and then each again as a whole. Errors: "timings-unavailable".
+    // Runs each of the copies, and then each again as a whole. Errors: "timings-unavailable".
     Result<std::vector<OrderTime>> times(package::Ordering ordering);
-    // Device time of copying as many words as there are hits from one of the copies to the next,
-    // milliseconds: by a shader that moves 16 bytes a thread, which some drivers' vkCmdCopyBuffer() is slower
-    // than.
+    // Returns the device time in milliseconds of copying as many words as there are hits from one of the
+    // copies to the next, by a shader that moves 16 bytes in each thread. The vkCmdCopyBuffer() of some
+    // drivers is slower than that.
     Result<std::vector<double>> copyTimes();
-    // What the last call of times() has put in order; errors are not counted.
+    // Returns the result of the last call of times(); errors are not counted.
     Result<OrderResult> result();
 
 private:
-    // Stretches of the timer.
+    // The numbers of the timer's stretches.
     static constexpr std::uint32_t kMaxCopies = 8;
     static constexpr std::uint32_t kTimesOfRun = 4;
 

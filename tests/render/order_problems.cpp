@@ -10,25 +10,25 @@ namespace glint::testing {
 namespace {
 
 constexpr std::uint32_t kSeed = 5;
-// Pictures: pixels of a row; of a tile's edge; between the centres of regions.
+// Sizes of pictures in pixels: a row, a tile's edge, and the distance between the centres of regions.
 constexpr std::uint32_t kWidth = 4096;
 constexpr std::uint32_t kTile = 8;
 constexpr std::uint32_t kRegion = 40;
 
-// 32 bits that have nothing to do with those of its neighbours: the finaliser of MurmurHash3.
+// Returns 32 bits that are unrelated to those of neighbouring values: the finaliser of MurmurHash3.
 std::uint32_t scramble(std::uint32_t value) {
     value = (value ^ value >> 16U) * 0x85EBCA6BU;
     value = (value ^ value >> 13U) * 0xC2B2AE35U;
     return value ^ value >> 16U;
 }
 
-// Number of the region that a pixel is in: that of the nearest centre, of which each cell of a grid has one
-// (Worley 1996).
+// Returns the number of a pixel's region, which belongs to the nearest centre; each cell of a grid has one
+// centre (Worley 1996).
 std::uint32_t regionOf(std::uint32_t x, std::uint32_t y) {
     std::uint32_t nearest = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::uint32_t cell = 0; cell < 9; ++cell) {
-        // One more than the cell, so that none is below 0.
+        // The cell is counted from one, so that no neighbour is below 0.
         const std::uint32_t cellX = x / kRegion + cell % 3;
         const std::uint32_t cellY = y / kRegion + cell / 3;
         const std::uint32_t region = scramble(cellX + 0x10001U * cellY);
@@ -76,7 +76,7 @@ public:
         }
         return 0;
     }
-    // The standard library's distributions are not the same everywhere; the bias of the remainder is below
+    // The standard library's distributions differ between implementations. The bias of the remainder is below
     // 2^-50.
     std::uint32_t below(std::uint32_t limit) {
         return static_cast<std::uint32_t>(random_() % limit);
@@ -114,7 +114,7 @@ const char* nameOf(Spread spread) {
 OrderProblem makeProblem(Spread spread, std::uint32_t bucketCount, std::uint32_t rays) {
     const std::uint32_t cases = bucketCount - 1;
     OrderProblem problem;
-    // Geometries count the other way than buckets, so that neither passes for the other.
+    // Geometries count in the opposite direction to buckets, so that neither can be mistaken for the other.
     for (std::uint32_t i = 0; i < cases; ++i) {
         problem.shaderIds.push_back(cases - 1 - i);
     }
@@ -126,7 +126,7 @@ OrderProblem makeProblem(Spread spread, std::uint32_t bucketCount, std::uint32_t
         if (bucket > 0) {
             problem.hits.push_back(cases - bucket);
         } else {
-            // Every fourth, by turns.
+            // Every fourth ray gets one of the two in turn.
             problem.hits.push_back(ray % 4 == 0 ? cases + ray / 4 % 2 : gpu::kMissGeometry);
         }
     }

@@ -1,4 +1,4 @@
-// Hits to put in order: how many go to which bucket, and in which sequence.
+// Hits to order: how many go to each bucket, and in which sequence.
 #pragma once
 
 #include "render/order_kernel.h"
@@ -19,10 +19,11 @@ inline constexpr Spread kSpreads[] = {Spread::OneBucket, Spread::InTurn, Spread:
 
 const char* nameOf(Spread spread);
 
-// Some hits of bucket 0 are no misses, but have shader IDs that no case has. The same for the same arguments.
+// Makes a problem; the same arguments give the same problem. Some hits of bucket 0 are not misses, but have
+// shader IDs that no case has.
 OrderProblem makeProblem(Spread spread, std::uint32_t bucketCount, std::uint32_t rays);
 
-// Where a hit belongs.
+// Returns the bucket of a hit.
 std::uint32_t bucketOf(const OrderProblem& problem, std::size_t hit, std::uint32_t bucketCount);
 
 }  // namespace glint::testing

@@ -1,4 +1,4 @@
-// What an OrderKernel runs and times.
+// The runs and timings of an OrderKernel.
 #include "context_state.h"
 #include "pass_dependencies.h"
 #include "render/order_buffers.h"
@@ -15,13 +15,13 @@ namespace {
 using package::ModuleRole;
 using package::Ordering;
 
-// Passes of an ordering.
+// The passes of an ordering.
 constexpr std::uint32_t kCountPass = 0;
 constexpr std::uint32_t kOffsetPass = 1;
 constexpr std::uint32_t kCopyPass = 2;
 constexpr std::uint32_t kPasses = 3;
 
-// Workgroups of the check: it takes any number.
+// The number of workgroups of the check, which works with any number.
 constexpr std::uint32_t kCheckGroups = 64;
 constexpr VkDeviceSize kWord = sizeof(std::uint32_t);
 
@@ -35,7 +35,7 @@ void OrderKernel::wait(VkCommandBuffer commands) const {
     recordDependency(context_, commands, kEverything);
 }
 
-// Empty buckets, and the arguments of the passes.
+// Records the clearing of buckets and the arguments of the passes.
 void OrderKernel::recordStart(VkCommandBuffer commands, const OrderBuffers& buffers) const {
     const DeviceTable& vk = context_.vk;
     for (const Buffer* const buffer : {&buffers.counts, &buffers.cursors}) {
@@ -49,7 +49,7 @@ void OrderKernel::recordStart(VkCommandBuffer commands, const OrderBuffers& buff
     wait(commands);
 }
 
-// Calls `between` with 0 before the first pass, and with 1 + its number behind each.
+// Calls `between` with 0 before the first pass, and with 1 + its number after each pass.
 void OrderKernel::recordPasses(VkCommandBuffer commands, Ordering ordering, const OrderBuffers& buffers,
                                const std::function<void(std::uint32_t)>& between) const {
     const DeviceTable& vk = context_.vk;
@@ -76,8 +76,8 @@ void OrderKernel::recordPasses(VkCommandBuffer commands, Ordering ordering, cons
     }
     between(1 + kOffsetPass);
     dispatch(ModuleRole::BucketCopy, groups.copy);
-    // As behind the plain copy. What reads indirect arguments that tile-sort's last pass writes has to wait
-    // for those as well.
+    // The dependency is the same as after the plain copy. Reads of the indirect arguments that tile-sort's
+    // last pass writes must wait for those too.
     recordDependency(context_, commands, dependencies.passToPass);
     between(1 + kCopyPass);
 }
@@ -211,7 +211,7 @@ Result<std::vector<double>> OrderKernel::copyTimes() {
     context_.vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, plainCopy_.get());
     for (std::uint32_t i = 0; i < runs; ++i) {
         const OrderBuffers& from = *buffers_[i];
-        // What is behind the last whole vector does not count.
+        // The remainder after the last whole vector is ignored.
         const struct {
             VkDeviceAddress from;
             VkDeviceAddress to;

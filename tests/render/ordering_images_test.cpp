@@ -14,7 +14,7 @@ using package::Ordering;
 
 class OrderingImages : public ::testing::TestWithParam<package::Strategy> {
 protected:
-    // Empty where rendering fails. Expects that the device finds the hits in order.
+    // Returns an empty image if rendering fails. Expects that the device finds the hits in order.
     static LinearImage renderChecked(const LoadedScene& loaded, const RenderSetup& setup, Ordering ordering,
                                      FrameCounters& counters) {
         LinearImage image =
@@ -32,7 +32,7 @@ TEST_P(OrderingImages, AreTheSame) {
     settings.plan.merge = MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
-    // 77 x 45 pixels are no whole number of workgroups.
+    // 77 x 45 pixels are not a whole number of workgroups.
     RenderSetup setup = defaultSetup(scene, 77, 45);
     setup.frame.maxReflectionRoughness = 1.0F;
     LinearImage reference;
@@ -59,7 +59,7 @@ TEST_P(OrderingImages, AreTheSame) {
     expectNoValidationMessages();
 }
 
-// The check runs over no rays, too: every bucket has to be empty.
+// The check also runs without rays: every bucket must be empty.
 TEST_P(OrderingImages, NeedNoRays) {
     const Scene scene = roomOfMaterials();
     CompileSettings settings;

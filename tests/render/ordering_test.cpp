@@ -1,5 +1,5 @@
-// Every ordering gives each hit one slot of its bucket, and the check on the device sees where that is not
-// so.
+// Every ordering must give each hit one slot of its bucket, and the check on the device must detect when that
+// is not so.
 #include "render/harness.h"
 #include "render/order_problems.h"
 
@@ -43,7 +43,7 @@ void expectDispatch(const gpu::DispatchArguments& arguments, std::uint32_t eleme
     EXPECT_EQ(arguments.z == 0, elements == 0);
 }
 
-// Against the host: counts, their exclusive scan, and which hits each bucket has.
+// Compares with the host: counts, their exclusive scan, and which hits each bucket has.
 void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const OrderResult& result) {
     std::vector<std::uint32_t> counts(bucketCount);
     for (std::size_t hit = 0; hit < problem.hits.size(); ++hit) {
@@ -98,8 +98,8 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
         ASSERT_NE(kernel, nullptr);
         for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
             for (const Spread spread : kSpreads) {
-                // None, one, less than a workgroup, one in each bucket, and a last workgroup or tile that
-                // is not full.
+                // The numbers of rays are: none, one, less than a workgroup, one for each bucket, and two
+                // that leave the last workgroup or tile partly empty.
                 for (const std::uint32_t rays : {0U, 1U, 37U, bucketCount, 4099U, 12305U}) {
                     OrderProblem problem = makeProblem(spread, bucketCount, rays);
                     problem.alignment = alignment;
@@ -113,7 +113,7 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
     expectNoValidationMessages();
 }
 
-// 2^5, 2^8 and 2^10 are where ballots, scans and keys take another word, round or byte; 1024 is the most that
+// At 2^5, 2^8 and 2^10, ballots, scans and keys take another word, round or byte. 1024 is the most that
 // local-histogram and tile-sort hold.
 INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
                          ::testing::Values(1U, 2U, 31U, 32U, 33U, 128U, 129U, 255U, 256U, 257U, 1024U, 1025U),
@@ -144,28 +144,29 @@ struct FaultCase {
     std::vector<OrderFault> faults;
 };
 
-// Of hits in turn: each bucket has 101 in 128 slots; bucket 1 has number 3 and every fifth after it, bucket 2
-// number 2. How many errors there are at least follows from which of the rules each slot and bucket breaks.
+// The hits are in turn: each bucket has 101 hits in 128 slots; bucket 1 has number 3 and every fifth after
+// it, bucket 2 has number 2. The smallest number of errors follows from the rules that each slot and bucket
+// breaks.
 std::vector<FaultCase> faultCases() {
     using Where = OrderFault::Where;
     return {
         {"a hit twice, and one lost", 1, {{Where::Slots, 130, 3}, {Where::Slots, 131, 3}}},
-        // In the wrong place there, and twice.
+        // The hit is in the wrong place there, and occurs twice.
         {"a hit in another bucket", 2, {{Where::Slots, 130, 2}}},
         {"two buckets with each other's hits", 2, {{Where::Slots, 130, 2}, {Where::Slots, 260, 3}}},
         {"a slot that was not written", 1, {{Where::Slots, 256, gpu::kNoHit}}},
         {"a hit that there is not", 1, {{Where::Slots, 130, kFaultRays}}},
         {"a hit in a gap", 1, {{Where::Slots, 128 + 101, 3}}},
-        // Sum, cursor, dispatch, and a hit past the end.
+        // The errors are the sum, the cursor, the dispatch, and a hit past the end.
         {"the count of a bucket", 4, {{Where::Counts, 1, 100}}},
-        // Sum and dispatch.
+        // The errors are the sum and the dispatch.
         {"a hit that was not counted",
          2,
          {{Where::Counts, 4, 100}, {Where::Cursors, 4, 100}, {Where::Slots, 4 * 128 + 100, gpu::kNoHit}}},
-        // Ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
+        // The errors are the ends of two buckets; 37 hits of bucket 1, 27 empty slots, 64 hits past the end.
         {"where a bucket begins", 130, {{Where::Begins, 2, 192}}},
         {"slots that were given out", 1, {{Where::Cursors, 4, 100}}},
-        // Begin, end, the first slot, the last.
+        // The errors are the begin, the end, the first slot and the last slot.
         {"where all begin", 4, {{Where::Begins, 0, 1}}},
     };
 }

@@ -1,4 +1,4 @@
-// What the tests of single pixels share.
+// The parts that tests of single pixels share.
 #pragma once
 
 #include "render/harness.h"
@@ -28,7 +28,8 @@ inline constexpr Float3 kRed{0.8F, 0.1F, 0.1F};
 inline constexpr Float3 kGreen{0.1F, 0.7F, 0.1F};
 inline constexpr Float3 kBlue{0.1F, 0.2F, 0.9F};
 
-// A square picture by the camera of addCamera(); the sky is white, so that ambient light is easy to work out.
+// Returns a square picture with the camera of addCamera(). The sky is white, so that ambient light is easy to
+// compute.
 inline RenderSetup squareSetup(const Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 32, 32);
     setup.frame.sky = {{1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}};

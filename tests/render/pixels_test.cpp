@@ -1,5 +1,5 @@
-// Pictures whose pixels can be worked out on paper: orientation, colour, reflection, facing, samples. Each
-// holds for both strategies.
+// Tests pictures whose pixels can be computed by hand: orientation, colour, reflection, facing, samples. Each
+// test holds for both strategies.
 #include "context_state.h"
 #include "render/pixel_test.h"
 
@@ -26,7 +26,7 @@ TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 0U);
     EXPECT_EQ(counters.of(package::kEffectReflection).skippedSky, 32U * 32U);
-    // Row 0 looks up by atan(31/32); the sky is linear in the sine.
+    // Row 0 looks up by atan(31/32), and the sky is linear in the sine.
     const float sine =
         (31.0F / 32.0F) / std::sqrt(1.0F + std::pow(31.0F / 32.0F, 2.0F) + std::pow(1.0F / 32.0F, 2.0F));
     expectColor(at(image, 16, 0), {0.0F, 0.0F, sine}, 1e-4F, "top");
@@ -37,7 +37,7 @@ TEST_P(Pixels, TextureStandsUpright) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
-    // First row red, green; second row blue, white.
+    // The first row is red and green, the second blue and white.
     material.texture(TextureSlot::BaseColor).texture =
         addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
     addInstance(scene,
@@ -56,7 +56,7 @@ TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
     Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
     TextureInfo& info = material.texture(TextureSlot::BaseColor);
     info.texture = addTexture(scene, 2, 1, {128, 128, 128, 255, 0, 0, 0, 255});
-    // Offset by half the image: the black texel comes first.
+    // The offset is half of the image, so the black texel comes first.
     info.transform.offset = {0.5F, 0.0F};
     info.hasTransform = true;
     addInstance(scene,
@@ -68,7 +68,7 @@ TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
                 "right: sRGB 128 in linear light");
 }
 
-// The colour that a mirror in front of the camera shows of what stands behind the camera.
+// A mirror in front of the camera shows the colour of what is behind the camera.
 TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -76,7 +76,7 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     const int red = addMaterial(scene, unlitMaterial(kRed));
     const int blue = addMaterial(scene, unlitMaterial(kBlue));
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
-    // Behind the camera, facing it: red above, blue below; right × up points to -Z.
+    // Both quads are behind the camera and face it: red above, blue below; right × up points to -Z.
     addInstance(scene, addMesh(scene, makeQuad(red, {9, 0, 3}, {-18, 0, 0}, {0, 9, 0})));
     addInstance(scene, addMesh(scene, makeQuad(blue, {9, -9, 3}, {-18, 0, 0}, {0, 9, 0})));
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
@@ -108,8 +108,8 @@ TEST_P(Pixels, AMirrorThatSeesNothingShowsTheSky) {
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
 }
 
-// A wall that faces away: invisible if single-sided, in the picture and in the mirror; visible if
-// double-sided. The same under a mirroring transform, which must not turn it round.
+// A wall that faces away is invisible if single-sided, in the picture and in the mirror, and visible if
+// double-sided. The same holds under a mirroring transform, which must not turn it round.
 class Facing : public ::testing::TestWithParam<std::tuple<package::Strategy, bool, bool>> {};
 
 TEST_P(Facing, FollowsTheWindingInObjectSpace) {
@@ -121,12 +121,13 @@ TEST_P(Facing, FollowsTheWindingInObjectSpace) {
         red.doubleSided = doubleSided;
         const int wallMaterial = addMaterial(scene, red);
         const int mirror = addMaterial(scene, mirrorMaterial());
-        // Left half of the view: the wall itself. Right half: a mirror that sees the wall behind the camera.
+        // The left half of the view shows the wall itself. The right half shows a mirror that sees the wall
+        // behind the camera.
         const Float3 right = facesCamera ? Float3{8, 0, 0} : Float3{-8, 0, 0};
         const float x = facesCamera ? -8.0F : 0.0F;
         const float mirroredX = mirrored ? -x - right[0] : x;
-        // Under a mirroring in x the same corners, mirrored beforehand, come back with the winding turned:
-        // the front is by definition what it was in object space.
+        // The corners are mirrored in x beforehand, so under a mirroring transform they return with the
+        // winding reversed. By definition the front is the same as in object space.
         const Float3 objectRight = right;
         addInstance(scene,
                     addMesh(scene, makeQuad(wallMaterial, {mirroredX, -4, -2}, objectRight, {0, 8, 0})),
@@ -169,7 +170,7 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
 }
 
-// A mesh split over several acceleration structures is the same mesh: triangles keep their vertices and
+// A mesh that is split over several acceleration structures stays the same: triangles keep their vertices and
 // materials.
 TEST_P(Pixels, SplittingAMeshChangesNothing) {
     Scene scene = emptyScene();

@@ -1,5 +1,5 @@
-// Ray tracing pipelines: every strategy with every tracer gives the same picture, as does a device without
-// ray queries.
+// Tests ray tracing pipelines: every strategy gives the same picture with every tracer, and so does a device
+// without ray queries.
 #include "cli/scene_view.h"
 #include "context_state.h"
 #include "gpu_scene_state.h"
@@ -67,7 +67,7 @@ RenderSetup hallSetup(const Scene& scene) {
     return setup;
 }
 
-// Before the camera, across its view.
+// Adds a mirror in front of the camera, across its view.
 void addMirror(Scene& scene) {
     const int mirror = addMaterial(scene, mirrorMaterial());
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
@@ -86,7 +86,7 @@ protected:
     }
 };
 
-// All that the settings and the device have.
+// Renders every way that the settings and the device allow.
 void expectAllWaysAgree(const Scene& scene, const CompileSettings& settings, const RenderSetup& setup,
                         FrameCounters& counters) {
     const LoadedScene loaded(scene, settings);
@@ -137,7 +137,7 @@ TEST(RayPipelines, PackedHitsToo) {
     expectAllWaysAgreeInHall(settings);
 }
 
-// No surface, so that lists have no elements; then one whose rays all leave.
+// First no surface, so that lists have no elements; then one whose rays all leave the scene.
 TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -166,7 +166,7 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
     EXPECT_NE(withHoles.pixels, without.pixels);
 }
 
-// A mirror that sees a wall whose shader ID no case has.
+// A mirror sees a wall whose shader ID no case has.
 TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -214,7 +214,8 @@ TEST_F(DeviceWithPipelines, RefusesImagesAboveOneDispatch) {
     EXPECT_EQ(refused.error().id, "render-size");
 }
 
-// A device with one of the tracers alone renders what the other does; a package for the other is refused.
+// A device with only one of the tracers renders the same picture as one with the other. A package for the
+// other tracer is refused.
 class OneTracer : public ::testing::TestWithParam<Tracer> {
 protected:
     void SetUp() override {

@@ -23,7 +23,7 @@ Material metal(Float3 color, float roughness) {
     return material;
 }
 
-// Two texels by two; 0 stands for a hole.
+// Returns a texture of two by two texels; 0 means a hole.
 int checkers(Scene& scene, int size, std::uint8_t otherAlpha) {
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < size * size; ++i) {
@@ -47,7 +47,7 @@ void addLamp(Scene& scene, Float3 position, Float3 color, float candela) {
     scene.lights.push_back(lamp);
 }
 
-// Of eight vertical strips before the camera, each another material.
+// Adds one of eight vertical strips in front of the camera, each with another material.
 void addStrip(Scene& scene, const Material& material, int strip) {
     constexpr double kPi = std::numbers::pi;
     const auto corner = [](int number) {

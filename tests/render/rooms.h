@@ -5,11 +5,11 @@
 
 namespace glint::testing {
 
-// A floor of brushed metal before walls of eight materials, most with lobes of their own, under a sun and two
-// lamps.
+// Returns a floor of brushed metal in front of walls of eight materials, most of which have lobes of their
+// own, under a sun and two lamps.
 Scene roomOfMaterials();
 
-// A mirror beside a fence with alpha masks, a mirrored instance and a wall of glass, under a lamp.
+// Returns a mirror beside a fence with alpha masks, a mirrored instance and a wall of glass, under a lamp.
 Scene roomWithFence();
 
 }  // namespace glint::testing

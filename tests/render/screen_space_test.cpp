@@ -1,5 +1,5 @@
-// Reflections found in screen space: where the march finds something it is what a ray would find, and where
-// it finds nothing the picture is that of rays.
+// Tests reflections found in screen space: where the march finds something, a ray would find the same, and
+// where it finds nothing, the picture is that of rays.
 #include "render/pixel_test.h"
 #include "render/traced_frame.h"
 
@@ -26,7 +26,7 @@ void addBox(Scene& scene, int material, Float3 low, Float3 size) {
     addInstance(scene, static_cast<int>(scene.meshes.size()) - 1);
 }
 
-// A mirror floor one metre below the camera that ends at a wall: blue below 2 m, green above.
+// Returns a mirror floor one metre below the camera that ends at a wall: blue below 2 m, green above.
 Scene room() {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -53,21 +53,21 @@ RenderSetup withSteps(const Scene& scene, std::uint32_t steps) {
     return setup;
 }
 
-// Steps of less than a pixel on the longest line of the picture.
+// With this many steps, each is shorter than a pixel even on the longest line of the picture.
 constexpr std::uint32_t kEveryPixel = 2 * kSize;
 
 double largestDifference(const Pixel& a, const Pixel& b) {
     double largest = 0.0;
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        // Also where one is no number.
+        // This also holds if one of them is not a number.
         const double difference = std::abs(static_cast<double>(a[channel]) - b[channel]);
         largest = difference <= largest ? largest : difference;
     }
     return largest;
 }
 
-// Everything that is not found in screen space must be as with rays only; what is may differ at edges.
-// Returns the share of the pixels found that agree.
+// Expects that everything not found in screen space is the same as with rays only; what is found may differ
+// at edges. Returns the share of the found pixels that agree.
 double expectLikeRays(const TracedFrame& hybrid, const TracedFrame& rays) {
     EXPECT_EQ(hybrid.paths.size(), rays.paths.size());
     EXPECT_EQ(rays.counters.of(package::kEffectReflection).screenHits, 0U);
@@ -93,7 +93,7 @@ class ScreenSpace : public ::testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPixel),
                          ::testing::PrintToStringParamName());
 
-// The floor's pixels show what a camera two metres below, looking up through it, would see: the line of sight
+// The floor's pixels show what a camera two metres below, looking up through it, would see. The line of sight
 // of row y meets the plane z = -d at the height -2 + d s, s = 2 (y + 1/2) / 64 - 1.
 TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
     const Scene scene = roomWithBox();
@@ -122,7 +122,7 @@ TEST_P(ScreenSpace, AgreesWithRays) {
     const LoadedScene loaded(scene, PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     RenderSetup setups[] = {withSteps(scene, GetParam()), withSteps(scene, GetParam())};
-    // From above, rays parallel; the floor fills the lower half.
+    // The view is from above with parallel rays; the floor fills the lower half.
     CameraView& camera = setups[1].frame.camera;
     camera.position = {0.0F, 3.0F, 2.0F};
     camera.forward = {0.0F, -0.6F, -0.8F};
@@ -143,13 +143,14 @@ TEST_P(ScreenSpace, AgreesWithRays) {
         const double agreeing = expectLikeRays(hybrid, rays);
         RecordProperty("agreeing", std::to_string(agreeing));
         RecordProperty("found", std::to_string(hybrid.counters.of(package::kEffectReflection).screenHits));
-        // Silhouettes, within a pixel, are some of so small a picture; coarse steps miss more of them.
+        // Silhouettes within a pixel are a noticeable part of so small a picture, and coarse steps miss more
+        // of them.
         EXPECT_GE(agreeing, GetParam() == 8 ? 0.9 : 0.95);
         EXPECT_GT(hybrid.counters.of(package::kEffectReflection).screenHits, rays.counters.rays / 10);
     }
 }
 
-// A slab hangs before a red panel that the camera can't see; the floor reflects the panel from below the
+// A slab hangs in front of a red panel that the camera can't see. The floor reflects the panel from below the
 // slab.
 TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
     Scene scene = room();
@@ -167,13 +168,13 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
         const TracedFrame rays = traceFrame(loaded, package::kStrategyUber, setup);
         ASSERT_FALSE(hybrid.image.pixels.empty());
         EXPECT_GE(expectLikeRays(hybrid, rays), 0.95);
-        // At 1.5 m on the panel.
+        // The pixel shows the panel at 1.5 m.
         expectColor(at(hybrid.image, 32, 50), kRed, 1e-4F, "panel");
         EXPECT_EQ(hybrid.paths[50 * kSize + 32], PixelPath::Hit);
     }
 }
 
-// A convex mirror does not see itself, whatever its facets and normals.
+// A convex mirror does not see itself, whatever its facets and normals are.
 TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
     for (const int rows : {6, 40}) {
         Scene scene = emptyScene();
@@ -192,8 +193,8 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
     }
 }
 
-// Rays that the march has followed pixel by pixel start where it ends, on the same line; others where they
-// would.
+// Rays that the march has followed pixel by pixel start where it ends, on the same line. Other rays start
+// where they would without it.
 TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     Scene scene = emptyScene();
     addCamera(scene);
@@ -221,7 +222,7 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
                              ray.origin.z - from.origin.z};
         const float distance = step.x * ray.direction.x + step.y * ray.direction.y + step.z * ray.direction.z;
         const float length = std::sqrt(step.x * step.x + step.y * step.y + step.z * step.z);
-        // Both are rounded.
+        // Both values are rounded.
         const float tolerance = 1e-5F * std::max(1.0F, length);
         EXPECT_NEAR(distance, length, tolerance);
         EXPECT_NEAR(ray.coneWidth, from.coneWidth + from.coneSpread * distance, tolerance);
@@ -230,12 +231,12 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     if (GetParam() == kEveryPixel) {
         EXPECT_GT(moved, hybrid.rays.size() / 2);
     } else {
-        // Lines shorter than the steps only.
+        // Only lines shorter than the steps can end so.
         EXPECT_LT(moved, hybrid.rays.size());
     }
 }
 
-// Samples of a pixel are taken off its centre: depth and march must agree on where.
+// Samples of a pixel are off its centre, so depth and march must agree on where they are.
 TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
     const Scene scene = roomWithBox();
     const LoadedScene loaded(scene, PlanOptions{});
@@ -250,7 +251,7 @@ TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
     for (std::size_t i = 0; i < hybrid.image.pixels.size(); ++i) {
         sum += largestDifference(hybrid.image.pixels[i], rays.image.pixels[i]);
     }
-    // Edges only: colours differ by 0.8 at most.
+    // Only edges differ: colours differ by 0.8 at most.
     EXPECT_LE(sum / (kSize * kSize), 5e-3);
     EXPECT_GT(hybrid.counters.of(package::kEffectReflection).screenHits, 100U);
 }

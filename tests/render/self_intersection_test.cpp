@@ -1,5 +1,5 @@
-// Rays that leave a surface must not meet it again: counted over many rays, meshes and transforms, with the
-// geometry that hits have in the product.
+// Rays that leave a surface must not hit it again. This is counted over many rays, meshes and transforms,
+// with the geometry that hits have in the product.
 #include "base/files.h"
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
@@ -36,8 +36,8 @@ struct MeshKind {
     bool flat = false;  // all in the plane z = 0, which has no coordinate to tell the size of errors by
 };
 
-// A float near 1e5 has a unit in the last place of 2^-7: a triangle of edge 1e-4 is a point there, one of
-// 2^-4 the smallest with a shape.
+// A float near 1e5 has a unit in the last place of 2^-7. A triangle of edge 1e-4 is a point there; one of
+// edge 2^-4 is the smallest that has a shape.
 constexpr MeshKind kMeshes[] = {
     {"edge 1, at 1e5", {1e5, -1e5, 1e5}, 20.0, 1.0, 1.0},
     {"edge 2^-4, at 1e5", {-1e5, 1e5, 1e5}, 2.0, 0.0625, 0.0625},
@@ -48,7 +48,7 @@ constexpr MeshKind kMeshes[] = {
     {"edge 1, in the plane z = 0", {0.0, 0.0, 0.0}, 20.0, 1.0, 1.0, true},
 };
 
-// A transform of the mesh's space: three rows of the linear part, and where the mesh's centre goes.
+// A transform of the mesh's space: three rows of the linear part, and the new place of the mesh's centre.
 struct Placement {
     const char* name;
     std::array<Double3, 3> linear;
@@ -81,7 +81,7 @@ double unit(std::mt19937_64& random) {
     return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
-// Uniform over the sphere (Archimedes).
+// The direction is uniform over the sphere (Archimedes).
 Double3 randomDirection(std::mt19937_64& random) {
     const double z = 2.0 * unit(random) - 1.0;
     const double angle = 6.283185307179586 * unit(random);
@@ -119,7 +119,7 @@ Primitive strewnTriangles(const MeshKind& kind, std::mt19937_64& random) {
     return primitive;
 }
 
-// Column-major, with the mesh's centre brought to where the placement wants it.
+// Returns a column-major matrix that moves the mesh's centre to where the placement wants it.
 Matrix4 matrixOf(const MeshKind& kind, const Placement& placement) {
     Matrix4 matrix{};
     for (std::size_t row = 0; row < 3; ++row) {
@@ -142,7 +142,7 @@ Double3 transform(const Matrix4& m, const Double3& p) {
     return result;
 }
 
-// A ray towards a random point of a random triangle.
+// Returns a ray towards a random point of a random triangle.
 gpu::RayRecord aim(const Primitive& primitive, const Matrix4& matrix, std::mt19937_64& random) {
     const std::size_t triangle = random() % kTrianglesPerMesh;
     std::array<Double3, 3> corners{};
@@ -172,7 +172,7 @@ gpu::RayRecord aim(const Primitive& primitive, const Matrix4& matrix, std::mt199
     return ray;
 }
 
-// The largest of the terms that make up a coordinate of the world: what rounding is relative to.
+// Returns the largest of the terms that make up a coordinate of the world, to which rounding is relative.
 double magnitude(const Primitive& primitive, const Matrix4& m) {
     double largest = 0.0;
     for (const Float3& p : primitive.positions) {
@@ -184,7 +184,7 @@ double magnitude(const Primitive& primitive, const Matrix4& m) {
     return largest;
 }
 
-// What the kernel writes for each instance.
+// The counts that the kernel writes for each instance.
 struct Counts {
     std::uint32_t leaving;
     std::uint32_t fromHit;
@@ -196,12 +196,12 @@ struct Counts {
 constexpr std::size_t kWords = sizeof(Counts) / sizeof(std::uint32_t);
 
 std::uint64_t wantedRays() {
-    // One million unless the environment says otherwise: sanitizers and slow devices take fewer.
+    // The default is one million rays; sanitizers and slow devices set fewer in the environment.
     const char* text = std::getenv("GLINT_TEST_RAYS");
     return text == nullptr ? 1'000'000 : std::max<std::uint64_t>(1000, std::strtoull(text, nullptr, 10));
 }
 
-// Shoots, and appends to `table` a row for each placement.
+// Sends the rays, and appends a row for each placement to `table`.
 void shoot(const MeshKind& kind, std::uint64_t rays, std::string& table,
            std::array<std::uint64_t, 4>& totals) {
     std::mt19937_64 random(kSeed);
@@ -219,7 +219,7 @@ void shoot(const MeshKind& kind, std::uint64_t rays, std::string& table,
         HitKernel::create(scene, loaded, "self_intersection.comp");
     ASSERT_TRUE(kernel) << toString(kernel.error());
 
-    // Two rays leave each hit; some rays of the first generation pass by the small triangles.
+    // Two rays leave each hit. Some rays of the first generation pass between the small triangles.
     const Primitive& primitive = scene.meshes[0].primitives[0];
     std::vector<gpu::RayRecord> records;
     for (std::uint64_t i = 0; i < rays * 5 / 8; ++i) {
@@ -242,7 +242,7 @@ void shoot(const MeshKind& kind, std::uint64_t rays, std::string& table,
         totals[2] += counts.fromUnits;
         totals[3] += counts.fromRayOrigin;
         EXPECT_EQ(counts.fromRayOrigin, 0U) << kind.name << ", " << kPlacements[i].name;
-        // Rays start on the surface for all that a scene of that size can show.
+        // Rays start on the surface, as far as a scene of that size can show.
         EXPECT_LE(clearance, 1e-4 * magnitude(primitive, scene.nodes[i].world))
             << kind.name << ", " << kPlacements[i].name;
     }
@@ -268,7 +268,8 @@ TEST(SelfIntersection, NoRayMeetsTheTriangleThatItLeaves) {
     RecordProperty("meetFromUnits", std::to_string(totals[2]));
     RecordProperty("meetFromRayOrigin", std::to_string(totals[3]));
     EXPECT_TRUE(writeFile(std::filesystem::path(GLINT_BINARY_DIR) / "tests" / "self_intersection.md", table));
-    // The test would not see a miss: most rays must have left a triangle, and some met it without an offset.
+    // The test must be able to detect a fault: most rays must have left a triangle, and some must have hit it
+    // without an offset.
     EXPECT_GT(totals[0], rays / 2);
     EXPECT_GT(totals[1], totals[0] / 100);
 }

@@ -1,4 +1,4 @@
-// Every strategy under every merge policy gives the same linear image, on every scene that can be had.
+// Every strategy gives the same linear image under every merge policy, on every available scene.
 #include "gltf/import.h"
 #include "render/harness.h"
 
@@ -24,7 +24,7 @@ const char* name(package::Strategy strategy) {
 
 class StrategiesAgree : public ::testing::TestWithParam<std::string> {
 protected:
-    // Skips or fails the test where there is no scene; the caller returns then.
+    // Skips or fails the test if there is no scene; the caller must then return.
     std::optional<Scene> load() {
         const fs::path path = GetParam();
         if (!fs::exists(path)) {
@@ -44,7 +44,7 @@ protected:
     // Renders with both strategies under each of `merges`; all images must be the same.
     void expectAgreement(const Scene& scene, std::initializer_list<MergePolicy> merges, AlphaPolicy alpha) {
         RenderSetup setup = defaultSetup(scene, 64, 36);
-        // Everything that is not fully rough sends a ray, so that as many hits as can be are shaded.
+        // Everything that is not fully rough sends a ray, so that as many hits as possible are shaded.
         setup.frame.maxReflectionRoughness = 1.0F;
         LinearImage reference;
         for (const MergePolicy merge : merges) {

@@ -45,7 +45,7 @@ Result<std::vector<gpu::RayRecord>> readRays(Renderer::State& state, std::uint32
     return rays;
 }
 
-// Renders and reads back; the image has no size where that failed.
+// Renders and reads back. The image has no size if that fails.
 Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
     Result<LinearImage> image = renderer.render(setup.frame, setup.samples);
     if (!image) {
@@ -129,7 +129,7 @@ Primitive makeSphere(int material, Float3 centre, float radius, int rows) {
     for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(rows); ++row) {
         for (std::uint32_t column = 0; column + 1 < stride; ++column) {
             const std::uint32_t corner = row * stride + column;
-            // Triangles at the poles that have no area are left out.
+            // Triangles at the poles without an area are left out.
             if (row > 0) {
                 sphere.indices.insert(sphere.indices.end(), {corner, corner + 1, corner + stride});
             }

@@ -1,4 +1,4 @@
-// A frame with everything that tests want to know of its rays.
+// A frame with everything that tests need to know about its rays.
 #pragma once
 
 #include "interop/frame.h"
@@ -15,11 +15,12 @@ struct TracedFrame {
     std::vector<gpu::RayRecord> rays;  // the list; as many as counted
 };
 
-// Renders with the validation layers on and reads back. Of no size where that failed; the test has failed
-// then. Expects of every frame that each pixel has one path, and that paths and counters agree.
+// Renders with the validation layers on and reads back. If that fails, the test fails and the image has no
+// size. Expects for every frame that each pixel has one path, and that paths and counters agree.
 TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, const RenderSetup& setup);
 
-// A sphere of `rows` times twice as many columns of quads, with smooth normals, seen from outside.
+// Returns a sphere with `rows` rows and twice as many columns of quads, with smooth normals, seen from
+// outside.
 Primitive makeSphere(int material, Float3 centre, float radius, int rows);
 
 }  // namespace glint::testing

@@ -1,7 +1,7 @@
-// Preloaded into sanitized tests and the commands that they run.
+// This library is preloaded into sanitized tests and the commands that they run.
 
-// Libraries stay loaded to the end, so that a report of leaks can name the driver or layer that a block comes
-// from.
+// Libraries stay loaded to the end, so that a report of leaks can name the driver or layer that allocated a
+// block.
 extern "C" int dlclose(void* /*handle*/) {
     return 0;
 }
@@ -17,7 +17,7 @@ extern "C" const char* __ubsan_default_options() {
     return "print_stacktrace=1";
 }
 
-// Leaks that are not ours to mend: the validation layer's table of enabled features.
+// These leaks are not ours to fix: the validation layer's table of enabled features.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libVkLayer_khronos_validation.so\n";
 }

@@ -8,13 +8,13 @@
 
 namespace glint::test {
 
-// Made when constructed, removed with everything in it when destroyed.
+// Creates the folder on construction, and removes it with everything in it on destruction.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "glint-test-XXXXXX").string();
-        // Null only where the machine's temporary folder is not writable: every later write then fails
-        // loudly.
+        // The result is null only if the machine's temporary folder is not writable. Every later write then
+        // fails loudly.
         if (mkdtemp(name.data()) != nullptr) {
             path_ = name;
         }

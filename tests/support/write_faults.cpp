@@ -1,11 +1,11 @@
-// Preloaded into a command under test: makes one of the calls by which it changes files below a folder fail,
-// or sends it a signal there. Environment:
-//   GLINT_FAULT_FOLDER  absolute; calls elsewhere pass
-//   GLINT_FAULT_AT      which call, from 1; 0: none
-//   GLINT_FAULT_KIND    full: ENOSPC of that call and of all later ones that take space
-//                       error: EIO, that call only
-//                       term, kill: SIGTERM, SIGKILL; a write is half done by then
-//   GLINT_FAULT_COUNT   a file that takes the number of calls seen, if the command ends by itself
+// This library is preloaded into a command under test. It makes one of the calls that change files below a
+// folder fail, or sends the command a signal there. Environment:
+//   GLINT_FAULT_FOLDER  absolute; calls elsewhere are not affected
+//   GLINT_FAULT_AT      which call, from 1; 0 for none
+//   GLINT_FAULT_KIND    full: ENOSPC for that call and all later ones that take space
+//                       error: EIO for that call only
+//                       term, kill: SIGTERM, SIGKILL; a write is then half done
+//   GLINT_FAULT_COUNT   a file that gets the number of calls seen, if the command ends by itself
 #include <climits>
 
 #include <atomic>
@@ -25,7 +25,7 @@
 
 namespace {
 
-// What a call is for: kinds of faults strike some of them.
+// The purpose of a call. Each kind of fault strikes some of them.
 enum class Call {
     Space,   // takes room on the disk: makes, links, writes, closes
     Change,  // renames, permissions, time stamps
@@ -71,7 +71,7 @@ bool isInFolder(int folder, const char* path) {
     return getcwd(current, sizeof current) != nullptr && isBelow(std::string(current) + "/" + path);
 }
 
-// Counts the call; what becomes of it. Sets errno for one that fails.
+// Counts the call and decides what happens to it. Sets errno if it fails.
 Act judge(Call call) {
     const std::string_view kind = variable("GLINT_FAULT_KIND");
     const bool isFull = kind == "full";
@@ -100,7 +100,7 @@ Act judge(Call call) {
     std::abort();  // not reached
 }
 
-// For calls that are done or not: false where it is not.
+// For calls that are either done or not: returns false if this one is not done.
 bool allow(Call call) {
     const Act act = judge(call);
     if (act == Act::Half) {
@@ -138,7 +138,7 @@ bool isForWriting(const char* mode) {
 
 }  // namespace
 
-// Those of the C library by which the command and the standard library of C++ change files.
+// The calls of the C library by which the command and the C++ standard library change files.
 extern "C" {
 
 int open(const char* path, int flags, ...) {
@@ -172,7 +172,7 @@ ssize_t write(int file, const void* data, size_t size) {
         die();
     }
     errno = error;
-    // What fits is written; the next call then fails.
+    // Writes what fits; the next call then fails.
     return written > 0 ? written : -1;
 }
 

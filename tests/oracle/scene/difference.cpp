@@ -13,13 +13,13 @@ double relativeError(double device, double truth) {
     return std::abs(device - truth) / std::max(truth, kDark);
 }
 
-// Of the worst channel.
+// Returns the relative error of the worst channel.
 double relativeError(const Vec3& device, const Vec3& truth) {
     return std::max({relativeError(device.x, truth.x), relativeError(device.y, truth.y),
                      relativeError(device.z, truth.z)});
 }
 
-// What changes beside a place, if the light there changes by about as much as a pixel is off.
+// Returns what changes beside a place, if the light there changes by about as much as the pixel is off.
 std::optional<Cause> changeBeside(const SceneRenderer& renderer, const View& view,
                                   const DifferentPixel& pixel, const Path& path) {
     std::optional<Cause> cause;
@@ -49,14 +49,14 @@ std::optional<Cause> changeBeside(const SceneRenderer& renderer, const View& vie
     return cause;
 }
 
-// Whether a picture agrees with some truth, within a relative error.
+// Returns whether a picture agrees with one of the truths, within a relative error.
 bool agrees(const Vec3& device, const std::vector<Vec3>& truths, double within) {
     return std::ranges::any_of(truths,
                                [&](const Vec3& truth) { return relativeError(device, truth) <= within; });
 }
 
-// Decoding, chance or filtering, if one of the truths that they make is what the device shows, but for a
-// tenth of the error: what they bring may be magnified, with its own error.
+// Returns decoding, chance or filtering if one of the truths that they cause equals the device's value up to
+// a tenth of the error. Their effect may be magnified, together with its own error.
 std::optional<Cause> causeInDevice(const CameraLight& exact, const View& view, const Evidence& evidence,
                                    const DifferentPixel& pixel) {
     const double within = std::max(kDiffers, 0.1 * pixel.relative);
@@ -107,7 +107,7 @@ void explain(const SceneRenderer& renderer, const View& view, const Evidence& ev
                          : renderer.scene().materials[static_cast<std::size_t>(path.materials.front())].name;
 }
 
-// The value below which that share of the sorted ones lies.
+// Returns the value below which that share of the sorted values lies.
 double quantile(const std::vector<double>& sorted, double share) {
     if (sorted.empty()) {
         return 0.0;

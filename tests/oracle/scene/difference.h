@@ -1,4 +1,4 @@
-// How far a picture of the device is from one of the scene renderer, and why.
+// Measures how far a picture of the device is from one of the scene renderer, and finds why.
 #pragma once
 
 #include "oracle/scene/picture.h"
@@ -12,12 +12,12 @@
 
 namespace glint::oracle {
 
-// Relative errors are those of a channel over its truth, or over this where the truth is darker.
+// A relative error is that of a channel over its truth, or over this value if the truth is darker.
 inline constexpr double kDark = 0.01;
-// Pixels count as different beyond this relative error.
+// A pixel counts as different beyond this relative error.
 inline constexpr double kDiffers = 1e-3;
 
-// Why a pixel differs, the first that applies.
+// Why a pixel differs. The first cause that applies counts.
 enum class Cause : std::uint8_t {
     Decoding,    // the device decodes sRGB texels so
     Chance,      // it chose one of several lights or mirrors: it shows what one of the choices gives
@@ -50,15 +50,15 @@ struct Difference {
     double rootMeanSquare = 0.0;
     double relMse = 0.0;    // mean of (device - truth)² / (truth² + 0.01)
     double expected = 0.0;  // root mean square error of independent samples, and of the truth itself
-    // Of the pixels' relative errors, each of its worst channel.
+    // Statistics of the pixels' relative errors, each of its worst channel.
     double median = 0.0;
     double p999 = 0.0;
     double largest = 0.0;
-    // Mean of (device - truth) / max(truth, kDark) over channels and pixels, and its standard error.
+    // The mean of (device - truth) / max(truth, kDark) over channels and pixels, and its standard error.
     double signedMean = 0.0;
     double signedError = 0.0;
-    // Pixels whose worst channel is off by more than six standard deviations of independent samples, plus
-    // kDiffers.
+    // The number of pixels whose worst channel is off by more than six standard deviations of independent
+    // samples, plus kDiffers.
     std::size_t outliers = 0;
     std::vector<DifferentPixel> different;  // worst first
 
@@ -66,7 +66,7 @@ struct Difference {
     double largestOf(Cause cause) const;
 };
 
-// What is known of the device besides its picture; either may be null.
+// Further knowledge about the device besides its picture. Either pointer may be null.
 struct Evidence {
     // The truth with the device's own table of texels.
     const SceneRenderer* decoding = nullptr;
@@ -74,10 +74,10 @@ struct Evidence {
     const LinearImage* filtered = nullptr;
 };
 
-// Of pictures of the same size: of the pixels' centres.
+// Compares pictures of the pixels' centres. They must have the same size.
 Difference centreDifference(const LinearImage& device, const Picture& truth, const SceneRenderer& renderer,
                             const View& view, const Evidence& evidence = {});
-// Of means over the pixels, the device's of that many samples. Says no causes.
+// Compares means over the pixels. The device's picture has that many samples. Gives no causes.
 Difference meanDifference(const LinearImage& device, const Picture& truth, std::uint32_t samples);
 
 }  // namespace glint::oracle

@@ -25,7 +25,7 @@ glm::dmat4 toMatrix(const Matrix4& m) {
     return matrix;
 }
 
-// Of a triangle's corners, by their weights.
+// Interpolates values of a triangle's corners by their weights.
 template <class Value>
 auto mixed(const std::vector<Value>& values, const std::array<std::uint32_t, 3>& corners,
            const Vec3& weights) {
@@ -59,7 +59,7 @@ SceneGeometry::SceneGeometry(const Scene& scene, PointIsThere isThere)
             for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
                 source.corners = {primitive.indices[i], primitive.indices[i + 1], primitive.indices[i + 2]};
                 if (source.mirrored) {
-                    // glTF: a negative determinant turns the winding.
+                    // In glTF a negative determinant reverses the winding.
                     std::swap(source.corners[1], source.corners[2]);
                 }
                 Triangle triangle;

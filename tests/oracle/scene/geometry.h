@@ -1,4 +1,4 @@
-// Triangles of a scene with all that materials read of them, in double precision.
+// The triangles of a scene with everything that materials read about them, in double precision.
 #pragma once
 
 #include "gltf/scene.h"
@@ -12,7 +12,8 @@
 
 namespace glint::oracle {
 
-// Where a ray meets a surface. Attributes are mixed as the file gives them and taken into the world then.
+// The point where a ray meets a surface. Attributes are interpolated as the file gives them, and then
+// transformed into the world.
 struct SurfacePoint {
     double distance = 0.0;
     Vec3 position{0.0};
@@ -30,22 +31,22 @@ struct SurfacePoint {
     std::uint32_t triangle = 0;
 };
 
-// Whether a surface is there at a point: alpha masks.
+// Returns whether a surface exists at a point, for alpha masks.
 using PointIsThere = std::function<bool(const SurfacePoint&)>;
 
 class SceneGeometry {
 public:
-    // Meshes of all nodes in their rest pose, without skins and morph targets. The scene must outlive it.
-    // `isThere` is asked of materials that are masked.
+    // Takes the meshes of all nodes in their rest pose, without skins and morph targets. The scene must
+    // outlive it. `isThere` is called for masked materials.
     SceneGeometry(const Scene& scene, PointIsThere isThere);
     ~SceneGeometry();
     SceneGeometry(const SceneGeometry&) = delete;
     SceneGeometry& operator=(const SceneGeometry&) = delete;
 
-    // The nearest surface that is there, without the backs of what is single-sided. What a ray meets within
-    // 1e-9 of the scene's size is the surface that it starts on.
+    // Returns the nearest existing surface, ignoring the backs of single-sided ones. A surface within 1e-9 of
+    // the scene's size is the one that the ray starts on, and is ignored.
     std::optional<SurfacePoint> closest(const Ray& ray) const;
-    // Whether nothing that is there, front or back, stands nearer than `distance`.
+    // Returns whether no existing surface, front or back, is nearer than `distance`.
     bool visible(const Ray& ray, double distance) const;
     std::size_t triangleCount() const;
 

@@ -1,4 +1,4 @@
-// What the scene renderer works on: a file as glint render reads it.
+// The input of the scene renderer: a file as glint render reads it.
 #pragma once
 
 #include "gltf/scene.h"
@@ -26,10 +26,10 @@ struct OracleInput {
     View view;
 };
 
-// Errors of the import and of the camera; "oracle-moves" where a mesh has skins or morph targets.
+// Has the errors of the import and of the camera; "oracle-moves" if a mesh has skins or morph targets.
 Result<OracleInput> readOracleInput(const SceneChoice& choice, std::uint32_t width, std::uint32_t height);
 
-// Of glint render.
+// Returns the default sky of glint render.
 GradientSky defaultSky();
 
 struct ImageSize {
@@ -37,7 +37,7 @@ struct ImageSize {
     std::uint32_t height = 0;
 };
 
-// WxH, 1 to 4096 each. Error "oracle-size".
+// Parses WxH, 1 to 4096 each. Error "oracle-size".
 Result<ImageSize> parseSize(const std::string& text);
 
 }  // namespace glint::oracle

@@ -59,7 +59,7 @@ bool Inputs::passesAlphaMask() const {
     return baseColor().a >= material_.alphaCutoff;
 }
 
-// The slot's own set; of a slot without a texture the first that there is.
+// Returns the slot's own set, or the first existing set if the slot has no texture.
 std::size_t Inputs::derivedSet(TextureSlot slot) const {
     if (reads(slot)) {
         return static_cast<std::size_t>(material_.texture(slot).texCoord);

@@ -1,4 +1,4 @@
-// What materials read at a point: factors times textures, and the frames of normal textures.
+// The values that materials read at a point: factors times textures, and the frames of normal textures.
 #pragma once
 
 #include "gltf/scene.h"
@@ -8,21 +8,21 @@ namespace glint::oracle {
 
 class Inputs {
 public:
-    // Both must outlive it.
+    // Both must outlive the object.
     Inputs(const Textures& textures, const SurfacePoint& point);
 
-    // White where there is nothing to read.
+    // Returns white if there is nothing to read.
     glm::dvec4 texel(TextureSlot slot) const;
     bool reads(TextureSlot slot) const;
     glm::dvec4 baseColor() const;
-    // Columns: tangent, bitangent and normal. Of TANGENT, or of the directions in which the UVs of the slot
-    // grow; the bitangent points up in the image (glTF 2.0, 3.7.2.1).
+    // Returns the columns tangent, bitangent and normal. They come from TANGENT, or from the directions in
+    // which the UVs of the slot grow. The bitangent points up in the image (glTF 2.0, 3.7.2.1).
     glm::dmat3 tangentFrame(TextureSlot slot) const;
-    // Towards the front, as a normal texture has it.
+    // Returns the normal of a normal texture, towards the front.
     Vec3 mappedNormal(TextureSlot slot, double scale) const;
-    // Whether there is a direction of anisotropy.
+    // Returns whether anisotropy has a direction.
     bool hasDirection() const;
-    // glTF 2.0, 3.9.4, alphaMode MASK.
+    // Applies glTF 2.0, 3.9.4, alphaMode MASK.
     bool passesAlphaMask() const;
 
     const Material& material() const {

@@ -1,5 +1,5 @@
-// A material's parameters at a point as the BSDF of the shaders takes them. Of internal linkage, as that is
-// (numerics/glsl.h): surface.cpp alone includes this.
+// Makes the shaders' BSDF parameters from a material at a point. It has internal linkage, like the BSDF
+// (numerics/glsl.h): only surface.cpp includes this.
 #pragma once
 
 #include "numerics/shaders_double.h"
@@ -54,7 +54,7 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     return base;
 }
 
-// A surface's BSDF, prepared for a view, and what goes with it.
+// A surface's BSDF, prepared for a view, and its inputs.
 struct SurfaceLobes {
     Inputs inputs;
     double side;  // 1: seen from the front
@@ -222,7 +222,7 @@ struct SurfaceLobes {
                      glsl::kMinSheenAlpha);
     }
 
-    // KHR_materials_clearcoat: its normals are the mesh's unless it has a texture of its own.
+    // KHR_materials_clearcoat: the coat has the mesh's normals unless it has a texture of its own.
     void applyClearcoat() {
         const Clearcoat& given = inputs.material().clearcoat;
         if (given.factor == 0.0F) {
@@ -237,7 +237,7 @@ struct SurfaceLobes {
             toFrame(side * inputs.mappedNormal(TextureSlot::ClearcoatNormal, given.normalScale));
     }
 
-    // What the coat reflects at the view.
+    // Returns the share that the coat reflects at the view.
     double coat() const {
         return has(GLINT_CLEARCOAT) ? glsl::clearcoatFresnel(bsdf.clearcoat, glsl::coatViewCosine(bsdf))
                                     : 0.0;

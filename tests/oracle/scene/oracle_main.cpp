@@ -42,7 +42,7 @@ struct Settings {
     std::uint32_t list = 0;
 };
 
-// Repeats of the strata: their spread is the error.
+// The strata are repeated; the spread of the repeats gives the error.
 constexpr int kRepeats = 4;
 
 Strata strataOf(std::uint32_t samples) {

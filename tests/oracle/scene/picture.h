@@ -31,17 +31,18 @@ struct Picture {
     }
 };
 
-// As the device sees it.
+// Returns the view as the device sees it.
 View viewOf(const CameraView& camera, std::uint32_t width, std::uint32_t height);
 
-// Of the rays through the pixels' centres, on which a first sample lies. These take all cores.
+// Renders the rays through the pixels' centres, where a first sample lies. This function and the next ones
+// use all cores.
 Picture centrePicture(const SceneRenderer& renderer, const View& view);
-// Means over the pixels by points at random.
+// Renders means over the pixels with random points.
 Picture meanPicture(const SceneRenderer& renderer, const View& view, const Strata& strata);
 
-// Means over `count` points of each pixel, those that a device's samples have: 1/g and 1/g², g³ = g + 1, from
-// the centre on (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018). Where light peaks
-// within a pixel both then see the same of it.
+// Renders means over `count` points of each pixel, the same points that the device's samples have: 1/g and
+// 1/g², g³ = g + 1, from the centre on (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
+// 2018). If light peaks within a pixel, both then see the same part of the peak.
 Picture samplePicture(const SceneRenderer& renderer, const View& view, std::uint32_t count);
 
 LinearImage toImage(const Picture& picture);

@@ -1,4 +1,4 @@
-// Pictures of real scenes on the device against the scene renderer.
+// Compares pictures of real scenes on the device with the scene renderer.
 #include "cli/temporary_folder.h"
 #include "image/tone.h"
 #include "oracle/scene/difference.h"
@@ -25,7 +25,7 @@ constexpr std::uint32_t kHeight = 36;
 constexpr std::uint32_t kSamples = 64;
 constexpr float kMirrorRoughness = 0.05F;
 
-// At the pixels' centres, a truth that decodes texels as the device does.
+// Bounds at the pixels' centres, for a truth that decodes texels as the device does.
 struct Bounds {
     double median;        // relative error
     std::size_t differs;  // pixels off by more than kDiffers, without those of chance
@@ -73,7 +73,7 @@ private:
     RenderSetup setup_;
 };
 
-// Of the device at hand; the exact one where that fails, and the test has failed then.
+// Returns the table of the device. If that fails, the test fails and the exact table is returned.
 SrgbTable deviceTexels() {
     const Result<TemporaryFolder> folder = TemporaryFolder::create();
     if (!folder || !writeTexelScene(folder->path())) {
@@ -98,15 +98,15 @@ const SrgbTable& sharedTexels() {
     return table;
 }
 
-// Nearer to their own number than to any other: encoded again they are what they were.
+// Each value is nearer to its own number than to any other, so that encoding it again gives the same number.
 TEST(RealScenes, TheDeviceDecodesTexelsWithinHalfAStep) {
     for (std::size_t i = 0; i < sharedTexels().size(); ++i) {
         EXPECT_NEAR(255.0 * linearToSrgb(static_cast<float>(sharedTexels()[i])), static_cast<double>(i), 0.5);
     }
 }
 
-// llvmpipe filters textures of 8 bits in 8 bits unless it is told otherwise before there is a device; other
-// drivers do not look at it.
+// llvmpipe filters 8-bit textures in 8 bits unless this is set before the device is created. Other drivers
+// ignore it.
 const int kFiltersInFloats = ::setenv("GALLIVM_PERF", "no_aos_sampling", 1);
 
 class RealScenes : public ::testing::TestWithParam<RealScene> {};
@@ -135,19 +135,19 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
 
     const LinearImage converged = device.render(kSamples);
     ASSERT_FALSE(converged.pixels.empty());
-    // At the points that the samples have: chance and arithmetic are left.
+    // At the same points as the device's samples, only chance and arithmetic differ.
     const Difference samples =
         meanDifference(converged, samplePicture(renderer, input->view, kSamples), kSamples);
     SCOPED_TRACE(toText(samples, 10));
     EXPECT_LE(samples.rootMeanSquare, 1.2 * samples.expected + subject.bounds.rms);
     EXPECT_LE(std::abs(samples.signedMean), 4.0 * samples.signedError + subject.bounds.mean);
-    // And over the pixels.
+    // This compares means over the whole pixels.
     const Difference means = meanDifference(converged, meanPicture(renderer, input->view, {4, 4}), kSamples);
     SCOPED_TRACE(toText(means, 10));
     EXPECT_LE(std::abs(means.signedMean), 4.0 * means.signedError + subject.bounds.mean);
 }
 
-// A device that is off by 1 % somewhere, or by 0.1 % everywhere, is seen.
+// A device that is off by 1 % somewhere, or by 0.1 % everywhere, is detected.
 TEST(RealScenes, SeeWhatIsOff) {
     const Result<OracleInput> input = readOracleInput({GLINT_GALLERY_SCENE, "", ""}, kWidth, kHeight);
     ASSERT_TRUE(input.ok()) << toString(input.error());
@@ -179,7 +179,7 @@ std::string testName(const ::testing::TestParamInfo<RealScene>& scene) {
     return scene.param.name;
 }
 
-// Measured on llvmpipe of Mesa 25.0.7, and about three times as much: medians of 2e-6 in the gallery and 8e-8
+// The bounds are about three times what llvmpipe of Mesa 25.0.7 gave: medians of 2e-6 in the gallery and 8e-8
 // elsewhere, 9 pixels and 2 to 4, RMS errors of 2e-3 and 6e-4, where a few samples fall beside an edge.
 constexpr Bounds kGallery{6e-6, 27, 0, 3e-3, 3e-4};
 constexpr Bounds kModel{3e-7, 12, 0, 3e-3, 3e-4};

@@ -6,7 +6,7 @@
 namespace glint::oracle {
 namespace {
 
-// Cosines: light and normals count as near a tangent plane.
+// Below this cosine, light and normals count as near a tangent plane.
 constexpr double kGrazing = 1e-3;
 
 // Rec. 709.
@@ -123,7 +123,7 @@ CameraLight SceneRenderer::radiance(const Ray& ray, Path* path) const {
 
 CameraLight SceneRenderer::reflected(const std::vector<Mirror>& mirrors, const Vec3& position,
                                      Path* path) const {
-    // Cosine of the angle within which one ray serves coat and base.
+    // The cosine of the angle within which one ray serves coat and base.
     constexpr double kTogether = 0.99996;
     Vec3 weights(0.0);
     bool together = true;

@@ -1,4 +1,5 @@
-// The light of whole scenes: punctual lights with hard shadows, emission, the sky, and one mirror reflection.
+// Renders the light of whole scenes: punctual lights with hard shadows, emission, the sky, and one mirror
+// reflection.
 #pragma once
 
 #include "oracle/scene/geometry.h"
@@ -11,18 +12,18 @@ namespace glint::oracle {
 
 struct RendererSettings {
     GradientSky sky;
-    // Smoother surfaces reflect, and no others.
+    // Only surfaces that are smoother reflect.
     double mirrorRoughness = 0.05;
     SrgbTable srgb = exactSrgb();
 };
 
-// Of one ray of the camera.
+// The light along one ray of the camera.
 struct CameraLight {
     Vec3 mean{0.0};
-    // Of a renderer that chooses between coat and base by what either brings, and one light at what a mirror
-    // shows, by what each would bring without shadows.
+    // The variance of a renderer that chooses between coat and base by the light that each brings, and
+    // chooses one light in what a mirror shows, by the light that each would bring without shadows.
     Vec3 variance{0.0};
-    // What it shows for each choice; filled where a path is asked for.
+    // The light for each of these choices; filled if a path is asked for.
     std::vector<Vec3> outcomes{};
 };
 
@@ -38,14 +39,14 @@ struct Path {
 
 class SceneRenderer {
 public:
-    // Everything in the scene as it is; lights that a viewer adds are among the scene's. It must outlive
-    // this.
+    // Uses everything in the scene as it is; lights that a viewer adds are among the scene's. The scene must
+    // outlive the object.
     SceneRenderer(const Scene& scene, const RendererSettings& settings);
 
     const Scene& scene() const {
         return textures_.scene();
     }
-    // `path`, if there is one, is appended to. May be called by several threads.
+    // Appends to `path` if it is not null. Several threads may call this.
     CameraLight radiance(const Ray& ray, Path* path = nullptr) const;
     const SceneGeometry& geometry() const {
         return geometry_;

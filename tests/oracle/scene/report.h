@@ -1,4 +1,4 @@
-// Comparisons with the scene renderer, for people and scripts.
+// Formats comparisons with the scene renderer, for people and scripts.
 #pragma once
 
 #include "oracle/scene/difference.h"
@@ -8,10 +8,10 @@
 
 namespace glint::oracle {
 
-// Lines of text; with the `list` worst pixels.
+// Returns lines of text, including the `list` worst pixels.
 std::string toText(const Difference& difference, std::uint32_t list);
 
-// `rays`: of the truth, a pixel; `samples`: of the device.
+// `rays` is the number of the truth's rays for each pixel; `samples` is that of the device's samples.
 std::string toJson(const Difference& difference, std::uint32_t rays, std::uint32_t samples);
 
 }  // namespace glint::oracle

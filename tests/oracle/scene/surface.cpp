@@ -7,8 +7,8 @@ namespace glint::oracle {
 struct LitSurface::Lobes : SurfaceLobes {
     using SurfaceLobes::SurfaceLobes;
 
-    // The sky in a direction; a rough lobe sees the sky's irradiance about it, of which the first two orders
-    // of spherical harmonics count (Ramamoorthi and Hanrahan 2001).
+    // Returns the sky in a direction. A rough lobe sees the sky's irradiance about it, from the first two
+    // orders of spherical harmonics (Ramamoorthi and Hanrahan 2001).
     static Vec3 diffuseSky(const GradientSky& sky, const Vec3& normal) {
         return 0.25 * (2.0 * sky.horizon + sky.zenith + sky.ground) +
                (sky.zenith - sky.ground) * (normal.y / 3.0);
@@ -26,7 +26,8 @@ struct LitSurface::Lobes : SurfaceLobes {
         }
         return glm::reflect(-view, normal);
     }
-    // Behind a thin wall, or as a volume bends the view where it enters; one index a channel.
+    // Returns the sky behind a thin wall, or where a volume bends the view to as it enters, with one index
+    // for each channel.
     Vec3 skyBehind(const GradientSky& sky) const {
         Vec3 behind(0.0);
         for (int channel = 0; channel < 3; ++channel) {
@@ -67,7 +68,8 @@ struct LitSurface::Lobes : SurfaceLobes {
         return result;
     }
 
-    // About a normal; lifted off the surface by a thousandth where it would start below it.
+    // Returns the mirror direction about a normal, lifted off the surface by a thousandth if it would point
+    // below it.
     Vec3 mirrorDirection(const Vec3& normal) const {
         const Vec3 direction = glm::reflect(-view, normal);
         const Vec3 out = side * inputs.point().geometricNormal;

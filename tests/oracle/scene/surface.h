@@ -1,5 +1,5 @@
-// A material where a ray meets it, in double precision: textures, the lobes of every extension, and what they
-// make of light. The BSDF alone is the shaders' own, compiled as C++ (tests/numerics).
+// A material where a ray meets it, in double precision: textures, the lobes of every extension, and how they
+// scatter light. Only the BSDF is the shaders' own, compiled as C++ (tests/numerics).
 #pragma once
 
 #include "gltf/scene.h"
@@ -11,7 +11,7 @@
 
 namespace glint::oracle {
 
-// Base or coat of a mirror, and the light that is seen in it.
+// The base or the coat as a mirror, and the light that it shows.
 struct Mirror {
     Vec3 direction;  // unit
     Vec3 weight;
@@ -19,7 +19,8 @@ struct Mirror {
 
 class LitSurface {
 public:
-    // Seen along `incoming`. Lobes of a roughness of at most `mirrorRoughness` are mirrors; below 0, none is.
+    // The surface is seen along `incoming`. Lobes with a roughness of at most `mirrorRoughness` are mirrors;
+    // if it is below 0, none is.
     LitSurface(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
                double mirrorRoughness);
     ~LitSurface();
@@ -29,13 +30,13 @@ public:
     bool unlit() const;
     Vec3 baseColor() const;
     Vec3 emission() const;
-    // BSDF times |cosine|, reflected or let through; 0 where normal and geometric normal disagree about the
-    // side of the light.
+    // Returns the BSDF times |cosine|, reflected or transmitted; 0 if normal and geometric normal disagree
+    // about the side of the light.
     Vec3 scattered(const Vec3& toLight) const;
-    // Of the sky, as far as no mirror shows it: Glint's approximation (docs/materials.md), as no ray of an
-    // effect is behind it.
+    // Returns the sky's light that no mirror shows: Glint's approximation (docs/materials.md), without rays
+    // of any effect.
     Vec3 ambient(const GradientSky& sky) const;
-    // Fresnel at the view is a mirror's weight; over the last fifth below the limit the sky takes over
+    // A mirror's weight is Fresnel at the view. Over the last fifth below the limit the sky takes over
     // (docs/reflections.md).
     std::vector<Mirror> mirrors() const;
 

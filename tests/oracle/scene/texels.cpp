@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 16;
 
-// Two triangles of corners (position, UV); the camera looks along -Z. Nearest texels.
+// Two triangles of corners (position, UV). The camera looks along -Z, and texels are not filtered.
 constexpr std::string_view kScene = R"({
   "asset": {"version": "2.0"},
   "extensionsUsed": ["KHR_materials_unlit"],
@@ -46,7 +46,7 @@ Status writeTexelScene(const std::filesystem::path& folder) {
     if (Status status = writeImage(folder / "texels.png", image); !status) {
         return status;
     }
-    // glTF is little-endian, as are all machines that Glint runs on.
+    // glTF is little-endian, and so are all machines that Glint runs on.
     std::string corners(sizeof kCorners, '\0');
     std::memcpy(corners.data(), kCorners, sizeof kCorners);
     if (Status status = writeFile(folder / "texels.bin", corners); !status) {

@@ -29,7 +29,7 @@ int wrapped(std::int64_t texel, int size, Wrap wrap) {
 
 class Texels {
 public:
-    // `srgb`: null where the texels are linear.
+    // `srgb` is null if the texels are linear.
     Texels(const Image& image, const Sampler& sampler, const SrgbTable* srgb)
         : image_(image), sampler_(sampler), srgb_(srgb) {}
 
@@ -84,7 +84,7 @@ bool isSrgb(const Material& material, TextureSlot slot) {
         case TextureSlot::DiffuseTransmissionColor:
             return true;
         case TextureSlot::MetallicRoughness:
-            // Holds the specular colour then.
+            // In this model the slot holds the specular colour.
             return material.specularGlossiness.given;
         default:
             return false;

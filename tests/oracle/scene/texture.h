@@ -1,4 +1,4 @@
-// Textures of a scene in double precision: the finest level, filtered as its sampler magnifies.
+// Textures of a scene in double precision: the finest level, filtered as the sampler magnifies.
 #pragma once
 
 #include "gltf/scene.h"
@@ -9,28 +9,28 @@
 
 namespace glint::oracle {
 
-// Whether a slot holds colours that the sRGB transfer function encodes: glTF 2.0 and its extensions.
+// Returns whether a slot holds colours with the sRGB transfer function: glTF 2.0 and its extensions.
 bool isSrgb(const Material& material, TextureSlot slot);
 
-// The UV set that a slot reads, transformed (KHR_texture_transform); nothing where it has no texture, or the
-// surface not that set.
+// Returns the transformed UVs that a slot reads (KHR_texture_transform), or nothing if it has no texture or
+// the surface lacks that set.
 std::optional<Vec2> textureCoordinates(const TextureInfo& info, const SurfacePoint& point);
 
-// Linear values of 8-bit sRGB texels.
+// The linear values of 8-bit sRGB texels.
 using SrgbTable = std::array<double, 256>;
-// IEC 61966-2-1.
+// Returns the table of IEC 61966-2-1.
 SrgbTable exactSrgb();
 
 class Textures {
 public:
-    // The images must be decoded. The scene must outlive this.
+    // The images must be decoded. The scene must outlive the object.
     Textures(const Scene& scene, const SrgbTable& srgb) : scene_(scene), srgb_(srgb) {}
 
     const Scene& scene() const {
         return scene_;
     }
-    // RGBA in [0, 1], colours linear: texels are decoded first and filtered then. Nothing where there is
-    // nothing to read.
+    // Returns RGBA in [0, 1] with linear colours: texels are first decoded, then filtered. Returns nothing if
+    // there is nothing to read.
     std::optional<glm::dvec4> sample(const Material& material, TextureSlot slot,
                                      const SurfacePoint& point) const;
 

@@ -1,4 +1,4 @@
-// Textures of the oracle against values by hand.
+// Compares textures of the oracle with values computed by hand.
 #include "oracle/scene/texture.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 using namespace glint;
 using namespace glint::oracle;
 
-// Greys 0, 51, 102 and 255: 0, 0.2, 0.4 and 1; the second row is below the first.
+// The greys 0, 51, 102 and 255 are 0, 0.2, 0.4 and 1. The second row is below the first.
 Scene sceneOf(const Sampler& sampler) {
     Scene scene;
     Image image;
@@ -65,13 +65,13 @@ TEST(OracleTexture, WrapsAsItsSamplerSays) {
 }
 
 // KHR_texture_transform, "Overview": offset, rotation and scale as in its example of a quarter turn, which
-// shows the image turned counter-clockwise.
+// rotates the image counter-clockwise.
 TEST(OracleTexture, TransformsCoordinates) {
     Scene scene = sceneOf({});
     TextureTransform& transform = scene.materials[0].texture(TextureSlot::Normal).transform;
     transform.offset = {0.0F, 1.0F};
     transform.rotation = static_cast<float>(kPi / 2.0);
-    // The corner (0, 0) of the surface, top left, shows the image's bottom left; (1, 0) its top left.
+    // The surface's corner (0, 0), top left, shows the image's bottom left; (1, 0) shows its top left.
     SurfacePoint point;
     point.texCoords[0] = Vec2(0.0, 0.0);
     const TextureInfo& info = scene.materials[0].texture(TextureSlot::Normal);

@@ -1,5 +1,5 @@
 #version 460
-// directionOr() of each ray's direction; the fallback is (2, 2, 2).
+// Applies directionOr() to each ray's direction; the fallback is (2, 2, 2).
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
 

@@ -1,6 +1,7 @@
 #version 460
-// Geometry of given hits. Of each RayRecord: origin.xy are the barycentrics, origin.z the anisotropy of the sampler, pixel
-// the geometry, coneSpread the triangle, coneWidth the width of the cone at the hit.
+// Fetches the geometry of given hits. In each RayRecord, origin.xy are the barycentrics, origin.z is the
+// anisotropy of the sampler, pixel is the geometry, coneSpread is the triangle, and coneWidth is the width of
+// the cone at the hit.
 #include "hit/hit.glsl"
 #include "hit/trace.glsl"
 
@@ -34,7 +35,7 @@ void main() {
     vec4 gradients = coneGradients(hit.footprint, hit.uvEdges[0], kTexels, ray.origin.z);
     writeVector(base + 18u, vec3(hit.tangent.w, hit.clearance, gradients.x));
     writeVector(base + 21u, gradients.yzw);
-    // Whether a metre above the surface, and below, is free.
+    // Stores whether a metre above the surface, and below it, is free.
     vec3 n = hit.geometricNormal;
     GLINT_FRAME.counters.data[base + 24u] = isVisible(rayOrigin(hit, n), n, 1.0) ? 1u : 0u;
     GLINT_FRAME.counters.data[base + 25u] = isVisible(rayOrigin(hit, -n), -n, 1.0) ? 1u : 0u;

@@ -1,13 +1,13 @@
 #version 460
-// Leaves the surface that a ray hits, on both sides, and counts which rays meet the same triangle again: from the hit
-// itself, from an offset in units in the last place, and from where the product's rays start.
+// Leaves the surface that a ray hits, on both sides, and counts which rays hit the same triangle again: from
+// the hit itself, from an offset in units in the last place, and from where the product's rays start.
 #include "hit/hit.glsl"
 #include "hit/random.glsl"
 #include "hit/trace.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 
-// Words for each instance.
+// The words of each instance.
 const uint kLeaving = 0u;
 const uint kMeetsFromHit = 1u;
 const uint kMeetsFromUnits = 2u;
@@ -26,8 +26,8 @@ vec3 offsetByUnits(vec3 position, vec3 n) {
     return mix(stepped, position + n / 65536.0, lessThan(abs(position), vec3(1.0 / 32.0)));
 }
 
-// Whether a ray meets the triangle of `record`: every candidate counts, hidden ones too. `reach`: no point of the triangle
-// is farther from the origin.
+// Returns whether a ray meets the triangle of `record`. Every candidate counts, even hidden ones. No point of
+// the triangle is farther from the origin than `reach`.
 bool meets(HitRecord record, vec3 origin, vec3 direction, float reach) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipAABBEXT, 0xFFu,
@@ -70,7 +70,7 @@ void main() {
 
     for (uint i = 0u; i < 2u; ++i) {
         float side = i == 0u ? 1.0 : -1.0;
-        // Cosines of each magnitude alike.
+        // All magnitudes of cosines are equally likely.
         float cosine = exp2(randomUnit(index, i, GLINT_FRAME.seed, 0u) * log2(kLeastCosine));
         float angle = 6.2831853 * randomUnit(index, i, GLINT_FRAME.seed, 1u);
         float sine = sqrt(1.0 - cosine * cosine);
