@@ -108,7 +108,7 @@ TEST(Refraction, OfASphere) {
     expectAgrees(image, facets,
                  {"refraction", "a sphere that absorbs, of facets", "sum of paths", 3, samplesOf(kSamples),
                   1.0, 3e-4});
-    // This is the same scene without the sphere.
+    // The second sphere has no facets.
     SceneFile without;
     addFloor(without, 4.0);
     World world(without.import());

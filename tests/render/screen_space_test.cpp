@@ -231,7 +231,7 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     if (GetParam() == kEveryPixel) {
         EXPECT_GT(moved, hybrid.rays.size() / 2);
     } else {
-        // Only lines shorter than the steps can end so.
+        // Only rays whose line is shorter than the steps are followed pixel by pixel.
         EXPECT_LT(moved, hybrid.rays.size());
     }
 }

@@ -1,5 +1,5 @@
-// The tool and the runtime share the namespace glint and end up in one program: two types of one name there
-// make the linker pick one's functions for both.
+// The tool and the runtime share the namespace glint and are linked into one program. If both defined a type
+// of the same name there, the linker would use one's functions for both.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name of the type that a line at the outermost level defines; empty if it defines none.
+// Returns the name of the type that a line at the outermost level defines, or an empty text.
 std::string definedType(std::string_view line) {
     for (const std::string_view keyword : {"enum class ", "enum ", "struct ", "class "}) {
         if (line.starts_with(keyword)) {
@@ -26,7 +26,7 @@ std::string definedType(std::string_view line) {
     return {};
 }
 
-// Where the headers below `folder` define each type.
+// Returns where the headers below `folder` define each type.
 std::map<std::string, std::string> typesBelow(const fs::path& folder) {
     std::map<std::string, std::string> types;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {

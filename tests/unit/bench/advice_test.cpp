@@ -30,7 +30,7 @@ TEST(Advice, TakesTheLeastTimeWithinAnError) {
 
 TEST(Advice, IsSilentWhereNothingIsSurelyWithin) {
     EXPECT_EQ(advise(kOffers, {4.0, {}}), std::nullopt);
-    // The median is within it, the interval is not.
+    // The median is within the budget, but the interval is not.
     EXPECT_EQ(advise(kOffers, {5.01, {}}), std::nullopt);
     EXPECT_EQ(advise(kOffers, {8.0, 0.3}), std::nullopt);
     EXPECT_EQ(advise({}, {8.0, {}}), std::nullopt);

@@ -1,4 +1,4 @@
-// Which passes count when strategies are compared.
+// Tests which passes count when strategies are compared.
 #include "bench/hit_times.h"
 
 #include <gtest/gtest.h>

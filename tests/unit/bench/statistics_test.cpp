@@ -17,7 +17,8 @@ std::vector<double> upTo(int count) {
 }
 
 TEST(Interval, IsOfOrderStatistics) {
-    // Left out at each end by the table of the sign test: 5 of 20, 1 of 10, 0 of 6 and 8, 1 of 9, 3 of 15.
+    // The numbers left out at each end are those of the sign test's table: 5 of 20, 1 of 10, 0 of 6 and 8, 1
+    // of 9, 3 of 15.
     struct Row {
         int count;
         double low;
@@ -43,7 +44,7 @@ TEST(Interval, IsTheRangeOfFewValues) {
     EXPECT_EQ(one.q3, 7);
 }
 
-// Of a skewed distribution, whose mean is far from its median.
+// The distribution is skewed, so its mean is far from its median.
 TEST(Interval, HoldsTheMedianAsOftenAsItSays) {
     std::mt19937_64 random(5);
     const double truth = std::log(2.0);
@@ -59,13 +60,13 @@ TEST(Interval, HoldsTheMedianAsOftenAsItSays) {
             const Interval interval = intervalOf(values);
             held += interval.low <= truth && truth <= interval.high ? 1 : 0;
         }
-        // Four standard errors below what is promised.
+        // The bound is four standard errors below what is promised.
         EXPECT_GT(held, kTrials * (0.95 - 4.0 * std::sqrt(0.95 * 0.05 / kTrials))) << count;
     }
 }
 
 TEST(MeanInterval, IsThatOfStudent) {
-    // Quantiles of t for 95 %, two-sided: 2.776 of 4 degrees, 2.228 of 10, 12.706 of 1.
+    // The two-sided 95 % quantiles of t are 2.776 for 4 degrees, 2.228 for 10, 12.706 for 1.
     const std::vector<double> five{1, 2, 3, 4, 5};
     const MeanInterval interval = meanOf(five);
     EXPECT_EQ(interval.mean, 3);

@@ -1,4 +1,4 @@
-// The fit behind glint bench --calibrate: constants of planted devices are found again.
+// Tests the fit behind glint bench --calibrate: it must find the constants of planted devices.
 #include "bench/strategy_fit.h"
 
 #include "bench/least_squares.h"
@@ -27,7 +27,7 @@ TEST(LeastSquares, SolvesWhatHasASolution) {
 }
 
 TEST(LeastSquares, LeavesOutWhatWouldBeNegative) {
-    // Falling values: the slope would be below zero, so that the mean is best.
+    // The values fall, so the slope would be below zero, and the mean is best.
     const Rows rows{{1.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}};
     const std::vector<double> values{3.0, 2.0, 1.0};
     const auto x = nonNegativeLeastSquares(rows, values, 2);
@@ -109,7 +109,7 @@ std::vector<CalibrationPoint> makePoints() {
     return points;
 }
 
-// In the order of CostTerm; terms that a strategy lacks count for nothing.
+// The constants are in the order of CostTerm. Terms that a strategy lacks have no effect.
 const std::vector<StrategyCosts> kPlanted{
     {"uber", {0.02, 0.0, 0.4, 0.3, 0.0, 0.15, 0.1, 0.001}},
     {"sorted-uber", {0.08, 0.001, 0.9, 0.3, 0.02, 0.16, 0.0, 0.002}},
@@ -118,7 +118,7 @@ const std::vector<StrategyCosts> kPlanted{
 };
 constexpr double kSubgroup = 32.0;
 
-// Measures the planted device, each time off by up to `noise` of itself.
+// Measures the planted device, with each time off by up to `noise` of itself.
 void measure(std::vector<CalibrationPoint>& points, double noise) {
     std::mt19937 random(3);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same noise in every run
     std::uniform_real_distribution<double> uniform(-noise, noise);
@@ -168,7 +168,7 @@ TEST(StrategyFit, BearsNoise) {
 }
 
 TEST(StrategyFit, ErrorsAreOfPointsThatTheFitHasNotSeen) {
-    // One group that no model can follow: the others' constants must not know of it.
+    // No model can follow this group, so the constants of the others must not depend on it.
     std::vector<CalibrationPoint> points = makePoints();
     measure(points, 0.0);
     for (CalibrationPoint& point : points) {
@@ -179,7 +179,7 @@ TEST(StrategyFit, ErrorsAreOfPointsThatTheFitHasNotSeen) {
         }
     }
     const DeviceFit fit = fitStrategies(points, kSubgroup);
-    // Estimated by what the planted constants give: a third of what was measured.
+    // The estimate is what the planted constants give: a third of the measured time.
     EXPECT_NEAR(fit.quality.strategies.front().worstError, 2.0 / 3.0, 1e-4);
     EXPECT_NE(fit.quality.strategies.front().worstPoint.find("16 cases, cheap, coherent"), std::string::npos);
     EXPECT_GT(fit.quality.regret.worst, 0.5);
@@ -194,7 +194,8 @@ TEST(StrategyFit, LeavesOutWhatWasNotMeasured) {
             return time.strategy == "hit-shaders" || (time.strategy == "visibility" && point.cases != 4);
         });
     }
-    // Twelve points, but of one number of cases: launches and cases can't be told apart, only their sum.
+    // There are twelve points, but with one number of cases: launches and cases can't be told apart, only
+    // their sum is known.
     const DeviceFit fit = fitStrategies(points, kSubgroup);
     ASSERT_EQ(fit.strategies.size(), 3U);
     EXPECT_EQ(fit.strategies[2].strategy, "visibility");

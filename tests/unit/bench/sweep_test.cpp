@@ -24,7 +24,7 @@ const std::vector<Setting> kSettings{
     setting("texture-lod", {"cones", "mip0"}, true), setting("strategy", {"visibility", "uber"}, false)};
 const Configuration kBase{{"spp", "1"}, {"ssr", "off"}, {"texture-lod", "cones"}, {"strategy", "visibility"}};
 
-// A world in which times multiply and errors add, as far as samples go.
+// A model world in which times multiply and errors add, within the noise of samples.
 Rated measured(const Configuration& configuration) {
     const auto value = [&](const char* name) { return valueOf(name, configuration, kBase); };
     const double samples = std::stod(value("spp"));
@@ -70,7 +70,7 @@ TEST(ParetoFront, LeavesOutWhatIsBeaten) {
     EXPECT_TRUE(paretoFront({}).empty());
 }
 
-// The dominating points of every combination.
+// Returns the dominating points of all combinations.
 TEST(Proposals, FindTheFrontOfASeparableWorld) {
     std::vector<Rated> known = measuredSingles();
     for (int round = 0; round < 3; ++round) {
@@ -111,7 +111,7 @@ TEST(Proposals, AreNewAndFew) {
     }
 }
 
-// A value that differs by noise alone, below the default in both, must not be taken for better.
+// A value that differs only by noise, below the default in both, must not count as better.
 TEST(Proposals, DoNotFollowTies) {
     std::vector<Rated> known{measured({})};
     Rated noise = measured({});

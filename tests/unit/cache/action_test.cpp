@@ -58,7 +58,8 @@ TEST(ActionRecord, IsCurrentUntilAFileChanges) {
     for (const char* const name : {"in", "out"}) {
         const ActionRecord record = sampleRecord(folder.path());
         EXPECT_TRUE(isCurrent(record));
-        // A new time stamp is no change; other bytes of the same length are, and so is no file.
+        // A new time stamp is no change. Other bytes of the same length are a change, and so is a missing
+        // file.
         fs::last_write_time(folder.path() / name, fs::file_time_type::clock::now() + std::chrono::hours(1));
         EXPECT_TRUE(isCurrent(record));
         const std::string other = name == std::string("in") ? "INPUT" : "OUTPUT";
@@ -86,7 +87,7 @@ TEST(Unpacker, RefusesCountsAboveItsBytes) {
 
 TEST(ProgramIdentity, IsThatOfEveryObject) {
     const std::string identity = programIdentity();
-    // The program itself, the C++ library and the C library at least.
+    // There are at least the program itself, the C++ library and the C library.
     EXPECT_GE(std::ranges::count(identity, '\n'), 3);
     EXPECT_EQ(identity, programIdentity());
 }

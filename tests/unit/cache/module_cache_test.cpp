@@ -16,7 +16,7 @@ namespace {
 
 class Modules : public ::testing::Test {
 protected:
-    // Number of modules that were compiled; -1 after an error.
+    // Returns the number of modules that were compiled; -1 after an error.
     int compile(std::vector<ModuleSource> sources, ModuleCache* cache, bool debugInfo = false) {
         Result<std::vector<CompiledModule>> compiled =
             compileModules(std::move(sources), 2, debugInfo, cache);

@@ -70,7 +70,7 @@ TEST_F(Store, TakesNoDamagedEntryAndReplacesIt) {
     const fs::path file = entriesOf(folder()).at(0);
     const Result<Bytes> whole = readFile(file);
     ASSERT_TRUE(whole);
-    // Every byte changed, and every length cut.
+    // Changes every byte, and cuts at every length.
     for (std::size_t i = 0; i < whole->size(); ++i) {
         Bytes damaged = *whole;
         damaged[i] ^= 0x10U;
@@ -142,7 +142,7 @@ TEST_F(Store, NotesAFolderThatCantBeWritten) {
     EXPECT_EQ(file->size(), 6U);
 }
 
-// Each value repeats its key, so that a mixture of two shows.
+// Each value repeats its key, so that a mixture of two is detected.
 std::string valueOf(const std::string& key) {
     std::string value;
     for (int i = 0; i < 2000; ++i) {
@@ -151,8 +151,8 @@ std::string valueOf(const std::string& key) {
     return value;
 }
 
-// Writes and reads the same few keys again and again in a folder too small for them; says how often a value
-// was found, or -1 after a wrong one.
+// Writes and reads the same few keys again and again in a folder that is too small for them. Returns how
+// often a value was found, or -1 after a wrong one.
 int hammer(const StoreOptions& options, int rounds) {
     CacheStore store(options);
     int found = 0;

@@ -1,4 +1,4 @@
-// A package as C++ source: what a program gets from it is what the package's folder holds.
+// Tests a package as C++ source: a program must get from it the same as from the package's folder.
 #include "emit/embed_source.h"
 
 #include "sample_scene.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Writes every file below the folder that it is given.
+// Writes every file below the given folder.
 constexpr const char* kDump = R"(
 #include "sample_package.h"
 
@@ -99,7 +99,7 @@ TEST_F(EmbedSource, FilesThatStayTheSameKeepTheirTime) {
     ASSERT_TRUE(write(source));
     EXPECT_EQ(fs::last_write_time(source), early);
 
-    // Other tables: the declaration stays.
+    // The tables change, but the declaration stays.
     Bytes& tables = std::ranges::find(package_.files, "tables.bin", &PackageFile::name)->bytes;
     tables.back() ^= 1;
     ASSERT_TRUE(write(source));
@@ -121,7 +121,7 @@ TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
     EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));
 }
 
-// Names reach comments and literals of the code.
+// Names are written into comments and literals of the code.
 TEST_F(EmbedSource, NamesOfFilesEndNoComment) {
     scene_.path = "line\\\nbreak.gltf";
     const EmbeddedSource made =

@@ -13,7 +13,7 @@ namespace {
 
 using namespace glint::testing;
 
-// What a consumer would write; the static_asserts of the header are part of the test.
+// This is what a consumer would write. The static_asserts of the header are part of the test.
 constexpr const char* kConsumer = R"(
 namespace tables = glint::scene_sample_scene;
 static_assert(tables::kSceneCount == 1 && tables::kScenes[0].materialCount == 4);
@@ -49,7 +49,7 @@ TEST(Header, CompilesOnItsOwnAndBesideTheInteropHeaders) {
     const std::string interop = std::string("-I\"") + GLINT_SOURCE_DIR + "/shaders\"";
     EXPECT_EQ(compileWith(folder.path(), "#include <interop/frame.h>\n", interop), 0);
     EXPECT_EQ(compileWith(folder.path(), "#include <interop/types.h>\n", interop), 0);
-    // And the compiler does look: a wrong expectation fails.
+    // This checks that the compiler really ran: a wrong expectation fails.
     EXPECT_NE(compileWith(folder.path(), "static_assert(sizeof(int) == 3);\n", "2>/dev/null"), 0);
 }
 

@@ -1,4 +1,4 @@
-// Writing into the working folder, hostile manifests, and several writers at once.
+// Tests writing into the working folder, hostile manifests, and several writers at once.
 #include "emit/compile.h"
 #include "emit/manifest.h"
 #include "unit/emit/sample_scene.h"
@@ -98,7 +98,8 @@ TEST_F(WriteInPlace, FollowsNoLinkOutOfTheFolder) {
     EXPECT_EQ(readFolder(".").at("tables.bin"), "one");
 }
 
-// What a manifest lists goes when the package is replaced: it must not be able to name anything else.
+// Files that a manifest lists are removed when the package is replaced, so it must not be able to name
+// anything else.
 TEST_F(WriteInPlace, ManifestCannotNameFilesElsewhere) {
     const fs::path precious = temporary_.path() / "precious";
     std::ofstream(precious) << "years of work";
@@ -113,7 +114,7 @@ TEST_F(WriteInPlace, ManifestCannotNameFilesElsewhere) {
         (std::set<std::string, std::less<>>{"c/d", "manifest.json", "tables.bin"}));
 }
 
-// Each file says whose it is, so that a mixture shows.
+// Each file says which writer made it, so that a mixture is detected.
 TEST(WritePackageTogether, LeavesThePackageOfOneOfThem) {
     const TemporaryFolder temporary;
     const fs::path folder = temporary.path() / "out";

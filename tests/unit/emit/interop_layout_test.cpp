@@ -1,4 +1,4 @@
-// Every structure that host and device share has the same layout in SPIR-V as in C++.
+// Every structure that host and device share must have the same layout in SPIR-V as in C++.
 
 #include "emit/interop_layouts.h"
 #include "spirv/reader.h"
@@ -24,7 +24,7 @@ struct ReflectedStruct {
     std::set<std::uint32_t> strides;  // of arrays of it
 };
 
-// Structures by type ID: names, offsets, and the strides of arrays of them.
+// Returns the structures by type ID: names, offsets, and the strides of arrays of them.
 std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t>& words) {
     std::map<std::uint32_t, ReflectedStruct> structs;
     std::map<std::uint32_t, std::uint32_t> strideOf;
@@ -80,7 +80,7 @@ void expectEqual(const StructLayout& layout, const ReflectedStruct& reflected, c
     }
 }
 
-// Compares the layouts wherever a module has them; each must be in one.
+// Compares the layouts in every module that has them; each must occur in at least one.
 void expectInModules(const CompiledPackage& package, std::span<const StructLayout> layouts) {
     std::set<std::string_view> seen;
     for (const CompiledModule& module : package.modules) {

@@ -166,9 +166,9 @@ TEST(Manifest, DescribesThePackage) {
         }
     }
     EXPECT_EQ(materials, (std::set<int>{0, 1, 2, 3}));
-    // Of the alpha mask, as hits are opaque.
+    // The alpha mask is dropped, because hits are opaque.
     EXPECT_EQ(manifest["dropped"].size(), package.plan.dropped.size());
-    // All files but the manifest itself.
+    // The manifest lists all files except itself.
     ASSERT_EQ(manifest["files"].size() + 1, package.files.size());
     for (const nlohmann::json& file : manifest["files"]) {
         const PackageFile* const found = findFile(package, file["file"].get<std::string>());
@@ -215,7 +215,7 @@ TEST(Manifest, TakesNamesThatAreNotUtf8) {
     EXPECT_FALSE(manifestOf(*package).empty());
 }
 
-// Scenes by others, through the importer.
+// Imports and compiles scenes made by others.
 TEST(CompilePackage, CompilesScenesByOthers) {
     const std::filesystem::path models =
         std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/models/features";

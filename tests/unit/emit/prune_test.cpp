@@ -48,7 +48,7 @@ TEST(DropUnused, DropsWhatNothingReaches) {
                         "void main() { kept(float(kUsed)); }\n");
 }
 
-// A precision is no part of what is declared.
+// A precision is not part of a declaration's type or name.
 TEST(DropUnused, SeesThroughPrecision) {
     const std::string used = "GLINT_RELAXED vec3 used(GLINT_RELAXED vec3 x) { return x; }\n";
     const std::string text = dropUnused(kStart + "#line 1 \"a.glsl\"\n" + used +
@@ -115,7 +115,7 @@ TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
               "#version 460\nint a;\nint e = 1 / 2;\n");
 }
 
-// With a case more, only those modules change that number, or hold, all cases.
+// One case more changes only those modules that contain the number of cases, or all cases.
 TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
     CompileSettings settings;
     settings.plan.merge = MergePolicy::None;

@@ -9,11 +9,11 @@
 
 namespace glint::testing {
 
-// Four materials on one mesh of four triangles: plain, base colour texture, the same image as base colour and
-// occlusion with a transform, unlit and masked.
+// Returns a scene of four materials on one mesh of four triangles: plain; base colour texture; the same image
+// as base colour and occlusion with a transform; unlit and masked.
 Scene makeSampleScene();
 
-// Compiles with small settings; fails the test where that fails.
+// Compiles with small settings. Fails the test if that fails.
 CompiledPackage compileSample(const CompileSettings& settings = {});
 
 const PackageFile* findFile(const CompiledPackage& package, std::string_view name);

@@ -39,7 +39,7 @@ TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
     EXPECT_TRUE(defines(text, "GLINT_HIT_SOMETIMES_INPUTS", "0x2u"));
 }
 
-// What else a scene has leaves modules that test alpha as they are.
+// Other features of a scene do not change modules that test alpha.
 TEST(SceneSource, AlphaHasWhatItReadsAlone) {
     Plan plan;
     plan.always = bit(Feature::TexCoord0) | bit(Feature::Normals) | bit(Feature::Sheen);

@@ -19,7 +19,7 @@ namespace {
 using namespace glint::testing;
 using package::SectionKind;
 
-// tables.bin, read by its own description.
+// Reads tables.bin by its own description.
 class TableReader {
 public:
     explicit TableReader(const Bytes& bytes) : bytes_(bytes) {
@@ -81,7 +81,7 @@ TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
         return std::pair(record.rowU.x * u + record.rowU.y * v + record.rowU.z,
                          record.rowV.x * u + record.rowV.y * v + record.rowV.z);
     };
-    // Scale (2, 3), then the turn, then (0.25, 0.5).
+    // First the scale (2, 3), then the turn, then the offset (0.25, 0.5).
     const auto [u1, v1] = apply(1, 0);
     EXPECT_NEAR(u1, 0.25, 1e-6);
     EXPECT_NEAR(v1, -2 + 0.5, 1e-6);
@@ -95,7 +95,7 @@ TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
     EXPECT_EQ(identity.rowV.y, 1.0F);
 }
 
-// One image in every slot: which of its views each slot gets.
+// One image is in every slot; this tests which of its views each slot gets.
 TEST(MaterialTables, TexturesOfColorsAreSrgb) {
     const auto srgbSlots = [](bool specularGlossiness) {
         Scene scene = makeSampleScene();
@@ -165,7 +165,7 @@ TEST(MaterialTables, HoldEveryFactorOfTheExtensions) {
     EXPECT_EQ(recordOf(material).specularColorFactor.x, 0.3F);
 }
 
-// After the attenuation distance, the attenuation colour is what is left of white light.
+// After the attenuation distance, white light has become the attenuation colour.
 TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
     Material material;
     material.volume = {true, 1.0F, 0.25F, {0.5F, 1.0F, 0.0F}};
@@ -173,7 +173,7 @@ TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
     EXPECT_NEAR(std::exp(-static_cast<double>(absorption.x) * 0.25), 0.5, 1e-7);
     EXPECT_EQ(absorption.y, 0.0F);
     EXPECT_FALSE(std::signbit(absorption.y));
-    // Black: nothing passes, and the product with a kilometre is finite.
+    // Black lets nothing pass, and the product with a kilometre is finite.
     EXPECT_GE(absorption.z, 1e17F);
     EXPECT_TRUE(std::isfinite(absorption.z * 1000.0F));
     material.volume.attenuationDistance = 1e-30F;
@@ -254,7 +254,7 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
     }
 }
 
-// Cases are shared, tables are a scene's own: its materials and textures count from 0.
+// Scenes share cases but have their own tables: materials and textures of each count from 0.
 TEST(Tables, GoSceneByScene) {
     std::vector<Scene> scenes{makeSampleScene(), makeSampleScene()};
     scenes[1].materials[0].clearcoat.factor = 1.0F;
@@ -284,7 +284,7 @@ TEST(Tables, GoSceneByScene) {
     EXPECT_EQ(compiled->plan.keys.size(), keysOfOne + 1);
 }
 
-// Hits may keep fewer lobes; the mask on the device is that of primary surfaces.
+// Hits may keep fewer lobes, but the mask on the device is that of primary surfaces.
 TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     Scene scene = makeSampleScene();
     scene.materials[0].clearcoat.factor = 1.0F;

@@ -1,4 +1,4 @@
-// Packages of a few text files, and what a folder holds: writing looks at nothing else.
+// Packages of a few text files, and the contents of a folder. Writing does not look at the contents.
 #pragma once
 
 #include "emit/compile.h"
@@ -10,10 +10,10 @@
 
 namespace glint::testing {
 
-// Files by name, and a manifest that lists them.
+// Makes a package of files by name, and a manifest that lists them.
 CompiledPackage makePackage(const std::map<std::string, std::string>& contents);
 
-// Contents of all files below `folder`, by name.
+// Returns the contents of all files below `folder`, by name.
 std::map<std::string, std::string> readFolder(const std::filesystem::path& folder);
 
 std::size_t countEntries(const std::filesystem::path& folder);

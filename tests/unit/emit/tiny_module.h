@@ -1,4 +1,4 @@
-// A compute shader of a few words, as the module of a case.
+// A small compute shader as the module of a case.
 #pragma once
 
 #include "emit/compile_modules.h"
@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// `body` is what main() does; it has the buffer data.x.
+// `body` is the body of main(); it can use the buffer data.x.
 inline ModuleSource makeTinyModule(int shaderId, const std::string& body) {
     return {{package::ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
             ShaderStage::Compute,

@@ -41,7 +41,7 @@ TEST_F(WritePackage, MakesTheFolderAndReplacesIt) {
     EXPECT_EQ(contents["tables.bin"], "two");
     EXPECT_EQ(contents["new.spv"], "y");
     EXPECT_FALSE(fs::exists(folder_ / "glsl"));
-    // No staging folder stays behind.
+    // No staging folder remains.
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }
 
@@ -118,7 +118,8 @@ TEST_F(WritePackage, RefusesPlacesThatCannotBeWritten) {
     EXPECT_FALSE(writePackage(first_, "/"));
 }
 
-// Foreign files where a file of the new package must go: staging fails half-way, the old package stays.
+// A foreign file is where a file of the new package must go. Staging fails half-way, and the old package
+// stays.
 TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenItFails) {
     ASSERT_TRUE(writePackage(first_, folder_));
     fs::create_directories(folder_ / "new.spv");
@@ -144,7 +145,7 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenANameCannotBeWritten) {
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }
 
-// The number of a process that has ended.
+// Returns the number of a process that has ended.
 int endedProcess() {
     const pid_t child = fork();
     if (child == 0) {
@@ -161,7 +162,7 @@ TEST_F(WritePackage, CleansUpAfterRunsThatWereKilled) {
     fs::create_directories(parent / (".out.glint-new-" + dead + "-0") / "half");
     fs::create_directories(parent / (".out.glint-new-" + std::to_string(getpid()) + "-7"));
     fs::create_directories(parent / ".out.glint-new-notes");
-    // Killed between two renames: the earlier package is brought back, then replaced.
+    // The run was killed between two renames: the earlier package is brought back, then replaced.
     fs::rename(folder_, parent / (".out.glint-old-" + dead + "-0"));
     std::ofstream(parent / (".out.glint-old-" + dead + "-0") / "mine.txt") << "mine";
     ASSERT_TRUE(writePackage(second_, folder_));
@@ -169,7 +170,7 @@ TEST_F(WritePackage, CleansUpAfterRunsThatWereKilled) {
     EXPECT_EQ(readFolder(folder_).at("tables.bin"), "two");
     EXPECT_FALSE(fs::exists(parent / (".out.glint-new-" + dead + "-0")));
     EXPECT_FALSE(fs::exists(parent / (".out.glint-old-" + dead + "-0")));
-    // Of a process that runs, or of nobody: not ours to remove.
+    // These belong to a running process, or to nobody, so they must not be removed.
     EXPECT_TRUE(fs::exists(parent / (".out.glint-new-" + std::to_string(getpid()) + "-7")));
     EXPECT_TRUE(fs::exists(parent / ".out.glint-new-notes"));
 }

@@ -1,4 +1,4 @@
-// The generated scene, read back as a reader of glTF sees it.
+// The generated scene as a reader of glTF sees it.
 #pragma once
 
 #include "support/temporary_folder.h"
@@ -25,7 +25,7 @@ struct Document {
     Json json;
     std::string binary;
 
-    // The components of an accessor, normalised integers as floats.
+    // Returns the components of an accessor; normalised integers become floats.
     std::vector<float> values(const Json& accessor) const;
     std::vector<std::uint32_t> indices(const Json& accessor) const;
     const Json& accessor(const Json& index) const {
@@ -33,17 +33,18 @@ struct Document {
     }
 };
 
-// Bytes of a component, and components of an element.
+// Return the bytes of a component, and the number of components of an element.
 std::size_t componentBytes(const Json& accessor);
 std::size_t componentCount(const Json& accessor);
 
-// The textures that a material names, by slot: in itself, in pbrMetallicRoughness and in its extensions.
+// Returns the textures that a material names, by slot: in itself, in pbrMetallicRoughness and in its
+// extensions.
 std::vector<std::pair<std::string, Json>> textureUses(const Json& material);
 
-// The materials that a primitive can wear: its own and those of its variants.
+// Returns the materials that a primitive can have: its own and those of its variants.
 std::vector<std::size_t> materialsOf(const Json& primitive);
 
-// The scene that the build generated, read once.
+// Returns the scene that the build generated; it is read once.
 const Document& document();
 
 }  // namespace gallery::test

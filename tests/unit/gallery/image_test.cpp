@@ -12,13 +12,13 @@ namespace gallery::test {
 
 namespace {
 
-// The pixel at (x, y), red first.
+// Returns the pixel at (x, y), red first.
 std::array<int, 3> pixel(const Image& image, int x, int y) {
     const auto at = static_cast<std::size_t>(y * image.width + x) * static_cast<std::size_t>(image.channels);
     return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
 }
 
-// Sum of the red channel over a rectangle.
+// Returns the sum of the red channel over a rectangle.
 long long brightness(const Image& image, int x0, int y0, int x1, int y1) {
     long long sum = 0;
     for (int y = y0; y < y1; ++y) {
@@ -60,7 +60,7 @@ TEST(Noise, RepeatsAtTheBorders) {
 
 TEST(Textures, FloorIsMirrorSmoothOnItsTiles) {
     const Image image = floorMetallicRoughness();
-    // Middle of a tile: 4 x 4 tiles over 512 pixels.
+    // This is the middle of a tile: there are 4 x 4 tiles over 512 pixels.
     for (int tile = 0; tile < 4; ++tile) {
         const std::array<int, 3> texel = pixel(image, 64 + 128 * tile, 64);
         EXPECT_LE(texel[1], 13);  // 0.05
@@ -70,9 +70,9 @@ TEST(Textures, FloorIsMirrorSmoothOnItsTiles) {
 
 TEST(Textures, SignReadsFromLeftToRight) {
     const Image image = signColor();
-    // The arrow's head is at the right end of the lower half, its tail at the left is slighter.
+    // The arrow's head is at the right end of the lower half; its tail at the left is thinner.
     EXPECT_GT(brightness(image, 400, 160, 470, 256), brightness(image, 42, 160, 112, 256));
-    // L is dark at its upper right and bright at its lower right, which neither flip has.
+    // L is dark at its upper right and bright at its lower right. Neither is true of a flipped image.
     EXPECT_GT(brightness(image, 180, 125, 205, 145), brightness(image, 180, 30, 205, 50));
 }
 

@@ -1,4 +1,4 @@
-// The example scene as the compiler sees it.
+// Tests the example scene as the compiler sees it.
 #include "plan/plan.h"
 
 #include "document.h"
@@ -22,7 +22,7 @@ const glint::Scene& scene() {
     return *kScene;
 }
 
-// The keys of each material, by its name.
+// Returns the keys of each material, by its name.
 std::map<std::string, std::set<glint::FeatureMask>> keysByMaterial(const glint::KeyOptions& options) {
     std::map<std::string, std::set<glint::FeatureMask>> keys;
     for (const glint::PrimitiveInputs& primitive : glint::planningInputs(scene())) {
@@ -59,7 +59,7 @@ TEST(GalleryPlan, HasFewerKeysThanMaterials) {
     EXPECT_GT(plan.keys.size(), scene().materials.size() / 2);
 }
 
-// Neutral values must not make a key of their own.
+// Neutral values must not create another key.
 TEST(GalleryPlan, TwinsShareAKey) {
     const auto keys = keysByMaterial({});
     EXPECT_EQ(keys.at("Plaster, chalk"), keys.at("Plaster, petrol"));
@@ -74,7 +74,7 @@ TEST(GalleryPlan, TwinsShareAKey) {
     EXPECT_NE(keys.at("Hammered copper"), keys.at("Gold"));
 }
 
-// The lobes that tell the exhibits of extensions from all others, one row a material.
+// The lobes that distinguish the exhibits of extensions from all others, one row for each material.
 TEST(GalleryPlan, ExhibitsHaveTheLobesOfTheirExtensions) {
     using glint::Feature;
     const std::map<std::string, std::set<Feature>> expected{

@@ -1,4 +1,4 @@
-// What the example scene promises: features, instances, lights, limits, the same bytes every time.
+// Tests the promises of the example scene: features, instances, lights, limits, the same bytes every time.
 #include "scene.h"
 
 #include "document.h"
@@ -47,7 +47,7 @@ TEST(GalleryScene, StaysWithinItsLimits) {
     for (const auto& [name, contents] : filesOf(document().folder)) {
         bytes += contents.size();
         if (name.ends_with(".png")) {
-            // Width and height stand in the header chunk, big-endian.
+            // The header chunk has width and height in big-endian order.
             EXPECT_LE(bigEndian(contents, 16), 1024U) << name;
             EXPECT_LE(bigEndian(contents, 20), 1024U) << name;
         }

@@ -1,4 +1,4 @@
-// Shapes: closed, outward, and with tangents that follow the texture coordinates.
+// Tests shapes: they are closed and outward, and tangents follow the texture coordinates.
 #include "shapes.h"
 
 #include <glm/geometric.hpp>
@@ -13,7 +13,7 @@ namespace gallery::test {
 
 namespace {
 
-// Divergence theorem: positive for a closed surface with outward, counter-clockwise faces.
+// By the divergence theorem this is positive for a closed surface with outward, counter-clockwise faces.
 float enclosedVolume(const MeshData& mesh) {
     double volume = 0.0;
     for (std::size_t at = 0; at < mesh.indices.size(); at += 3) {
@@ -25,7 +25,8 @@ float enclosedVolume(const MeshData& mesh) {
     return static_cast<float>(volume);
 }
 
-// Every face is on the side that its vertices' normals say, and the frame follows the coordinates.
+// Expects that every face is on the side of its vertices' normals, and that the frame follows the
+// coordinates.
 void expectConsistentFrames(const MeshData& mesh, const std::string& name) {
     for (std::size_t at = 0; at < mesh.indices.size(); at += 3) {
         const std::array<std::uint32_t, 3> corner{mesh.indices[at], mesh.indices[at + 1],
@@ -44,7 +45,7 @@ void expectConsistentFrames(const MeshData& mesh, const std::string& name) {
             const glm::vec3 bitangent = glm::cross(normal, glm::vec3(tangent)) * tangent.w;
             ASSERT_GT(glm::dot(glm::cross(edge1, edge2), normal), 0.0F) << name;
             ASSERT_GT(glm::dot(alongU, glm::vec3(tangent)), 0.0F) << name;
-            // V runs down the image, the bitangent up.
+            // V runs down the image, and the bitangent up.
             ASSERT_LT(glm::dot(alongV, bitangent), 0.0F) << name;
         }
     }
@@ -57,7 +58,7 @@ TEST(Shapes, ClosedShapesEncloseTheirVolume) {
     EXPECT_NEAR(enclosedVolume(sphere(1.0F, 96, 48)), 4.0F / 3.0F * pi, 0.02F);
     EXPECT_NEAR(enclosedVolume(torus(2.0F, 0.5F, 128, 64)), 2.0F * pi * pi * 2.0F * 0.25F, 0.05F);
     EXPECT_NEAR(enclosedVolume(box({1.0F, 2.0F, 3.0F})), 6.0F, 1e-5F);
-    // Minkowski sum of a cube of side 0.8 and a ball of radius 0.1.
+    // This is the Minkowski sum of a cube of side 0.8 and a ball of radius 0.1.
     const float rounded = 0.512F + 6.0F * 0.64F * 0.1F + 3.0F * pi * 0.01F * 0.8F + 4.0F / 3.0F * pi * 0.001F;
     EXPECT_NEAR(enclosedVolume(roundedBox({1.0F, 1.0F, 1.0F}, 0.1F, 8)), rounded, 0.002F);
     const std::array<glm::vec2, 4> can{{{0.0F, 1.0F}, {0.5F, 1.0F}, {0.5F, 0.0F}, {0.0F, 0.0F}}};

@@ -1,4 +1,4 @@
-// The generated file against the rules of the glTF 2.0 specification.
+// Checks the generated file against the rules of the glTF 2.0 specification.
 #include "document.h"
 
 #include <gtest/gtest.h>
@@ -136,7 +136,7 @@ TEST(GalleryStructure, ReferencesResolve) {
     }
 }
 
-// A material's textures are of use only where the mesh has the coordinates that they name.
+// A material's textures only work if the mesh has the coordinates that they name.
 TEST(GalleryStructure, TexturedPrimitivesHaveTheCoordinates) {
     for (const Json& mesh : document().json["meshes"]) {
         for (const Json& primitive : mesh["primitives"]) {
@@ -189,7 +189,7 @@ TEST(GalleryStructure, VariantsAreNamedAndUsed) {
                 for (const Json& mapping : primitive["extensions"]["KHR_materials_variants"]["mappings"]) {
                     expectIndex(mapping["material"], "materials");
                     for (const Json& variant : mapping["variants"]) {
-                        // A variant has one material in a primitive.
+                        // A variant must have only one material in a primitive.
                         EXPECT_TRUE(here.insert(variant.get<std::size_t>()).second) << mesh["name"];
                     }
                 }

@@ -1,4 +1,4 @@
-// Areas in the world, and the hits that they stand for.
+// Tests areas in the world, and the hits that are expected from them.
 #include "gltf/expected_hits.h"
 
 #include "gltf/import.h"
@@ -10,7 +10,7 @@
 namespace glint::test {
 namespace {
 
-// A square of side 1 in the plane z = 0, or of another size.
+// Returns a square of side 1 in the plane z = 0, or of another size.
 Primitive square(float side = 1.0F) {
     Primitive primitive;
     primitive.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
@@ -22,7 +22,7 @@ Matrix4 scaled(double x, double y, double z) {
     return {x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 7, 8, 9, 1};
 }
 
-// Turned by 45 degrees about Z after a stretch along X: columns of unequal lengths.
+// Returns a stretch along X followed by a turn of 45 degrees about Z: columns of unequal lengths.
 Matrix4 stretchedAndTurned(double x) {
     const double half = 0.7071067811865476;
     return {x * half, x * half, 0, 0, -half, half, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -49,7 +49,7 @@ struct Places {
     }
 };
 
-// With a median m, an area a is expected to get a / (a + 10 m).
+// With the median m, an area a is expected to get a / (a + 10 m).
 double expected(double area, double median) {
     return area / (area + 10.0 * median);
 }
@@ -72,7 +72,7 @@ TEST(ExpectedHits, AddUpOverPlacesAndScales) {
     places.add(square(), {stretchedAndTurned(3)});
     places.add(square(), {});
     const std::vector<double> hits = places.hits();
-    // Areas 1, 4, 3 and 3.
+    // The areas are 1, 4, 3 and 3.
     EXPECT_NEAR(hits[0], expected(1.0, 3.0) + expected(4.0, 3.0), 1e-12);
     EXPECT_NEAR(hits[1], expected(3.0, 3.0), 1e-12);
     EXPECT_NEAR(hits[2], expected(3.0, 3.0), 1e-12);

@@ -1,4 +1,4 @@
-// Files: containers, buffers, URIs, JSON.
+// Tests files: containers, buffers, URIs, JSON.
 #include "gltf/uri.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A triangle whose buffer is in the file of that URI.
+// Returns a triangle whose buffer is in the file with that URI.
 std::string triangleWithBuffer(const std::string& uri, Bytes& bytes) {
     GltfBuilder builder;
     builder.addTriangle();

@@ -223,7 +223,7 @@ TEST(GltfGeometry, LimitsVertices) {
     builder.addTriangle();
     EXPECT_TRUE(import(builder, {.maxVertices = 3}).ok());
     expectError(import(builder, {.maxVertices = 2}), "vertex-limit", "/accessors/0");
-    // An accessor that costs the file nothing must not cost memory.
+    // An accessor that takes no bytes of the file must not take memory.
     builder.root["accessors"][0] = {{"componentType", 5126}, {"count", 200000000}, {"type", "VEC3"}};
     expectError(import(builder), "accessor-count", "/accessors/0");
 }

@@ -1,4 +1,4 @@
-// Small glTF files made by tests, and a folder of their own to put them in.
+// Builds small glTF files for tests, and a folder for them.
 #pragma once
 
 #include "base/files.h"
@@ -20,7 +20,7 @@ namespace glint::test {
 
 using Json = nlohmann::json;
 
-// glTF's numbers.
+// Returns glTF's number of a component type.
 template <typename T>
 constexpr int componentTypeOf() {
     if constexpr (std::is_same_v<T, std::int8_t>) {
@@ -38,16 +38,16 @@ constexpr int componentTypeOf() {
     }
 }
 
-// A glTF document under construction: `root` is free to change, the buffer grows by accessors.
+// A glTF document under construction. `root` may be changed freely; accessors extend the buffer.
 class GltfBuilder {
 public:
     GltfBuilder();
 
-    // Appends raw bytes as a buffer view; returns its index.
+    // Appends raw bytes as a buffer view. Returns its index.
     int addView(const void* bytes, std::size_t size, std::size_t stride = 0);
 
-    // Appends an accessor of `components` (1 to 4, or more for matrices) values an element; returns its
-    // index.
+    // Appends an accessor with `components` values for each element (1 to 4, or more for matrices). Returns
+    // its index.
     template <typename T>
     int addAccessor(const std::vector<T>& values, int components, bool normalized = false) {
         const int view = addView(values.data(), values.size() * sizeof(T));
@@ -61,19 +61,19 @@ public:
         return append("accessors", std::move(accessor));
     }
 
-    // Appends to the array of that name; returns the index.
+    // Appends to the array of that name. Returns the index.
     int append(const std::string& array, Json value);
-    // Appends a mesh of one primitive and a node that draws it; returns the primitive.
+    // Appends a mesh with one primitive, and a node that draws it. Returns the primitive.
     Json& addMesh(Json primitive);
-    // A triangle (0,0,0) (1,0,0) (0,1,0), drawn: POSITION only.
+    // Adds a triangle (0,0,0) (1,0,0) (0,1,0) that is drawn; it has POSITION only.
     Json& addTriangle();
 
-    // The document with its buffer as a data URI.
+    // Returns the document with its buffer as a data URI.
     std::string text() const;
-    // The document as a GLB.
+    // Returns the document as a GLB.
     std::string glb() const;
 
-    // The buffers of the document: the first holds `buffer`, by data URI or as the chunk of a GLB.
+    // Returns the buffers of the document. The first holds `buffer`, as a data URI or as the chunk of a GLB.
     Json buffers(bool embedded) const;
 
     Json root;
@@ -84,26 +84,26 @@ private:
     static const char* typeName(int components);
 };
 
-// Four-byte little-endian number, as GLB headers are made of.
+// Returns a four-byte little-endian number, as in GLB headers.
 std::string word(std::uint32_t value);
-// A GLB chunk, padded to four bytes.
+// Returns a GLB chunk, padded to four bytes.
 std::string chunk(std::uint32_t type, std::string payload, char padding);
 
 std::string base64(const Bytes& bytes);
 
-// Writes `text` to a file of a fresh folder and imports that.
+// Writes `text` to a file in a new folder and imports it.
 Result<Scene> importText(const std::string& text, const ImportOptions& options = {});
 Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options = {});
 
-// Warnings of that kind.
+// Returns the number of warnings of that kind.
 std::size_t countWarnings(const Scene& scene, std::string_view id);
-// The first warning of that kind; an empty one where there is none.
+// Returns the first warning of that kind; an empty one if there is none.
 Diagnostic findWarning(const Scene& scene, std::string_view id);
 
-// PNG, 1 x 2 pixels of 8 bits, RGBA: (255, 0, 128, 64) above (1, 2, 3, 4).
+// A PNG of 1 x 2 pixels of 8 bits, RGBA: (255, 0, 128, 64) above (1, 2, 3, 4).
 inline constexpr const char* kPng8 =
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAACCAYAAACZgbYnAAAAEklEQVR4nGP4z9DgwMDIxMwCAA4VAcozrSjMAAAAAElFTkSuQmCC";
-// PNG that announces 16000 x 16000 pixels and holds none of them.
+// A PNG that claims 16000 x 16000 pixels and contains none of them.
 inline constexpr const char* kPngBomb =
     "iVBORw0KGgoAAAANSUhEUgAAPoAAAD6ACAYAAABBft/eAAAACUlEQVR4nGMAAAABAAFe/335AAAAAElFTkSuQmCC";
 

@@ -1,4 +1,4 @@
-// Image formats: PNG of every kind, WebP, KTX2, and which source of a texture is taken.
+// Tests image formats: PNG of every kind, WebP, KTX2, and which source of a texture is taken.
 #include "gltf/basisu.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
@@ -15,7 +15,7 @@ namespace {
 
 const ImportOptions kDecode{.decodeImages = true};
 
-// A material whose base colour is the image of those bytes.
+// Returns a material whose base colour is the image with those bytes.
 GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png") {
     GltfBuilder builder;
     const int view = builder.addView(bytes.data(), bytes.size());
@@ -136,7 +136,7 @@ TEST(GltfWebp, ExplainsDamage) {
     EXPECT_TRUE(errorOf(range).starts_with("json-missing"));
 }
 
-// The start of a KTX2 file.
+// Returns the start of a KTX2 file.
 Bytes ktx2Start() {
     Bytes bytes{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
     bytes.resize(80);

@@ -1,4 +1,5 @@
-// KHR_materials_*: factors with their ranges, textures slot by slot, and which extension wins over which.
+// Tests KHR_materials_*: factors with their ranges, textures slot by slot, and which extension takes
+// precedence.
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 namespace glint::test {
 namespace {
 
-// A file of one material, and of two textures of one image for it.
+// Returns a file with one material, and two textures of one image for it.
 GltfBuilder withMaterial(Json material) {
     GltfBuilder builder;
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
@@ -112,7 +113,7 @@ TEST(GltfMaterialExtensions, AreReadToTheLastValue) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
-// Where each slot's texture stands: the extension (or "pbrMetallicRoughness", or "") and the member.
+// The place of each slot's texture: the extension (or "pbrMetallicRoughness", or "") and the member.
 struct SlotPlace {
     const char* owner;
     const char* member;
@@ -270,7 +271,7 @@ TEST(GltfMaterialExtensions, ClampWhatIsOutOfRangeWithAWarning) {
         const Diagnostic warning = findWarning(scene, "material-range");
         EXPECT_NE(warning.where.find(entry.member), std::string::npos) << warning.where;
         EXPECT_FALSE(warning.hint.empty());
-        // Of the wrong type, it is refused.
+        // A value of the wrong type is refused.
         material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = "much";
         const Result<Scene> refused = import(withMaterial(material));
         ASSERT_FALSE(refused.ok());
@@ -285,7 +286,7 @@ TEST(GltfMaterialExtensions, TakeTheLimitsOfTheirRanges) {
         "KHR_materials_volume": {"attenuationDistance": 1.7976931348623157e308}})");
     EXPECT_EQ(onlyMaterial(scene).ior.ior, 0.0F);
     EXPECT_EQ(onlyMaterial(scene).iridescence.thicknessMinimum, 500.0F);
-    // As good as infinite.
+    // The distance is practically infinite.
     EXPECT_EQ(onlyMaterial(scene).volume.attenuationDistance, 0.0F);
     EXPECT_TRUE(scene.warnings.empty());
 }

@@ -12,7 +12,7 @@ std::string pngUri(const char* base64Text) {
     return std::string("data:image/png;base64,") + base64Text;
 }
 
-// A file with one texture and one material, whose base colour uses it; the rest is the test's.
+// Returns a file with one texture and one material whose base colour uses it. The test adds the rest.
 GltfBuilder texturedMaterial() {
     GltfBuilder builder;
     builder.append("images", {{"uri", pngUri(kPng8)}});
@@ -269,7 +269,7 @@ TEST(GltfImages, ExplainsWhatItCannotDecode) {
 TEST(GltfImages, DecodesFromBufferViews) {
     GltfBuilder builder = texturedMaterial();
     const std::string uri = pngUri(kPng8);
-    // The same bytes by way of the buffer: decoded by the importer's own data URI.
+    // The same bytes come through the buffer, so the importer's own data URI code decodes them.
     builder.root["buffers"] = Json::array({{{"byteLength", 75}, {"uri", uri}}});
     builder.root["bufferViews"] = Json::array({{{"buffer", 0}, {"byteLength", 75}}});
     builder.root["images"][0] = {{"bufferView", 0}, {"mimeType", "image/png"}};

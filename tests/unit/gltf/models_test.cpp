@@ -1,4 +1,4 @@
-// Scenes by others: each imports, or ends in a diagnostic that says why.
+// Imports scenes made by others: each imports, or ends in a diagnostic that says why.
 #include "gltf/import.h"
 #include "plan/plan.h"
 
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models";
 
-// Every .gltf and .glb below a folder, sorted.
+// Returns every .gltf and .glb below a folder, sorted.
 std::vector<fs::path> findModels(const fs::path& folder) {
     std::vector<fs::path> models;
     std::error_code error;
@@ -31,7 +31,7 @@ std::vector<fs::path> findModels(const fs::path& folder) {
     return models;
 }
 
-// What every reader of a Scene relies on.
+// Expects everything on which the readers of a Scene rely.
 void expectSound(const Scene& scene) {
     const int materials = static_cast<int>(scene.materials.size());
     const auto inRange = [](int index, std::size_t size) {
@@ -96,7 +96,7 @@ TEST(GltfModels, AllImport) {
     }
 }
 
-// Whatever material extension the samples use is shaded: none is left out for want of support.
+// Glint shades every material extension that the samples use.
 TEST(GltfModels, EveryMaterialExtensionIsShaded) {
     const std::vector<fs::path> models = findModels(kModels / "features");
     if (models.empty()) {

@@ -1,4 +1,4 @@
-// Animations, skins and morph targets: what is read, and what is said of bad ones.
+// Tests animations, skins and morph targets: what is read, and the messages about bad ones.
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::string errorId(const GltfBuilder& builder) {
     return scene ? "imported" : scene.error().id;
 }
 
-// A triangle that an animation of one channel moves.
+// A triangle that an animation with one channel moves.
 struct Animated {
     explicit Animated(const std::string& path, const std::vector<float>& times = {0, 1}, int output = -1,
                       int components = 3) {
@@ -98,7 +98,7 @@ TEST(GltfAnimations, LeaveOutBadKeyframesWithAWarning) {
         EXPECT_TRUE(scene.animations.at(0).channels.empty());
         EXPECT_EQ(countWarnings(scene, "animation-keyframes"), 1U) << times[0] << ", " << times[1];
     }
-    // Too few values, values that are none, an interpolation that there is not.
+    // There are too few values, values that are not finite, or an unknown interpolation.
     EXPECT_EQ(countWarnings(Animated("rotation").import(), "animation-keyframes"), 1U);
     Animated infinite("translation");
     infinite.animation["samplers"][0]["output"] =
@@ -118,7 +118,7 @@ TEST(GltfAnimations, LeaveOutChannelsThatDriveNothing) {
     Animated matrix("translation");
     matrix.builder.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     EXPECT_EQ(countWarnings(matrix.import(), "animation-channel"), 1U);
-    // Those of a node outside of the scene, or of none, are silent.
+    // Channels of a node outside of the scene, or of no node, cause no warning.
     Animated outside("translation");
     outside.builder.root["nodes"].push_back({{"name", "apart"}});
     outside.animation["channels"][0]["target"]["node"] = 1;
@@ -150,7 +150,7 @@ TEST(GltfAnimations, AreChecked) {
     EXPECT_EQ(errorId(typed.builder), "json-type");
 }
 
-// A triangle that follows two joints, with as many sets of influences as there are weights.
+// Returns a triangle that follows two joints, with as many sets of influences as there are weights.
 GltfBuilder skinned(const std::vector<std::vector<float>>& weights) {
     GltfBuilder builder;
     Json& primitive = builder.addTriangle();

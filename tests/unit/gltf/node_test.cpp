@@ -34,7 +34,7 @@ void expectNear(const Matrix4& actual, const Matrix4& expected) {
 }
 
 TEST(GltfNodes, ComposesTransforms) {
-    // Turned by 90 degrees about Z, then moved; the child mirrored and stretched.
+    // The top is turned by 90 degrees about Z, then moved; the child is mirrored and stretched.
     const Scene scene = mustImport(R"("nodes": [
         {"name": "top", "translation": [1, 2, 3], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476],
          "children": [1]},

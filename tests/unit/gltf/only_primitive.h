@@ -1,4 +1,4 @@
-// What most geometry tests look at.
+// Access to the only primitive, which most geometry tests check.
 #pragma once
 
 #include "unit/gltf/gltf_builder.h"
@@ -7,7 +7,7 @@
 
 namespace glint::test {
 
-// The only primitive of a scene that must import.
+// Returns the only primitive of a scene that must import.
 inline const Primitive& onlyPrimitive(const Result<Scene>& scene) {
     static const Primitive kNone;
     if (!scene || scene->meshes.empty() || scene->meshes[0].primitives.empty()) {

@@ -11,7 +11,7 @@ namespace glint::test {
 
 namespace {
 
-// Adds an attribute that has a value for each point.
+// Adds an attribute that has one value for each point.
 template <typename T>
 void addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType dataType,
                   std::uint32_t id, const std::vector<T>& values) {

@@ -1,4 +1,4 @@
-// Compressed geometry: Draco and meshopt, round trips through the libraries' encoders, and damage.
+// Tests compressed geometry: Draco and meshopt, round trips through the libraries' encoders, and damage.
 #include "unit/gltf/only_primitive.h"
 #include "unit/gltf/packed_scenes.h"
 
@@ -34,7 +34,8 @@ Json& meshoptOf(GltfBuilder& builder, std::size_t view) {
     return builder.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
 }
 
-// Triangles as corners by position, rotated so that the least comes first: the same whatever the order.
+// Returns triangles as corners by position, rotated so that the smallest comes first. The result does not
+// depend on the order.
 std::set<std::vector<Float3>> triangleSet(const Primitive& primitive) {
     std::set<std::vector<Float3>> triangles;
     for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
@@ -128,8 +129,8 @@ TEST(GltfDraco, ExplainsDamage) {
 }
 
 TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
-    // Header without metadata: "DRACO", version 2.2, a mesh, the method, no flags, then the counts as varints
-    // (seven bits a byte, most significant first).
+    // The header without metadata: "DRACO", version 2.2, a mesh, the method, no flags, then the counts as
+    // varints (seven bits a byte, most significant first).
     const auto withCounts = [](bool sequential) {
         Bytes bytes{'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(sequential ? 0 : 1), 0, 0};
         if (!sequential) {
@@ -256,7 +257,7 @@ TEST(GltfMeshopt, BoundsWhatItUnpacks) {
     meshoptOf(builder, 0)["count"] = count;
     builder.root["bufferViews"][0]["byteLength"] = count * 12;
     expectError(builder, "meshopt-size", "/bufferViews/0", "no data can");
-    // Zeros pack well: the budget holds for what comes out.
+    // Zeros are packed very small, so the limit must apply to the unpacked size.
     constexpr std::size_t kCount = 10000;
     const std::vector<std::array<float, 3>> zeros(kCount);
     GltfBuilder large;

@@ -1,4 +1,4 @@
-// PNG files of every kind, for tests of what is read: uncompressed.
+// Writes uncompressed PNG files of every kind, for tests of reading them.
 #pragma once
 
 #include "base/files.h"
@@ -17,7 +17,7 @@ struct PngSpec {
     std::uint32_t height = 1;
     std::uint8_t bitDepth = 8;
     PngColor color = PngColor::Rgba;
-    // Chunks between IHDR and IDAT, type and content: PLTE, tRNS.
+    // The chunks between IHDR and IDAT, type and content: PLTE, tRNS.
     std::vector<std::pair<std::string, Bytes>> chunks;
     Bytes rows;  // as PNG stores them, big-endian, without the filter byte of each row
 };

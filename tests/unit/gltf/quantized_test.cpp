@@ -1,4 +1,4 @@
-// KHR_mesh_quantization: every component type of every attribute, normalised or not.
+// Tests KHR_mesh_quantization: every component type of every attribute, normalised or not.
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TYPED_TEST(GltfQuantization, PositionsAndTexCoords) {
     constexpr T kLeast = std::numeric_limits<T>::lowest();
     for (const bool normalized : {false, true}) {
         const float unit = normalized ? static_cast<float>(kLargest) : 1.0F;
-        // glTF: max(c / largest, -1) for signed types.
+        // In glTF this is max(c / largest, -1) for signed types.
         const float least = normalized ? std::max(kLeast / unit, -1.0F) : static_cast<float>(kLeast);
         GltfBuilder builder = quantizedScene();
         Json primitive;

@@ -1,4 +1,4 @@
-// Attributes that are not finite or not unit.
+// Tests attributes that are not finite or not unit vectors.
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ bool isSound(const Primitive& primitive) {
            finite(primitive.colors) && unit(primitive.normals) && unit(primitive.tangents);
 }
 
-// One value of each kind that arithmetic stumbles over, at each place of each attribute.
+// Puts a value of each difficult kind at each place of each attribute.
 TEST(GltfRepair, NoValueSpreads) {
     const std::vector<std::pair<const char*, int>> attributes{
         {"POSITION", 3}, {"NORMAL", 3}, {"TANGENT", 4}, {"TEXCOORD_0", 2}, {"TEXCOORD_1", 2}, {"COLOR_0", 4}};
@@ -131,14 +131,14 @@ TEST(GltfRepair, NoValueSpreads) {
                     }
                     primitive["attributes"][name] = builder.addAccessor<float>(values, components);
                 }
-                // A second triangle without the first vertex, so that there is something left.
+                // A second triangle does not use the first vertex, so that one triangle remains.
                 primitive["indices"] =
                     builder.addAccessor<std::uint8_t>({0, 1, 2, 0, 0, 0, 1, 1, 1, 2, 2, 2}, 1);
                 builder.addMesh(primitive);
                 const Result<Scene> scene = import(builder);
                 const Primitive& read = onlyPrimitive(scene);
                 EXPECT_TRUE(isSound(read)) << broken << "[" << place << "] = " << value;
-                // A value that a float holds is no damage, but the sign of a tangent is 1 or -1.
+                // A value that a float can hold is no damage, but the sign of a tangent must be 1 or -1.
                 const bool isDamage = !std::isfinite(value);
                 EXPECT_EQ(scene->warnings.size(), isDamage ? 1U : 0U)
                     << broken << "[" << place << "] = " << value;
@@ -166,7 +166,7 @@ TEST(GltfRepair, VectorsOfAnyLengthBecomeUnit) {
     }
 }
 
-// The geometric normal of a triangle as large as floats go, and of one as small.
+// Tests the geometric normal of a triangle as large as floats allow, and of one as small.
 TEST(GltfRepair, SubstitutesAreUnitAtEveryScale) {
     for (const float size : {1e-38F, 1e38F, kHuge}) {
         GltfBuilder builder;
@@ -198,7 +198,7 @@ TEST(GltfRepair, SparseValuesAreRepairedToo) {
     EXPECT_EQ(findWarning(*scene, "normal-invalid").message.substr(0, 2), "2 ");
 }
 
-// JSON has no NaN; its largest numbers are infinities or overflow when transforms multiply.
+// JSON has no NaN. Its largest numbers become infinite, or overflow when transforms are multiplied.
 TEST(GltfRepair, TransformsThatOverflowAreRefused) {
     const auto idOf = [](const char* node) {
         GltfBuilder builder;

@@ -8,8 +8,8 @@
 namespace glint::test {
 namespace {
 
-// Three triangles: material 0 with another in both variants, material 0 with one in Night alone, and no
-// material.
+// Returns three triangles: material 0 with another one in both variants, material 0 with another one only in
+// Night, and no material.
 GltfBuilder withVariants() {
     GltfBuilder builder;
     for (const char* name : {"plain", "red", "blue"}) {
@@ -49,7 +49,7 @@ TEST(GltfVariants, DecideTheMaterialsOfPrimitives) {
     ASSERT_TRUE(day.ok()) << toString(day.error());
     EXPECT_EQ(materialsOf(*day), (std::vector<int>{1, 0, 1}));
     EXPECT_EQ(day->variant, "Day");
-    // No primitive is left without a material.
+    // No primitive remains without a material.
     EXPECT_EQ(day->defaultMaterial, -1);
     const Result<Scene> night = import(withVariants(), with("Night"));
     ASSERT_TRUE(night.ok()) << toString(night.error());

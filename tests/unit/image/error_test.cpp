@@ -26,7 +26,7 @@ TEST(ImageErrors, AreNothingForTheReferenceItself) {
 }
 
 TEST(ImageErrors, AreThoseOfTheirFormulas) {
-    // Exposed by two stops: 0.4 against 0.8.
+    // Exposed by two stops, this compares 0.4 with 0.8.
     const ImageErrors errors = measureErrors(constant(0.1F), constant(0.2F), 2.0);
     EXPECT_NEAR(errors.rmse, 0.4, 1e-6);
     EXPECT_NEAR(errors.relMse, 0.16 / (0.64 + 0.01), 1e-6);
@@ -67,7 +67,7 @@ TEST(MeanImage, SaysHowCertainItIs) {
         squares += double{pixel[0]} * pixel[0];
     }
     EXPECT_NEAR(squares / 1e4, 0.25 / kBlocks, 0.03 * 0.25 / kBlocks);
-    // The errors that its mean has against the truth are those that it says.
+    // The stated errors must match those that the mean really has.
     const ImageErrors stated = noiseOf(sum.mean(), error, 0.0);
     const ImageErrors real = measureErrors(sum.mean(), constant(2.0F, 100, 100), 0.0);
     EXPECT_NEAR(real.relMse / stated.relMse, 1.0, 0.05);

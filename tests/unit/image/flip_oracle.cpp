@@ -14,7 +14,7 @@ struct Triple {
     double a, b, c;
 };
 
-// IEC 61966-2-1's matrix to seven digits, and the solution of its three equations by Cramer's rule.
+// The matrix of IEC 61966-2-1 to seven digits, and the solution of its three equations by Cramer's rule.
 constexpr double kXyz[3][3] = {
     {0.4123908, 0.3575843, 0.1804808}, {0.2126390, 0.7151687, 0.0721923}, {0.0193308, 0.1191948, 0.9505322}};
 
@@ -24,7 +24,7 @@ double determinant(const double (&m)[3][3]) {
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-// X, Y and Z over those of white.
+// Returns X, Y and Z relative to those of white.
 Triple toXyz(const Triple& rgb) {
     double xyz[3];
     for (int i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ double hyab(const Triple& p, const Triple& q) {
     return std::abs(p.a - q.a) + std::sqrt((p.b - q.b) * (p.b - q.b) + (p.c - q.c) * (p.c - q.c));
 }
 
-// A picture of one channel, which goes on beyond its borders.
+// A picture of one channel that continues beyond its borders.
 struct Channel {
     int width, height;
     std::vector<double> values;
@@ -75,10 +75,10 @@ struct Channel {
     }
 };
 
-// The weight of a filter x pixels right and y down.
+// Returns the weight of a filter x pixels right and y down.
 using Weight = std::function<double(double x, double y)>;
 
-// One normalisation for both: weights above 0 sum to 1, those below to -1.
+// Both signs are normalised: weights above 0 sum to 1, those below to -1.
 Channel convolve(const Channel& in, int radius, const Weight& weight) {
     double above = 0.0;
     double below = 0.0;

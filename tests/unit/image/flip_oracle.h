@@ -1,4 +1,5 @@
-// LDR-FLIP once more, as slow and as plain as its definition: filters of two dimensions, doubles throughout.
+// A second implementation of LDR-FLIP, as slow and as plain as its definition: filters of two dimensions,
+// doubles throughout.
 #pragma once
 
 #include <glint/renderer.h>
@@ -7,7 +8,7 @@
 
 namespace glint::testing {
 
-// What flipMap() of image/flip.h returns, from the formulas of Andersson and others 2020.
+// Returns the same as flipMap() of image/flip.h, from the formulas of Andersson and others 2020.
 std::vector<double> plainFlip(const LinearImage& image, const LinearImage& reference, double pixelsPerDegree);
 
 }  // namespace glint::testing

@@ -19,7 +19,7 @@ LinearImage constant(const Rgb& color, std::uint32_t width = 24, std::uint32_t h
     return image;
 }
 
-// Gradients, an edge, a line, single bright pixels and saturated colours.
+// Returns a picture with gradients, an edge, a line, single bright pixels and saturated colours.
 LinearImage picture(std::uint32_t width, std::uint32_t height) {
     LinearImage image = constant({0.0F, 0.0F, 0.0F}, width, height);
     for (std::uint32_t y = 0; y < height; ++y) {
@@ -99,8 +99,8 @@ TEST(Flip, TakesPicturesOfAnySize) {
     }
 }
 
-// Without edges and points, what is left is the colour pipeline: XYZ, L*a*b*, Hunt, HyAB, power 0.7, the bend
-// of the range. The values were worked out apart from this code, with the matrix of ITU-R BT.709.
+// Without edges and points only the colour pipeline is left: XYZ, L*a*b*, Hunt, HyAB, power 0.7, the bend of
+// the range. The values were computed without this code, with the matrix of ITU-R BT.709.
 TEST(Flip, ConstantPicturesHaveTheDifferenceOfTheirColors) {
     struct Row {
         Rgb a, b;

@@ -18,7 +18,7 @@ using testing::HdrEncoding;
 constexpr int kWidth = 150;
 constexpr int kHeight = 5;
 
-// Numbers that RGBE holds exactly: 8 bits of mantissa under a common exponent.
+// RGBE holds these numbers exactly: 8 bits of mantissa with a common exponent.
 std::vector<std::array<float, 3>> exactPixels() {
     std::vector<std::array<float, 3>> pixels;
     for (int i = 0; i < kWidth * kHeight; ++i) {
@@ -45,7 +45,7 @@ TEST_P(Hdr, ReadsWhatWasWritten) {
     ASSERT_EQ(image->height, 5U);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            // The common exponent is that of the greatest, whose mantissa is cut to 8 bits.
+            // The common exponent is that of the largest value, whose mantissa is cut to 8 bits.
             const float step = std::max(pixels[i][0], pixels[i][1]) / 128.0F;
             EXPECT_NEAR(image->pixels[i][channel], pixels[i][channel], step) << i;
         }
@@ -63,7 +63,7 @@ TEST_P(Hdr, RefusesEveryTruncation) {
     }
 }
 
-// Any byte may be wrong: the result is an image of the same size or a diagnostic.
+// Any byte may be wrong. The result is an image of the same size, or a diagnostic.
 TEST_P(Hdr, SurvivesBrokenBytes) {
     const std::vector<std::uint8_t> whole = encodeHdr(kWidth, kHeight, exactPixels(), GetParam());
     int refused = 0;

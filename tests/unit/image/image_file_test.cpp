@@ -123,7 +123,7 @@ TEST_F(ImageFile, RefusesMissingAndBrokenFiles) {
     }
 }
 
-// Cut anywhere, a file is refused or, where only trailing bytes are missing, read; it never crashes.
+// A file that is cut anywhere is refused or, if only trailing bytes are missing, read. It never crashes.
 TEST_F(ImageFile, SurvivesTruncation) {
     for (const char* name : {"a.png", "a.exr"}) {
         ASSERT_TRUE(writeImage(path(name), ramp(9, 9), 0.0));

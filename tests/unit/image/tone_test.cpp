@@ -18,23 +18,23 @@ TEST(Tone, SrgbIsItsOwnInverse) {
     EXPECT_NEAR(srgbToLinear(0.5F), 0.21404F, 1e-5F);
 }
 
-// Values worked out by hand from the specification's formulas.
+// The values were computed by hand from the specification's formulas.
 TEST(Tone, NeutralMatchesTheSpecification) {
-    // In the dark: x - x² / 0.16 is taken away, so grey 0.04 becomes 0.01.
+    // In the dark, x - x² / 0.16 is subtracted, so grey 0.04 becomes 0.01.
     EXPECT_NEAR(toneMapNeutral({0.04F, 0.04F, 0.04F})[0], 0.01F, 1e-6F);
-    // In between: 0.04 is taken away.
+    // In between, 0.04 is subtracted.
     const Rgb middle = toneMapNeutral({0.5F, 0.3F, 0.2F});
     EXPECT_NEAR(middle[0], 0.46F, 1e-6F);
     EXPECT_NEAR(middle[1], 0.26F, 1e-6F);
     EXPECT_NEAR(middle[2], 0.16F, 1e-6F);
-    // Above: grey 1.04 has p = 1, and 1 - 0.24² / (1 + 1 - 1.52) = 0.88.
+    // Above, grey 1.04 has p = 1, and 1 - 0.24² / (1 + 1 - 1.52) = 0.88.
     EXPECT_NEAR(toneMapNeutral({1.04F, 1.04F, 1.04F})[1], 0.88F, 1e-6F);
 }
 
 TEST(Tone, NeutralStaysInRangeAndIsMonotonic) {
     float previous = -1.0F;
     float value = 0.0F;
-    // Up to about a million.
+    // The loop goes up to about a million.
     for (int step = 0; step < 195; ++step) {
         const Rgb mapped = toneMapNeutral({value, value * 0.5F, value * 0.1F});
         for (const float channel : mapped) {
@@ -78,7 +78,7 @@ TEST(Tone, DisplayShowsWhatIsNotFinite) {
     EXPECT_GE(toDisplay({1e38F, 1e38F, 1e38F}, 100.0)[0], 254);
 }
 
-// What FLIP looks at is what a PNG holds, but for the rounding to 8 bits.
+// FLIP looks at the pixels of a PNG before they are rounded to 8 bits.
 TEST(Tone, DisplayedImageIsWhatIsWrittenUnrounded) {
     const LinearImage image{4,
                             1,

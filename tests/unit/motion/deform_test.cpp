@@ -33,9 +33,10 @@ TEST(Deform, VerticesFollowTheMeanOfTheirJoints) {
     primitive.targets.resize(1);
     primitive.targets[0].positions = {{1, 0, 0}, {0, 0, 0}};
     primitive.influences = {2, {0, 1, 1, 0}, {0.25F, 0.75F, 1.0F, 0.0F}};
-    // The first stays, the second triples and moves by 4 in Z.
+    // The first joint does nothing; the second scales by three and moves by 4 in Z.
     const std::vector<Matrix4> joints{kIdentity, {3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 4, 1}};
-    // Morphed before it is skinned: (2, 0, 0) goes to a quarter of itself and three quarters of (6, 0, 4).
+    // The vertex is morphed before it is skinned: (2, 0, 0) becomes a quarter of itself plus three quarters
+    // of (6, 0, 4).
     EXPECT_EQ(deformedPositions(primitive, std::vector{1.0}, joints),
               (std::vector<Double3>{{5, 0, 3}, {0, 3, 4}}));
     EXPECT_EQ(deformedPositions(primitive, {}, {}), (std::vector<Double3>{{1, 0, 0}, {0, 1, 0}}));

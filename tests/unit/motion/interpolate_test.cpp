@@ -1,4 +1,4 @@
-// Interpolation against values worked out by hand from glTF 2.0, appendix C.
+// Compares interpolation with values computed by hand from glTF 2.0, appendix C.
 #include "motion/interpolate.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ void expectNear(const Quaternion& actual, const Quaternion& expected) {
     }
 }
 
-// About Z.
+// Returns a turn about Z.
 Quaternion turned(double angle) {
     return {0.0, 0.0, std::sin(0.5 * angle), std::cos(0.5 * angle)};
 }
@@ -63,9 +63,9 @@ TEST(Interpolation, LinearGoesStraight) {
     expectNear(sampleNumbers(sampler, 9.0), {0, 2});
 }
 
-// Over two seconds from 1 with slope 3 to 5 with slope -1: at the middle
-// 0.5 * 1 + 2 * 0.125 * 3 + 0.5 * 5 - 2 * 0.125 * -1 = 4; at a quarter
-// 0.84375 * 1 + 2 * 0.140625 * 3 + 0.15625 * 5 - 2 * 0.046875 * -1 = 2.5625.
+// The spline goes over two seconds from 1 with slope 3 to 5 with slope -1. At the middle: 0.5 * 1 + 2 * 0.125
+// * 3 + 0.5 * 5 - 2 * 0.125 * -1 = 4. At a quarter: 0.84375 * 1 + 2 * 0.140625 * 3 + 0.15625 * 5 - 2 *
+// 0.046875 * -1 = 2.5625.
 TEST(Interpolation, CubicSplineFollowsItsTangents) {
     const AnimationSampler sampler =
         makeSampler(Interpolation::CubicSpline, {1.0F, 3.0F}, 1, {99, 1, 3, -1, 5, 99});
@@ -89,30 +89,30 @@ TEST(Interpolation, OneKeyframeHoldsAlways) {
 TEST(Interpolation, RotationsTurnEvenly) {
     const AnimationSampler sampler =
         makeSampler(Interpolation::Linear, {0.0F, 1.0F}, 4, {0, 0, 0, 1, 0, 0, 1, 0});
-    // Half a turn: a third of the time is 60 degrees.
+    // For half a turn, a third of the time is 60 degrees.
     expectNear(sampleRotation(sampler, 1.0 / 3.0), turned(kPi / 3.0));
     expectNear(sampleRotation(sampler, 0.5), turned(kPi / 2.0));
     expectNear(sampleRotation(sampler, 2.0), turned(kPi));
 }
 
 TEST(Interpolation, RotationsTakeTheShorterWay) {
-    // From 0 to 270 degrees is 90 degrees back.
+    // The short way from 0 to 270 degrees is 90 degrees back.
     const Quaternion half = slerp(turned(0.0), turned(1.5 * kPi), 0.5);
     const Quaternion expected = turned(-0.25 * kPi);
     const double sign = half[3] * expected[3] < 0.0 ? -1.0 : 1.0;
     expectNear({sign * half[0], sign * half[1], sign * half[2], sign * half[3]}, expected);
-    // Equal ones, and opposite quaternions of one rotation.
+    // Tests equal quaternions, and opposite quaternions of one rotation.
     expectNear(slerp(turned(1.0), turned(1.0), 0.3), turned(1.0));
     const Quaternion q = turned(1.0);
     expectNear(slerp(q, {-q[0], -q[1], -q[2], -q[3]}, 0.7), q);
-    // So near that sines of the angle are lost in rounding, and no nearer.
+    // Some of these are so close that sines of the angle are lost in rounding, and some are just above that.
     for (const double angle : {1e-12, 1e-8, 1e-6, 1e-3}) {
         expectNear(slerp(turned(0.0), turned(angle), 0.25), turned(0.25 * angle));
     }
 }
 
 TEST(Interpolation, RotationsAreUnit) {
-    // Stored quaternions are rounded, and those between the keyframes of a spline are not unit.
+    // Stored quaternions are rounded, and those between the keyframes of a spline are not unit quaternions.
     const AnimationSampler step = makeSampler(Interpolation::Step, {0.0F}, 4, {0, 0, 2, 0});
     expectNear(sampleRotation(step, 0.0), {0, 0, 1, 0});
     const AnimationSampler none = makeSampler(Interpolation::Step, {0.0F}, 4, {0, 0, 0, 0});
@@ -120,7 +120,7 @@ TEST(Interpolation, RotationsAreUnit) {
     const Quaternion zero{};
     const AnimationSampler spline = makeSampler(Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
                                                 floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
-    // Without tangents the middle is the mean, (0, 0, 0.5, 0.5) before its length is made 1.
+    // Without tangents the middle is the mean, (0, 0, 0.5, 0.5), before it is normalised.
     expectNear(sampleRotation(spline, 0.5), turned(0.5 * kPi));
 }
 

@@ -1,4 +1,4 @@
-// Boxes of deformed meshes, and the rules that they decide.
+// Tests boxes of deformed meshes, and the rules that depend on them.
 #include "motion_rules.h"
 
 #include "motion_bounds.h"

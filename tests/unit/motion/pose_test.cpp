@@ -23,7 +23,7 @@ int addSampler(Animation& animation, std::size_t width, std::vector<float> times
     return static_cast<int>(animation.samplers.size()) - 1;
 }
 
-// A node at (1, 0, 0), and below it one at (0, 2, 0) with a mesh of two targets.
+// Returns a node at (1, 0, 0), and below it one at (0, 2, 0) with a mesh of two targets.
 Scene twoNodes() {
     Scene scene;
     scene.nodes.resize(2);
@@ -41,7 +41,7 @@ TEST(Pose, RestIsWhereTheFilePlaces) {
     const Scene scene = twoNodes();
     expectNear(scene.nodes[1].world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 0, 1});
     EXPECT_EQ(scene.nodes[1].weights, (std::vector<double>{0.25, 0.5}));
-    // No animation, and one that has no channel.
+    // Tests no animation, and one that has no channel.
     Scene still = twoNodes();
     still.animations.resize(1);
     const std::array<std::size_t, 1> first{0};
@@ -62,13 +62,14 @@ TEST(Pose, ChannelsMoveTheirNodesAndWhatIsBelow) {
                           {1, AnimationPath::Weights, morph}};
     const std::array<std::size_t, 1> first{0};
     const Pose pose = poseAt(scene, first, 0.5);
-    // 90 degrees about Z, twice as long in X, at (3, 0, 0); the child's (0, 2, 0) turns to (-2, 0, 0).
+    // The node is turned by 90 degrees about Z, twice as long in X, at (3, 0, 0). The child's (0, 2, 0) turns
+    // to (-2, 0, 0).
     expectNear(pose.worlds[0], {0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1});
     expectNear(pose.worlds[1], {0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1});
     EXPECT_EQ(pose.weights[1], (std::vector<double>{0.5, 0.5}));
     applyPose(pose, scene);
     EXPECT_EQ(scene.nodes[1].world, pose.worlds[1]);
-    // Rest is what it was.
+    // The rest pose is the original one.
     applyPose(restPose(scene), scene);
     expectNear(scene.nodes[1].world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 0, 1});
     EXPECT_EQ(scene.nodes[1].weights, (std::vector<double>{0.25, 0.5}));
@@ -100,7 +101,7 @@ TEST(Pose, CamerasAndLightsFollowTheirNodes) {
     scene.lights[1].type = LightType::Spot;
     scene.nodes[1].camera = 0;
     scene.nodes[1].light = 1;
-    // A quarter turn about Y, twice the size: -Z becomes -X.
+    // A quarter turn about Y at twice the size: -Z becomes -X.
     scene.nodes[0].rest.rotation = {0, kHalf, 0, kHalf};
     scene.nodes[0].rest.scale = {2, 2, 2};
     applyPose(restPose(scene), scene);
@@ -108,7 +109,7 @@ TEST(Pose, CamerasAndLightsFollowTheirNodes) {
     EXPECT_EQ(scene.lights[1].position, (Float3{1, 4, 0}));
     EXPECT_NEAR(scene.lights[1].direction[0], -1.0F, 1e-6F);
     EXPECT_EQ(scene.lights[0].position, Float3{});
-    // Squashed to nothing, they keep their direction.
+    // Even if scaled to nothing, they keep their direction.
     scene.nodes[0].rest.scale = {0, 0, 0};
     scene.nodes[0].rest.translation = {3, 0, 0};
     applyPose(restPose(scene), scene);
@@ -121,7 +122,7 @@ TEST(Pose, JointsTakeTheMeshFromItsBindPose) {
     Scene scene = twoNodes();
     Skin skin;
     skin.joints = {1, 0};
-    // The first was at (0, 1, 0) when the mesh was bound to it.
+    // The first joint was at (0, 1, 0) when the mesh was bound to it.
     skin.inverseBinds = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, kIdentity};
     const std::vector<Matrix4> joints = jointMatrices(scene, skin);
     ASSERT_EQ(joints.size(), 2U);

@@ -1,4 +1,4 @@
-// The clustering against exhaustive search, and what planning promises whatever the keys are.
+// Compares the clustering with exhaustive search, and tests what planning promises for any keys.
 #include "plan/cluster.h"
 
 #include "plan/merge.h"
@@ -55,7 +55,7 @@ std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
     return keys;
 }
 
-// Those of randomKeys() that differ, ascending, as planning has them.
+// Returns the distinct keys of randomKeys(), ascending, as planning has them.
 std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
     std::map<FeatureMask, double> weights;
     while (weights.size() < count) {
@@ -76,7 +76,8 @@ std::vector<Cluster> oneEach(std::size_t count) {
     return clusters;
 }
 
-// Greedy merging and moves are not optimal; they must never be below the optimum, and stay near it.
+// Greedy merging and moves are not optimal. Their cost must never be below the optimum, and must stay near
+// it.
 TEST(Cluster, IsNearTheBestOfAllPartitions) {
     constexpr unsigned kSeed = 20250318;
     RecordProperty("seed", kSeed);
@@ -103,7 +104,7 @@ TEST(Cluster, IsNearTheBestOfAllPartitions) {
     EXPECT_LT(ratios / kScenes, 1.01);
 }
 
-// What the cached partners give is what trying every pair each time gives.
+// The cached partners must give the same result as trying every pair each time.
 TEST(Cluster, TakesTheCheapestPairEachTime) {
     std::mt19937 random(20250319);
     for (int i = 0; i < 20; ++i) {
@@ -119,7 +120,7 @@ TEST(Cluster, TakesTheCheapestPairEachTime) {
                     std::ranges::sort(tried[a].keys);
                     tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(b));
                     const double cost = totalCost(tried, keys);
-                    // Equal ones differ by rounding here: the first pair stays.
+                    // Equal pairs differ by rounding here, so the first pair is kept.
                     if (cost < least - 1e-9) {
                         least = cost;
                         next = std::move(tried);
@@ -134,7 +135,7 @@ TEST(Cluster, TakesTheCheapestPairEachTime) {
     }
 }
 
-// Keys of any features, ascending, whose hits span five orders of magnitude.
+// Returns ascending keys with any features, whose hits span five orders of magnitude.
 std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
     for (const FeatureInfo& info : featureTable()) {
@@ -193,7 +194,7 @@ TEST(Planner, AutoCostsNoMoreThanAnyOtherPolicyWithinTheBudget) {
     EXPECT_GT(compared, 600);
 }
 
-// Also beyond the number of clusters that merging starts with.
+// This also covers more keys than the number of clusters that merging starts with.
 TEST(Planner, AutoIsNoWorseThanNoneWithManyKeys) {
     std::mt19937 random(20250323);
     const std::vector<WeightedKey> keys = wildKeys(random, kMaxStart + 60);
@@ -228,7 +229,7 @@ TEST(Planner, OrderOfEqualHitsIsThatOfTheKeys) {
     }
 }
 
-// The keys that share a case with `key`, itself included.
+// Returns how many keys share a case with `key`, itself included.
 std::size_t companyOf(const std::vector<CaseKeys>& cases, int key) {
     for (const CaseKeys& shaderCase : cases) {
         if (std::ranges::binary_search(shaderCase.keys, key)) {
@@ -238,7 +239,7 @@ std::size_t companyOf(const std::vector<CaseKeys>& cases, int key) {
     return 0;
 }
 
-// Greedy merging does not promise it, but what breaks it is an exception.
+// Greedy merging does not promise this, but violations must be rare.
 TEST(Planner, MoreHitsOfAKeyRarelyMergeItWithMoreKeys) {
     std::mt19937 random(20250326);
     int parted = 0;

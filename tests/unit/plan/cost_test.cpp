@@ -1,4 +1,4 @@
-// The cost model against its formula.
+// Compares the cost model with its formula.
 #include "plan/cost.h"
 
 #include "plan/cost_constants.h"
@@ -19,7 +19,7 @@ using fitted::kLobeBranch;
 
 constexpr FeatureMask kBase = bit(Feature::Normals);
 
-// Of a feature's code, with its fetches.
+// Returns the instructions of a feature's code, with its fetches.
 double instructionsOf(Feature feature) {
     const auto* row = std::ranges::find(fitted::kFeatureCode, feature, &fitted::FeatureCode::feature);
     return row == std::end(fitted::kFeatureCode) ? 0.0 : row->instructions + kFetchCost * row->fetches;
@@ -65,7 +65,7 @@ TEST(Cost, OfAFetchCounts) {
     EXPECT_NEAR(mergingCost(set), kInputBranch + instructionsOf(texture) * (laneChance(0.5) - 0.5), 1e-9);
 }
 
-// The parts add up to the whole, and what no key or every key has costs nothing.
+// The parts add up to the whole. Features that no key or every key has cost nothing.
 TEST(Cost, OfACaseIsThatOfItsBranches) {
     const FeatureMask coated = kBase | bit(Feature::Clearcoat) | bit(Feature::BaseColorTexture);
     const KeySet set = unionOf(toSet({coated, 0.3}), toSet({kBase | bit(Feature::Sheen), 0.1}));
@@ -79,7 +79,7 @@ TEST(Cost, OfACaseIsThatOfItsBranches) {
     EXPECT_NEAR(sum, mergingCost(set), 1e-9);
 }
 
-// More hits of one of two keys never make it cheaper that they share a case.
+// If one of two keys gets more hits, sharing a case never becomes cheaper.
 TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
     const FeatureMask masks[] = {kBase, bit(Feature::Unlit), kBase | bit(Feature::Clearcoat),
                                  kBase | bit(Feature::Sheen) | bit(Feature::BaseColorTexture)};
@@ -140,7 +140,8 @@ TEST(Cost, MeasuredConstantsAreSane) {
         const auto* row =
             std::ranges::find(fitted::kFeatureCode, info.feature, &fitted::FeatureCode::feature);
         if (row == std::end(fitted::kFeatureCode)) {
-            // Rays test alpha before a case is reached; an unlit shader is what the others start from.
+            // Rays test alpha before a case is reached, and an unlit shader is the base to which the others
+            // are compared.
             EXPECT_TRUE(info.feature == Feature::AlphaMask || info.feature == Feature::Unlit) << info.name;
             continue;
         }

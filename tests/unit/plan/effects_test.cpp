@@ -1,4 +1,4 @@
-// Which effects a scene calls for.
+// Tests which effects a scene calls for.
 #include "plan/effects.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(Effects, ReflectionNeedsSomethingSmooth) {
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
     EXPECT_EQ(reasonOf(material, kEffectReflection),
               "material \"Plaster\" has the roughness 0.3, at most 0.3");
-    // Values decide: this one is smooth, and reflects nothing.
+    // Values decide: this material is smooth, but reflects nothing.
     material.specular.factor = 0.0F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     material.specular.factor = 0.01F;
@@ -89,7 +89,7 @@ TEST(Effects, GlossinessIsRoughnessTurnedAround) {
     material.specularGlossiness.given = true;
     material.specularGlossiness.glossinessFactor = 0.5F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
-    // Textures make it rougher only.
+    // Textures can only make it rougher.
     material.texture(TextureSlot::MetallicRoughness).texture = 0;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     material.specularGlossiness.glossinessFactor = 0.8F;

@@ -1,4 +1,5 @@
-// A material and a primitive with every feature, none of them neutral: tests take one away and see what goes.
+// A material and a primitive that have every feature with values that are not neutral. Tests remove one and
+// check which features are dropped.
 #pragma once
 
 #include "plan/plan.h"
@@ -13,7 +14,7 @@ using Dropped = std::vector<std::pair<std::string, std::string>>;
 
 inline constexpr KeyOptions kTested{AlphaPolicy::Tested};
 
-// A primitive with every attribute, so that a material alone decides.
+// Returns a primitive with every attribute, so that the material alone decides.
 inline PrimitiveInputs fullPrimitive() {
     PrimitiveInputs primitive;
     primitive.hasNormals = true;
@@ -37,7 +38,8 @@ inline void setLobes(Material& material) {
     material.dispersion = {true, 0.3F};
 }
 
-// Every feature but Unlit, SpecularGlossiness, which exclude others, and ClearcoatSharesNormal.
+// Returns a material with every feature except Unlit and SpecularGlossiness, which exclude others, and
+// ClearcoatSharesNormal.
 inline Material fullMaterial() {
     Material material;
     material.metallicFactor = 0.5F;

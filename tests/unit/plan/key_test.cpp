@@ -1,4 +1,5 @@
-// Canonical keys: each feature appears when its value matters, and goes, with a reason, when it does not.
+// Tests canonical keys: a key has a feature if its value matters; otherwise the feature is dropped with a
+// reason.
 #include "unit/plan/full_material.h"
 
 #include <gtest/gtest.h>
@@ -54,8 +55,8 @@ TEST(Key, OfTheDefaultMaterialIsEmpty) {
     EXPECT_TRUE(dropped.empty());
 }
 
-// Each neutral value takes its feature out of the key and leaves a reason; its twin in
-// HasEveryFeatureThatMatters keeps it.
+// Each neutral value removes its feature from the key and gives a reason. Its twin in
+// HasEveryFeatureThatMatters keeps the feature.
 struct NeutralCase {
     std::string feature;
     std::function<void(Material&, PrimitiveInputs&)> neutralise;

@@ -1,4 +1,4 @@
-// Keys of the lobes that extensions add: each neutral value beside a twin that is not neutral.
+// Tests keys of the lobes that extensions add: each neutral value beside a twin that is not neutral.
 #include "unit/plan/full_material.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using namespace glint::testing;
 
 using Change = std::function<void(Material&, PrimitiveInputs&)>;
 
-// `neutral` takes the feature out of the key of fullMaterial() and fullPrimitive(); `twin`, which is like it,
+// `neutral` removes the feature from the key of fullMaterial() and fullPrimitive(); `twin`, which is similar,
 // does not.
 struct Pair {
     std::string feature;
@@ -48,7 +48,7 @@ void makeMetal(Material& material) {
     clearTexture(material, TextureSlot::MetallicRoughness);
 }
 
-// Fully metallic, but for a texture.
+// Makes the material fully metallic except for a texture.
 void makeTexturedMetal(Material& material, PrimitiveInputs&) {
     material.metallicFactor = 1.0F;
 }
@@ -139,7 +139,7 @@ std::vector<Pair> lobes() {
              m.iridescence.thicknessMaximum = 0.0F;
          },
          [](Material& m, PrimitiveInputs&) { m.iridescence.thicknessMaximum = 0.0F; }},
-        // Without its texture, the largest thickness is the film's.
+        // Without its texture, the film has the largest thickness.
         {"iridescence", "ThicknessWithoutTexture",
          [](Material& m, PrimitiveInputs&) {
              m.iridescence.thicknessMaximum = 0.0F;

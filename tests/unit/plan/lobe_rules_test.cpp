@@ -1,4 +1,4 @@
-// How lobes and their inputs depend on each other, and on what hits keep.
+// Tests how lobes and their inputs depend on each other, and on the lobes that hits keep.
 #include "unit/plan/full_material.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(LobeKey, SpecularGlossinessTextureIsNeutralWhereBothFactorsAreZero) {
     EXPECT_FALSE(reads());
     material.specularGlossiness.glossinessFactor = 0.5F;
     EXPECT_TRUE(reads());
-    // The factors of the other workflow are not asked.
+    // The factors of the other workflow have no effect.
     material.metallicFactor = 0.0F;
     material.roughnessFactor = 0.0F;
     EXPECT_TRUE(reads());
@@ -66,7 +66,7 @@ TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
     EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
 }
 
-// The coat's normal texture is read once where it is the base's to the last detail.
+// If the coat's normal texture equals the base's in every detail, it is read once.
 TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
     const FeatureMask shares = bit(Feature::ClearcoatSharesNormal);
     const FeatureMask own = bit(Feature::ClearcoatNormalTexture);
@@ -87,7 +87,7 @@ TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
     other = equal;
     other.clearcoat.normalScale = 0.5F;
     EXPECT_EQ(keyOf(other), own);
-    // The base reads none: its scale is 0, and the coat's then is, too.
+    // The base reads no texture, because its scale is 0; the coat's scale is then 0 too.
     other = equal;
     other.normalScale = 0.0F;
     EXPECT_EQ(keyOf(other), own);
@@ -122,7 +122,7 @@ TEST(LobeKey, AnisotropyWithoutTangentsReadsTextureCoordinates) {
     EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord0));
     primitive.hasTexCoords0 = false;
     EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));
-    // A texture's set is the frame's.
+    // The frame uses the set of a texture.
     primitive.hasTexCoords0 = true;
     material.texture(TextureSlot::Anisotropy) = {0, 1, {}, false};
     EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));

@@ -1,4 +1,4 @@
-// Shader IDs that outlive changes of the scene, and the text that keeps them.
+// Tests shader IDs that outlive changes of the scene, and the text that keeps them.
 #include "plan/lock.h"
 
 #include "plan/lock_text.h"
@@ -58,7 +58,7 @@ Plan planOf(const std::vector<Piece>& pieces, const PlanOptions& options) {
     return makePlan(materials, primitives, options);
 }
 
-// Each case's keys by their masks, by shader ID.
+// Returns each case's keys as masks, by shader ID.
 std::map<int, std::set<FeatureMask>> keysById(const Plan& plan) {
     std::map<int, std::set<FeatureMask>> byId;
     for (const Key& key : plan.keys) {
@@ -67,7 +67,7 @@ std::map<int, std::set<FeatureMask>> keysById(const Plan& plan) {
     return byId;
 }
 
-// What every plan promises of its IDs.
+// Checks what every plan promises about its IDs.
 void checkIds(const Plan& plan) {
     ASSERT_EQ(caseCount(plan), keysById(plan).size());
     std::set<std::string> names;
@@ -100,7 +100,7 @@ void change(std::vector<Piece>& pieces, std::mt19937& random) {
     }
 }
 
-// A case keeps its ID if no other case has keys with that ID, and none of its keys has another.
+// A case keeps its ID if no other case has keys with that ID, and none of its keys has another ID.
 void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
     std::map<int, std::set<int>> successors;
     std::map<int, std::set<int>> predecessors;
@@ -138,7 +138,7 @@ TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
             EXPECT_EQ(keysById(plan), keysById(planOf(pieces, options))) << "not deterministic";
             const LockUpdate update = updateLock(options.lockedIds, plan, false);
             options.lockedIds = update.ids;
-            // Once kept, planning again changes nothing.
+            // Once the IDs are kept, planning again changes nothing.
             const LockUpdate again = updateLock(update.ids, planOf(pieces, options), false);
             EXPECT_FALSE(again.changes(update.ids));
             EXPECT_TRUE(again.added.empty() && again.moved.empty());
@@ -149,7 +149,7 @@ TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
     }
 }
 
-// Under `none` a case is a key, so that a key which ever had an ID has it forever.
+// With `none` each key is a case, so a key that ever had an ID keeps it forever.
 TEST(Lock, KeysComeBackWithTheirIds) {
     RecordProperty("seed", kSeed);
     std::mt19937 random(kSeed);
@@ -173,7 +173,7 @@ TEST(Lock, OrderOfMaterialsMeansNothing) {
     std::vector<Piece> pieces;
     for (int i = 0; i < 30; ++i) {
         pieces.push_back(randomPiece(random));
-        // Equal, so that sums of shares do not depend on their order.
+        // The values are equal, so that sums of shares do not depend on their order.
         pieces.back().inputs.expectedHits = 1.0;
     }
     for (const MergePolicy merge : kPolicies) {
@@ -232,14 +232,15 @@ TEST(Lock, MoreKeysThenMoreHitsDecideWhoKeepsAnId) {
         key.share = 0.25;
     }
     EXPECT_EQ(assignShaderIds(keys, single, all), (std::vector<int>{5, 0, 1, 2}));
-    // Of two IDs with a key each, the lower one; who loses one takes the other that it has.
+    // If two IDs have one key each, the lower ID is taken. A case that loses one takes the other ID that it
+    // has.
     EXPECT_EQ(assignShaderIds(keys, {pair}, LockedIds{{1, 9}, {2, 6}}), (std::vector<int>{6, 0, 1}));
     EXPECT_EQ(assignShaderIds(keys, std::vector<CaseKeys>{{{0, 1}}, {{2, 3}}},
                               LockedIds{{1, 6}, {2, 6}, {4, 6}, {8, 7}}),
               (std::vector<int>{6, 7}));
 }
 
-// Two branches gave different keys one ID.
+// Two branches gave different keys the same ID.
 TEST(Lock, SecondClaimOfAnIdGetsANewOne) {
     PlanOptions options{{}, MergePolicy::None};
     options.lockedIds = {{kNormals, 0}, {kTextured, 1}, {kCoated, 1}};
@@ -250,7 +251,7 @@ TEST(Lock, SecondClaimOfAnIdGetsANewOne) {
     EXPECT_EQ(update.moved[0].to, 2);
     EXPECT_TRUE(update.moved[0].lostId);
     EXPECT_TRUE(update.changes(options.lockedIds));
-    // A family shares the ID as a matter of course; the lower of two goes on.
+    // The keys of a family always share an ID; the lower of two stays.
     options.merge = MergePolicy::Family;
     const LockUpdate merged = updateLock(options.lockedIds, planOf({plain(), textured()}, options), false);
     ASSERT_EQ(merged.moved.size(), 1U);
@@ -306,7 +307,7 @@ TEST(LockText, IsSortedByFeatures) {
     EXPECT_TRUE(text.starts_with("# "));
 }
 
-// What a merge that takes both sides leaves, and an editor of another system.
+// Such a file results from a merge that takes both sides, and from an editor of another system.
 TEST(LockText, OrderRepetitionAndLineEndsMeanNothing) {
     const LockText text = parsed(
         "\xEF\xBB\xBF# mine\r\nversion 1\r\n4 normals clearcoat\r\n\r\n# theirs\nversion 1\n"
@@ -355,7 +356,7 @@ TEST(LockText, MistakesHaveTheirLines) {
     EXPECT_EQ(failed("version 1\n0 unlit clearcaot\n").unknownFeature, "clearcaot");
 }
 
-// Whatever a file holds, it is read or refused with a line of it, in printable words.
+// Any file is read, or refused with the number of a line, in printable words.
 TEST(LockText, RandomEditsAreReadOrRefused) {
     RecordProperty("seed", kSeed);
     std::mt19937 random(kSeed);

@@ -1,4 +1,4 @@
-// Which keys share a case under each policy, by what the keys' hits are.
+// Tests which keys share a case under each policy, depending on the keys' hits.
 #include "plan/merge.h"
 
 #include "plan/cluster.h"
@@ -32,13 +32,13 @@ std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
     while (weights.size() < count) {
         const FeatureMask mask = FeatureMask{random()} << 32U | random();
         const FeatureMask sparse = mask & (FeatureMask{random()} << 32U | random()) & known;
-        // From a hundred thousand to one, and some that nothing hits.
+        // The weights range from a hundred thousand to one, and some keys have no hits.
         weights[sparse] = random() % 8 == 0 ? 0.0 : std::exp2(static_cast<double>(random() % 17));
     }
     return glint::testing::toKeys(weights);
 }
 
-// Places of the keys in a list with their hits multiplied, or of a shuffled one, are found by mask.
+// After multiplying hits or shuffling a list, keys are identified by mask.
 std::map<FeatureMask, CaseReason> reasonsByMask(const std::vector<WeightedKey>& keys,
                                                 const std::vector<CaseKeys>& cases) {
     std::map<FeatureMask, CaseReason> reasons;
@@ -50,7 +50,7 @@ std::map<FeatureMask, CaseReason> reasonsByMask(const std::vector<WeightedKey>& 
     return reasons;
 }
 
-// The case of each key; every key must be in exactly one.
+// Returns the case of each key; every key must be in exactly one.
 std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<CaseKeys>& cases) {
     std::vector<int> caseOf(keyCount, -1);
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -95,7 +95,7 @@ TEST(Merge, OfNothingMakesNoCase) {
 TEST(Merge, GivesTheSameCasesAgain) {
     std::mt19937 random(kSeed);
     std::vector<WeightedKey> keys = randomKeys(random, 60);
-    // Ties everywhere: the order of the masks decides.
+    // All shares are tied, so the order of the masks decides.
     for (WeightedKey& key : keys) {
         key.share = 1.0 / 60.0;
     }
@@ -131,7 +131,7 @@ TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
     EXPECT_NE(many[1], many[2]);
 }
 
-// The same keys: who has the hits has the case.
+// The keys are the same: the keys with the hits get their own cases.
 TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
     std::mt19937 random(kSeed);
     const std::vector<WeightedKey> start = randomKeys(random, 30);
@@ -165,7 +165,7 @@ TEST(Merge, RareKeysAreTheRest) {
     EXPECT_EQ(reasons.at(kCoated), CaseReason::Own);
 }
 
-// A thousand keys of one share are each below what is rare: together they are not.
+// Each of a thousand keys with equal shares is rare, but together they are not.
 TEST(Merge, ManyEqualKeysAreNotAllRest) {
     std::mt19937 random(kSeed);
     std::vector<WeightedKey> keys = randomKeys(random, 1000);
@@ -204,7 +204,7 @@ TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
     EXPECT_EQ(reasons.at(sheen | bit(Feature::DoubleSided)), CaseReason::Cold);
     EXPECT_EQ(reasons.at(kCoated), CaseReason::NeverHit);
     EXPECT_EQ(reasons.at(sheen), CaseReason::NeverHit);
-    // Two hot ones, two families of cold ones at most, one for the others.
+    // There are two hot keys, at most two families of cold keys, and one case for the others.
     const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
     EXPECT_LE(cases.size(), 5U);
     for (const CaseKeys& shaderCase : cases) {

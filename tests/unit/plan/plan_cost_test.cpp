@@ -1,4 +1,4 @@
-// What a plan is said to cost, against the clusters' own sums and against plans in which keys did move.
+// Compares the reported cost of a plan with the clusters' own sums, and with plans in which keys did move.
 #include "plan/plan_cost.h"
 
 #include "plan/cluster.h"
@@ -17,7 +17,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<PrimitiveInputs> primitives;
 
-    // Materials of random lobes and textures, each on one primitive.
+    // Makes materials with random lobes and textures, each on one primitive.
     explicit Scene(std::mt19937& random, int count = 24) {
         for (int i = 0; i < count; ++i) {
             Material material;
@@ -71,7 +71,7 @@ TEST(PlanCost, IsThatOfItsClusters) {
         ASSERT_EQ(cost.cases.size(), plan.cases.size());
         const double expected = totalCost(clustersOf(plan), weightedKeys(plan));
         EXPECT_NEAR(totalCost(cost.inVain, cost.cases.size()), expected, 1e-9);
-        // The comparison knows this plan.
+        // The comparison contains this plan.
         const auto* const same = &*std::ranges::find(cost.policies, merge, &PolicyCost::merge);
         EXPECT_EQ(same->cases, plan.cases.size());
         EXPECT_NEAR(same->inVain, cost.inVain, 1e-9);
@@ -92,7 +92,7 @@ TEST(PlanCost, IsThatOfItsClusters) {
     }
 }
 
-// Keys that leave, and cases that merge, cost what is said.
+// Keys that leave, and cases that merge, cost what the report says.
 TEST(PlanCost, OfWhatWouldChangeIsTrue) {
     std::mt19937 random(20250402);
     const Scene scene(random);
@@ -132,7 +132,8 @@ TEST(PlanCost, OfWhatWouldChangeIsTrue) {
     EXPECT_GT(left, 10);
 }
 
-// No single key does better apart, unless the budget forbids it, and no two cases together.
+// No single key is cheaper in its own case, unless the budget forbids it, and no two cases are cheaper
+// together.
 TEST(PlanCost, AutoStopsWhereNothingIsSpared) {
     std::mt19937 random(20250403);
     for (int i = 0; i < 10; ++i) {

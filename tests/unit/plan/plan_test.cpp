@@ -1,4 +1,4 @@
-// Keys, cases and IDs of hand-made scenes under each merge policy.
+// Tests keys, cases and IDs of hand-made scenes under each merge policy.
 #include "plan/plan.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct SmallScene {
             primitive.hasTexCoords0 = true;
             primitives.push_back(primitive);
         }
-        // A second primitive of material 0, without normals: a key of its own.
+        // A second primitive of material 0 has no normals, and so another key.
         PrimitiveInputs flat;
         flat.mesh = 1;
         primitives.push_back(flat);
@@ -119,7 +119,7 @@ TEST(Plan, DoesNotDependOnTheOrderOfPrimitives) {
 
 TEST(Plan, SharesTheExpectedHits) {
     SmallScene scene;
-    // Nothing is known: all keys the same.
+    // Nothing is known, so all keys have the same share.
     for (const Key& key : scene.plan(MergePolicy::None).keys) {
         EXPECT_DOUBLE_EQ(key.share, 0.2);
     }
@@ -139,7 +139,7 @@ TEST(Plan, SharesTheExpectedHits) {
     EXPECT_DOUBLE_EQ(ofCases, 1.0);
 }
 
-// A key that was counted as hot has a case of its own; the same keys expect nothing of the kind.
+// A key that was counted as hot gets its own case; without counts, no key is expected to be hot.
 TEST(Plan, AutoMergesByCountedHits) {
     SmallScene scene;
     PlanOptions options{{}, MergePolicy::Auto};
@@ -251,7 +251,7 @@ struct RandomScene {
     }
 };
 
-// What `always`, `sometimes` and "never" promise holds for every key of every case.
+// The promises of `always`, `sometimes` and "never" must hold for every key of every case.
 TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     constexpr unsigned kSeed = 20240611;
     RecordProperty("seed", kSeed);
@@ -288,7 +288,7 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     }
 }
 
-// The device tests a feature of hits on the mask of primary surfaces: none may be missing there.
+// The device tests the features of hits in the mask of primary surfaces, so none may be missing there.
 TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
     constexpr unsigned kSeed = 20241121;
     RecordProperty("seed", kSeed);
@@ -319,7 +319,7 @@ TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
     options.keys.keptLobes = bit(Feature::Ior);
     const Plan few = makePlan(scene.materials, scene.primitives, options);
     EXPECT_EQ(all.cases.size(), 3U);
-    // The base models stay: unlit is a case of its own.
+    // The base models stay, so unlit is a separate case.
     EXPECT_EQ(few.cases.size(), 2U);
     EXPECT_EQ((few.always | few.sometimes) & bit(Feature::Clearcoat), 0U);
     EXPECT_NE(few.primarySometimes & bit(Feature::Clearcoat), 0U);

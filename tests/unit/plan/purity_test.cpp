@@ -1,5 +1,5 @@
-// tool/plan depends on nothing but the standard library, fmt and the runtime's table of effects, which is
-// plain data: held by its #include lines.
+// Checks by the #include lines that tool/plan depends only on the standard library, fmt and the runtime's
+// table of effects, which is plain data.
 #include <gtest/gtest.h>
 
 #include <filesystem>

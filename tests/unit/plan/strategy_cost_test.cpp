@@ -1,4 +1,4 @@
-// The model behind --strategy auto: its formula against brute force, and that it chooses as it should.
+// Tests the model behind --strategy auto: its formula against brute force, and its choices.
 #include "plan/strategy_cost.h"
 
 #include "plan/cost.h"
@@ -27,7 +27,7 @@ void set(StrategyCosts& costs, CostTerm term, double value) {
     costs.constants[static_cast<std::size_t>(term)] = value;
 }
 
-// A device of round numbers, in which ordering a ray costs a nanosecond.
+// Returns a device with round numbers, on which ordering a ray takes a nanosecond.
 DeviceCosts someDevice() {
     DeviceCosts device;
     device.device = "Some";
@@ -118,7 +118,7 @@ TEST(StrategyCost, ManyExpensiveIncoherentCasesAreOrdered) {
     EXPECT_EQ(chosen(makeRound(64, 2000, 0.0)), "sorted-uber");
     EXPECT_EQ(chosen(makeRound(64, 2000, 0.0), {"uber", "visibility"}), "visibility");
     EXPECT_EQ(chosen(makeRound(64, 2000, 1.0)), "uber");
-    // Few rays don't pay for the passes.
+    // Few rays don't pay for the additional passes.
     EXPECT_EQ(chosen(makeRound(64, 2000, 0.0, 2000.0)), "uber");
 }
 

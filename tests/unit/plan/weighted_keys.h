@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// In ascending order of masks, as planning has them; shares add up to 1.
+// Returns keys in ascending order of masks, as planning has them. Shares add up to 1.
 inline std::vector<WeightedKey> toKeys(const std::map<FeatureMask, double>& weights) {
     double sum = 0.0;
     for (const auto& [mask, weight] : weights) {

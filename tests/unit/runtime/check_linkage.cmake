@@ -1,5 +1,5 @@
-# Fails where the runtime, LIBRARY, or a PROGRAM linked to it alone, has something of the compiler in it, or is linked to
-# the Vulkan loader, which the runtime opens when it runs.
+# Fails if the runtime, LIBRARY, or a PROGRAM linked to it alone contains something of the compiler, or is
+# linked to the Vulkan loader, which the runtime opens at run time.
 set(foreign "glslang|spvtools|spirv-tools|SPIRV-Tools|spvOptimizer|tinygltf|_ZN3fmt|libfmt|libvulkan")
 
 execute_process(COMMAND "${NM}" "${LIBRARY}" OUTPUT_VARIABLE symbols ERROR_QUIET RESULT_VARIABLE status)
@@ -10,7 +10,7 @@ string(REGEX MATCHALL "[^\n]*(${foreign})[^\n]*" found "${symbols}")
 if(found)
   message(FATAL_ERROR "${LIBRARY} has symbols of the compiler: ${found}")
 endif()
-# Undefined or defined, no symbol may be a Vulkan command: those are in tables.
+# No symbol, undefined or defined, may be a Vulkan command, because those are in tables.
 string(REGEX MATCHALL "[^\n]* vk[A-Z][A-Za-z0-9]*\n" found "${symbols}")
 if(found)
   message(FATAL_ERROR "${LIBRARY} has Vulkan commands as symbols: ${found}")

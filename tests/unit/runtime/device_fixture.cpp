@@ -1,7 +1,7 @@
 #include "device_fixture.h"
 
-// Drivers and layers keep memory when they are unloaded, and nothing is left by then to name them in a
-// suppression; what Glint leaves behind on a device, HostDevice's test sees. Called by AddressSanitizer only.
+// Drivers and layers keep memory when they are unloaded, and no suppression can name them then. HostDevice's
+// test detects what Glint leaves behind on a device. Only AddressSanitizer calls this.
 extern "C" const char*
 __asan_default_options();  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" const char*

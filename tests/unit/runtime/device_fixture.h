@@ -1,4 +1,4 @@
-// Tests on a Vulkan device, with synchronization validation: no test may leave a message.
+// Tests on a Vulkan device with synchronization validation: no test may leave a message.
 #pragma once
 
 #include "package_builder.h"
@@ -15,7 +15,7 @@
 
 namespace glint::test {
 
-// Arrays that a SceneView points into.
+// The arrays to which a SceneView points.
 struct TestScene {
     struct Mesh {
         std::uint32_t mesh = 0;
@@ -34,7 +34,7 @@ struct TestScene {
     std::vector<Pixels> images;
     std::vector<LightView> lights;
 
-    // Valid until a member changes.
+    // The view is valid until a member changes.
     SceneView view();
 
 private:
@@ -42,13 +42,13 @@ private:
     std::vector<ImageView> imageViews_;
 };
 
-// A square of two triangles, side 2, in the plane z = `z`, counter-clockwise seen from +z.
+// Returns a square of two triangles with side 2 in the plane z = `z`, counter-clockwise seen from +z.
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z = 0.0F);
 
 using Rows = std::array<float, 12>;
 inline constexpr Rows kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-// From z = `z`, towards the origin.
+// Returns a camera at z = `z` that looks at the origin.
 CameraView makeCamera(float z);
 
 class DeviceTest : public testing::Test {
@@ -61,7 +61,7 @@ protected:
     }
     // Writes and loads a package.
     Package load(const PackageSpec& spec);
-    // Fails the test, and gives null, where there is an error.
+    // Fails the test and returns null if there is an error.
     std::unique_ptr<GpuScene> upload(const Package& package, TestScene& scene);
     std::unique_ptr<Renderer> makeRenderer(const Package& package, GpuScene& scene,
                                            package::Strategy strategy, std::uint32_t width,

@@ -1,4 +1,4 @@
-// Contexts, uploads and what upload refuses.
+// Tests contexts, uploads and what upload refuses.
 #include "acceleration.h"
 #include "device_fixture.h"
 #include "gpu_scene_state.h"
@@ -50,7 +50,7 @@ TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
 
 class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};
 
-// Devices with ray queries, and with pipelines beside them.
+// Devices with ray queries, and devices that also have pipelines.
 INSTANTIATE_TEST_SUITE_P(Tracers, AdoptedContextTest,
                          ::testing::Values(package::kTracerRayQuery, package::kAllTracers));
 
@@ -61,7 +61,7 @@ TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
     TestScene scene;
     scene.meshes = {test::makeSquare(0, 0)};
     scene.instances = {{0, test::kIdentity}};
-    // Twice on one device, beside the headless context of the fixture; with labels and without.
+    // Runs twice on one device, beside the headless context of the fixture; with labels and without.
     for (const bool debugUtils : {false, true}) {
         DeviceHandles handles = host.handles();
         handles.debugUtils = debugUtils && host.handles().debugUtils;
@@ -81,7 +81,7 @@ TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
         EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
     }
     EXPECT_NE(upload(package, scene), nullptr);
-    // A device that still has objects of a context when it goes is worth a message, too.
+    // The layers also report objects of a context that still exist when the device is destroyed.
     host.destroy();
     for (const std::string& message : host.messages()) {
         ADD_FAILURE() << message;
@@ -157,7 +157,7 @@ TEST_F(UploadTest, NothingToBuildIsNoError) {
 
     TestScene scene;
     scene.meshes = {{0, 0, {}, {}}};
-    // A mesh without triangles, one that nobody has, and a flattened instance.
+    // There is a mesh without triangles, one that does not exist, and a flattened instance.
     scene.instances = {{0, test::kIdentity}, {7, test::kIdentity}};
     const std::unique_ptr<GpuScene> hollow = upload(package, scene);
     ASSERT_NE(hollow, nullptr);
@@ -186,7 +186,7 @@ TEST_F(UploadTest, ManyMeshesInBatches) {
     EXPECT_EQ(uploaded->statistics().blasCount, kMeshes);
 }
 
-// A mesh above what a BLAS may hold comes in several, each triangle in exactly one.
+// A mesh above the limit of a BLAS is split into several, and each triangle is in exactly one.
 TEST_F(UploadTest, LargeMeshesAreSplit) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(0, 1), test::makePrimitive(0, 2)};
@@ -219,7 +219,7 @@ TEST_F(UploadTest, BlasesKeepToTheStorageBufferRange) {
     EXPECT_EQ(few.geometries, all.geometries);
 }
 
-// Larger than the staging buffer, of odd sizes, and thin.
+// The textures are larger than the staging buffer, of odd sizes, and thin.
 TEST_F(UploadTest, TexturesOfAllShapes) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.textures = {{0, 1}, {1, 0}, {2, 1}, {0, 0}};
@@ -237,7 +237,7 @@ TEST_F(UploadTest, TexturesOfAllShapes) {
     EXPECT_EQ(uploaded->state().textures[1].mips, 6U);
 }
 
-// 16-bit images keep their precision where the device can filter them, as colour too.
+// 16-bit images keep their precision if the device can filter them, even as colour.
 TEST_F(UploadTest, WideTexturesAreNarrowedOnlyWhereTheDeviceDemands) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.textures = {{0, 1}, {0, 0}, {1, 1}};

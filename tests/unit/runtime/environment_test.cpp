@@ -1,4 +1,4 @@
-// Environment maps on the host: what is taken, sizes, importance, diffuse light, 16-bit floats.
+// Tests environment maps on the host: which are accepted, sizes, importance, diffuse light, 16-bit floats.
 #include "half_float.h"
 #include "map_filter.h"
 #include "sample_maps.h"
@@ -98,8 +98,7 @@ TEST(MapImportance, DensitiesIntegrateToOne) {
     EXPECT_NEAR(sum, 1.0, 1e-6);
 }
 
-// Luminance over density is what the sum over texels is, whatever the sample; and the sample is where it
-// says.
+// Luminance over density equals the sum over texels for every sample, and the sample is where it says.
 TEST(MapImportance, EverySampleGivesTheIntegral) {
     const RadianceMap map = sunMap(64, 32);
     const MapDistribution distribution(map);
@@ -178,7 +177,7 @@ TEST(Harmonics, AConstantSkyHasNoDirection) {
     }
 }
 
-// The cosine lobe, over π, leaves 1, 2/3 and 1/4 of the orders 0, 1 and 2.
+// The cosine lobe, over π, multiplies the orders 0, 1 and 2 by 1, 2/3 and 1/4.
 TEST(Harmonics, OrdersShrinkByTheCosineLobe) {
     const auto sky = [](const Direction& d) { return 3.0 + d[0] + 0.5 * d[1] - 0.25 * d[2]; };
     const auto second = [](const Direction& d) {
@@ -196,7 +195,7 @@ TEST(Harmonics, OrdersShrinkByTheCosineLobe) {
 TEST(Harmonics, TurnWithTheMap) {
     const RadianceMap map = grayMap(
         64, 32, [](const Direction& d) { return std::max(0.0, 0.6 * d[0] + 0.48 * d[1] + 0.64 * d[2]); });
-    // What is at u comes to u - 5/64: counter-clockwise from above, as u runs clockwise.
+    // The content at u moves to u - 5/64: counter-clockwise from above, as u runs clockwise.
     RadianceMap shifted = map;
     for (std::size_t i = 0; i < map.texels.size(); ++i) {
         shifted.texels[i] = map.texels[i / 64 * 64 + (i + 5) % 64];

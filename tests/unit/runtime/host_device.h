@@ -11,7 +11,7 @@
 
 namespace glint::test {
 
-// With the validation layer and its messages where the layer is installed.
+// Uses the validation layer and collects its messages, if the layer is installed.
 class HostDevice {
 public:
     HostDevice() = default;
@@ -21,8 +21,8 @@ public:
     HostDevice(const HostDevice&) = delete;
     HostDevice& operator=(const HostDevice&) = delete;
 
-    // With these tracers (package::Tracer bits) enabled. False where there is no device that has what Glint
-    // requires.
+    // Creates the device with these tracers (package::Tracer bits) enabled. Returns false if no device has
+    // what Glint requires.
     bool create(std::uint32_t tracers = package::kTracerRayQuery);
     void destroy();
 

@@ -1,4 +1,4 @@
-// What rough surfaces see of an environment map.
+// Tests what rough surfaces see of an environment map.
 #include "map_filter.h"
 
 #include "sample_maps.h"
@@ -12,7 +12,7 @@
 namespace glint::test {
 namespace {
 
-// D(h) (n·l) of the GGX lobe about a direction, up to a factor, by the textbook's half vector.
+// Returns D(h) (n·l) of the GGX lobe about a direction, up to a factor, with the textbook's half vector.
 double lobeWeight(double cosine, double roughness) {
     if (cosine <= 0.0) {
         return 0.0;
@@ -23,7 +23,7 @@ double lobeWeight(double cosine, double roughness) {
     return a2 / (q * q) * cosine;
 }
 
-// By the sum over every texel of the map.
+// Returns the mean by the sum over every texel of the map.
 Radiance lobeMean(const RadianceMap& map, const Direction& n, double roughness) {
     std::array<double, 3> sum{};
     double total = 0.0;
@@ -59,8 +59,8 @@ TEST(Filter, AConstantMapStaysSo) {
     }
 }
 
-// A lobe spreads light and neither makes nor loses it; and a texel sees of the sun what its solid angle times
-// the peak of the lobe allows.
+// A lobe spreads light without making or losing any. A texel sees at most the sun's solid angle times the
+// peak of the lobe.
 TEST(Filter, ASunKeepsItsLight) {
     const RadianceMap map = sunMap(512, 256);
     const std::array<double, 3> before = flux(map);
@@ -86,7 +86,7 @@ TEST(Filter, ASunKeepsItsLight) {
             EXPECT_GE(radiance[0], 0.99F);
         }
         EXPECT_LE(brightest, most * 1.02) << level;
-        // And a texel looks nearly at it.
+        // Some texel looks nearly at the sun.
         EXPECT_GE(brightest, most * 0.5) << level;
     }
 }

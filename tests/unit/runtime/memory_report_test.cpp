@@ -1,4 +1,4 @@
-// What renderer and scene say of their memory.
+// Tests what renderer and scene report about their memory.
 #include "device_fixture.h"
 
 #include <algorithm>

@@ -35,13 +35,13 @@ constexpr NamedRole kRoles[] = {
     {ModuleRole::ShadeMiss, "shade_miss.comp"},
     {ModuleRole::ShadeCase, "shade_case.comp"},
     {ModuleRole::Compose, "compose.comp"},
-    // Never run here.
+    // This module never runs here.
     {ModuleRole::OrderCheck, "compose.comp"},
 };
 
 constexpr std::uint32_t kEffects = package::kEffectShadow | package::kEffectReflection;
 
-// A module that is one by its header only.
+// This is a module only by its header.
 const std::vector<std::uint32_t> kEmptyModule{0x07230203, 0x00010500, 0, 1, 0};
 
 PackageSpec makeWithModules(const auto& wordsOf) {

@@ -1,4 +1,4 @@
-// Packages made by hand: what a compiler would write, and what it never should.
+// Builds packages by hand: what a compiler would write, and what it never should.
 #pragma once
 
 #include "interop/scene.h"
@@ -26,7 +26,7 @@ struct CaseSpec {
     std::uint32_t keyCount = 1;  // 0: retired
 };
 
-// How many elements of the other lists are its.
+// The numbers of elements of the other lists that belong to the scene.
 struct SceneSpec {
     std::string name;
     std::uint32_t materials = 0;
@@ -35,7 +35,7 @@ struct SceneSpec {
     std::uint32_t samplers = 0;
 };
 
-// Every member may be broken on purpose; serialize() writes what it finds.
+// Tests may break every member on purpose; serialize() writes what it finds.
 struct PackageSpec {
     std::uint32_t version = package::kVersion;
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
@@ -53,18 +53,19 @@ struct PackageSpec {
     std::vector<SceneSpec> scenes;  // empty: one, named "scene", that has all elements
 };
 
-// One case, one material, primitive 0 of mesh 0, both strategies; every module is the same SPIR-V header.
+// Returns one case, one material, primitive 0 of mesh 0, both strategies. Every module is the same SPIR-V
+// header.
 PackageSpec makeSpec();
-// The same, with modules of the folder that tests/unit/runtime/shaders was compiled into.
+// Returns the same with modules of the folder into which tests/unit/runtime/shaders was compiled.
 PackageSpec makeDeviceSpec();
-// Words of a module of that folder. Empty if there is none.
+// Returns the words of a module of that folder, or nothing if there is none.
 std::vector<std::uint32_t> readTestShader(const std::string& name);
 
 package::PrimitiveEntry makePrimitive(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t flags = 0);
 
-// The bytes of tables.bin, header and hashes in order.
+// Returns the bytes of tables.bin with a correct header and hashes.
 std::vector<std::uint8_t> serialize(const PackageSpec& spec);
-// Makes the header's hash and size fit the bytes again, after a change to them.
+// Corrects the header's hash and size after a change to the bytes.
 void reseal(std::vector<std::uint8_t>& tables);
 
 void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);

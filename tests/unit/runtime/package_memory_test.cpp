@@ -14,7 +14,7 @@ namespace {
 
 using test::PackageSpec;
 
-// The files that a program would have in it.
+// The files that a program would contain.
 class Files {
 public:
     explicit Files(const PackageSpec& spec) {
@@ -44,7 +44,7 @@ public:
         }
         return Package::load(views);
     }
-    // The ID of the error, or "" for a package that loads.
+    // Returns the ID of the error, or "" for a package that loads.
     std::string error() const {
         const Result<Package> loaded = load();
         if (loaded) {

@@ -22,7 +22,7 @@ protected:
     void write(const PackageSpec& spec) {
         test::writePackage(spec, folder_.path());
     }
-    // The ID of the error, or "" for a package that loads.
+    // Returns the ID of the error, or "" for a package that loads.
     std::string load() {
         const Result<Package> loaded = Package::load(folder_.path());
         if (loaded) {
@@ -88,7 +88,7 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_EQ(scene.findPrimitive(3, 0), nullptr);
 }
 
-// Scenes share the cases; their primitives count materials from their own first.
+// Scenes share the cases. The primitives of each scene count materials from the scene's own first one.
 TEST_F(PackageTest, ScenesHaveTheirOwnTables) {
     PackageSpec spec = test::makeSpec();
     spec.materials.resize(3);
@@ -129,7 +129,7 @@ TEST_F(PackageTest, RefusesScenesThatDoNotDivideTheTables) {
               "package-altered");
 }
 
-// A shader ID that a lock file keeps for keys that are gone.
+// A lock file keeps this shader ID for keys that are gone.
 TEST_F(PackageTest, RetiredCasesNeedNoModules) {
     PackageSpec spec = test::makeSpec();
     spec.caseCount = 2;
@@ -147,7 +147,7 @@ TEST_F(PackageTest, RetiredCasesNeedNoModules) {
     EXPECT_EQ(used.error().id, "package-altered");
 }
 
-// The checks without the files: the ID of the error, or "".
+// Runs the checks without files. Returns the ID of the error, or "".
 std::string checkBytes(std::vector<std::uint8_t> bytes) {
     Package::State state;
     state.tables = std::move(bytes);
@@ -186,7 +186,7 @@ TEST_F(PackageTest, EveryFlippedBitIsAnError) {
     }
 }
 
-// Whoever alters a section can seal the file again: nothing past the hash may be trusted either.
+// Whoever alters a section can also correct the hash, so nothing behind the hash may be trusted either.
 TEST_F(PackageTest, ResealedGarbageIsNoCrash) {
     const std::vector<std::uint8_t> whole = test::serialize(makeRichSpec());
     int refused = 0;
@@ -283,7 +283,7 @@ TEST_F(PackageTest, LinksThatLeaveTheFolderAreRefused) {
     EXPECT_EQ(loaded.error().id, "package-file-name");
 }
 
-// Each breaks one promise of an otherwise valid package.
+// Each change breaks one promise of an otherwise valid package.
 TEST_F(PackageTest, BrokenPromisesAreErrors) {
     const std::pair<const char*, std::function<void(PackageSpec&)>> breaks[] = {
         {"shader ID", [](PackageSpec& s) { s.primitives[0].shaderId = 1; }},
@@ -349,7 +349,7 @@ TEST_F(PackageTest, SectionsAreBounded) {
     EXPECT_EQ(withSection([](auto& section) { section.offset = ~0ULL - 7; }), "package-altered");
     EXPECT_EQ(withSection([](auto& section) { section.offset += 4; }), "package-altered");
     EXPECT_EQ(withSection([](auto& section) { section.count = ~0ULL; }), "package-altered");
-    // Times 32 bytes, this wraps to nothing.
+    // Times 32 bytes, this overflows to 0.
     EXPECT_EQ(withSection([](auto& section) { section.count = 1ULL << 59; }), "package-altered");
     EXPECT_EQ(withSection([](auto& section) { section.elementBytes = 1; }), "package-altered");
     EXPECT_EQ(withSection([](auto& section) { section.kind = package::SectionKind::Cases; }),

@@ -1,4 +1,4 @@
-// What a driver kept of pipelines: told from anything else before the driver sees it.
+// Tests that data which a driver stored for pipelines is told from anything else before the driver gets it.
 #include "pipeline_cache.h"
 
 #include "context_state.h"
@@ -70,7 +70,7 @@ TEST(PipelineCacheWrapping, RefusesEveryOtherOwner) {
     }
 }
 
-// A driver that writes another header than its own, or none.
+// The driver writes a header that is not its own, or none.
 TEST(PipelineCacheWrapping, RefusesDataWithoutVulkansHeader) {
     const std::vector<std::uint8_t> data = driverData(kOwner);
     for (const std::size_t at : {0U, 4U, 8U, 12U, 16U, 31U}) {
@@ -95,7 +95,7 @@ TEST_F(PipelineCacheOfDevice, IsTakenByTheDeviceThatGaveIt) {
     EXPECT_EQ((*other)->pipelineCacheName(), context().pipelineCacheName());
     const Status added = (*other)->addPipelineCache(*data);
     EXPECT_TRUE(added) << toString(added.error());
-    // It goes on with what it has now.
+    // It continues with the data that it has now.
     const auto again = (*other)->pipelineCacheData();
     ASSERT_TRUE(again) << toString(again.error());
     EXPECT_TRUE((*other)->addPipelineCache(*again));

@@ -1,4 +1,4 @@
-// Jobs on several threads: results and errors that do not depend on who was first.
+// Tests jobs on several threads: results and errors must not depend on which job was first.
 #include "pipeline_jobs.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-// No device: the handles stay null, and jobs are told apart by what they report.
+// There is no device: the handles stay null, and jobs are identified by what they report.
 PipelineJob job(std::uint64_t number, std::size_t wordCount, bool fails = false) {
     return {"job " + std::to_string(number), wordCount,
             [number, fails](PipelineCreation& creation) -> Result<UniquePipeline> {

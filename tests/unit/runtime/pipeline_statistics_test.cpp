@@ -1,4 +1,5 @@
-// Reading what a driver says of a pipeline, from a driver that is made up: of real ones, few say anything.
+// Tests reading what a driver reports about a pipeline, with a made-up driver, because few real ones report
+// anything.
 #include "pipeline_statistics.h"
 
 #include "device_fixture.h"
@@ -11,9 +12,9 @@
 namespace glint::test {
 namespace {
 
-// What the made-up driver was asked for.
+// The calls that the made-up driver received.
 std::uint32_t askedExecutables = 0;
-// As where a pipeline is compiled further between the two calls.
+// Behaves like a pipeline that is compiled further between the two calls.
 bool isIncompleteOnce = false;
 
 void fill(char (&field)[VK_MAX_DESCRIPTION_SIZE], const char* text) {
@@ -35,7 +36,7 @@ VKAPI_ATTR VkResult VKAPI_CALL properties(VkDevice /*device*/, const VkPipelineI
     fill(list[0].description, "the code");
     list[0].stages = VK_SHADER_STAGE_COMPUTE_BIT;
     list[0].subgroupSize = 32;
-    // A name that fills its field, without an end.
+    // The name fills its field and has no terminator.
     std::memset(list[1].name, 'x', sizeof(list[1].name));
     return VK_SUCCESS;
 }

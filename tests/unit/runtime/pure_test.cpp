@@ -1,4 +1,4 @@
-// What the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
+// Tests what the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
 #include "camera.h"
 #include "instance_math.h"
 #include "plan/features.h"
@@ -26,7 +26,7 @@ double dot(const gpu::vec4& row, const std::array<double, 3>& p) {
     return row.x * p[0] + row.y * p[1] + row.z * p[2] + row.w;
 }
 
-// A point on the ray of a pixel, at a distance along the view, goes to that pixel's centre.
+// A point on the ray of a pixel, at a distance along the view, projects to that pixel's centre.
 TEST(CameraTest, RasterAndRaysAgree) {
     constexpr std::uint32_t kWidth = 31;
     constexpr std::uint32_t kHeight = 17;
@@ -128,7 +128,7 @@ TEST(CameraTest, UnusableCamerasAreErrors) {
 }
 
 TEST(InstanceTest, NormalsOfMirroredAndStretchedInstances) {
-    // Scale (-2, 3, 4): cofactors (12, -8, -6), times the sign of the determinant, over 8.
+    // The scale (-2, 3, 4) has cofactors (12, -8, -6), times the sign of the determinant, over 8.
     const gpu::InstanceRecord record = makeInstanceRecord({-2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 7});
     EXPECT_EQ(record.flags, gpu::kInstanceMirrored);
     EXPECT_EQ(record.normalToWorld[0].x, -1.5F);
@@ -156,7 +156,7 @@ TEST(InstanceTest, FlattenedInstancesHaveNoInverse) {
     EXPECT_FALSE(isInvertible({1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}));
     EXPECT_FALSE(isInvertible({std::nanf(""), 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
     EXPECT_TRUE(isInvertible({1, 0, 0, 0, 0, 1e-5F, 0, 0, 0, 0, 1, 0}));
-    // Flat along y: the normal keeps a direction.
+    // The transform is flat along y, and the normal keeps a direction.
     EXPECT_EQ(makeInstanceRecord({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}).normalToWorld[1].y, 1.0F);
 }
 
@@ -173,7 +173,7 @@ TEST(LightTest, SpotFalloffIsThatOfTheExtension) {
     EXPECT_NEAR(makeLightRecord(light).spotScale, 1000.0F, 1e-2F);
 }
 
-// A device that has everything.
+// Describes a device that has everything.
 void fillReport(DeviceReport& report) {
     report.apiVersion = VK_API_VERSION_1_3;
     for (const char* extension : report.features.extensions) {
@@ -198,7 +198,7 @@ TEST(RequirementsTest, EachMissingFeatureIsNamed) {
     };
     EXPECT_EQ(missing([](DeviceReport& r) { r.apiVersion = VK_API_VERSION_1_2; }),
               "Vulkan 1.3 (the device has 1.2)");
-    // Either tracer will do.
+    // Either tracer is enough.
     EXPECT_EQ(missing([](DeviceReport& r) { r.features.rayQuery.rayQuery = VK_FALSE; }), "");
     EXPECT_EQ(missing([](DeviceReport& r) {
                   std::erase(r.extensions, std::string("VK_KHR_ray_tracing_pipeline"));
@@ -243,7 +243,7 @@ TEST(RequirementsTest, HalfPrecisionIsEnabledWhereItIsAskedFor) {
     EXPECT_EQ(DeviceRequirements(package::kAllTracers, false, true).vulkan12.shaderFloat16, VK_TRUE);
 }
 
-// What a device is created with names nothing of a tracer that was not asked for.
+// Device creation requests nothing for a tracer that was not asked for.
 TEST(RequirementsTest, OnlyTheTracersAskedForAreEnabled) {
     const auto enabled = [](std::uint32_t tracers) {
         const DeviceRequirements requirements(tracers);

@@ -1,4 +1,4 @@
-// Frames of passes that show what they were given: what the raster pass and the rays see must agree.
+// Tests frames of passes that show their inputs: the raster pass and the rays must see the same.
 #include "device_fixture.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ using test::TestScene;
 constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kHeight = 24;
 
-// Pixels of an image: by geometry + 1 as the raster pass (0) or the rays (1) see it.
+// Counts the pixels of an image in which the raster pass (channel 0) or the rays (channel 1) see a geometry +
+// 1.
 std::size_t countPixels(const LinearImage& image, std::size_t channel, float value) {
     return static_cast<std::size_t>(
         std::ranges::count_if(image.pixels, [&](const auto& pixel) { return pixel[channel] == value; }));
@@ -48,8 +49,8 @@ FrameOptions makeFrame(float cameraZ) {
     return frame;
 }
 
-// Which side of a square is seen, by transform: the facing of rays against that of the raster pass, and both
-// against glTF, where counter-clockwise in object space is the front.
+// Which side of a square is visible under a transform. The facing of rays must match that of the raster pass,
+// and both must match glTF, where counter-clockwise in object space is the front.
 struct FacingCase {
     const char* name;
     test::Rows transform;
@@ -87,8 +88,8 @@ TEST_P(RendererTest, FacingIsThatOfGltf) {
     }
 }
 
-// Slanted squares and an orthographic or perspective camera, at many jitters: the ray of a pixel hits what
-// the raster pass saw there, but for the odd pixel on an edge.
+// Slanted squares and an orthographic or perspective camera, with many jitters: the ray of a pixel hits what
+// the raster pass saw there, except for a few pixels on edges.
 TEST_P(RendererTest, RaysAgreeWithTheRaster) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(0, 1, gpu::kGeometryDoubleSided)};
@@ -127,7 +128,7 @@ TEST_P(RendererTest, SamplesAccumulateWithoutDrift) {
     scene.meshes = {test::makeSquare(0, 0)};
     scene.instances = {{0, test::kIdentity}};
     const LinearImage image = render(package, scene, makeFrame(4.0F), 64);
-    // The mean over jittered samples is coverage: 2 x 2 metres of 4 x 2.4 in both channels.
+    // The mean over jittered samples is the coverage: 2 x 2 metres of 4 x 2.4 in both channels.
     for (const std::size_t channel : {0, 1}) {
         double sum = 0.0;
         for (const std::array<float, 4>& pixel : image.pixels) {
@@ -145,7 +146,7 @@ TEST_P(RendererTest, NearHidesFar) {
     const Package package = load(spec);
     TestScene scene;
     scene.meshes = {test::makeSquare(0, 0, 1.0F), test::makeSquare(1, 0, 0.0F)};
-    // The near one is drawn first, then last.
+    // The nearer square is drawn first, then last.
     for (const std::uint32_t first : {0U, 1U}) {
         scene.instances = {{first, test::kIdentity}, {1 - first, test::kIdentity}};
         for (const float far : {0.0F, 10.0F}) {
@@ -247,7 +248,8 @@ TEST_P(RendererTest, MipsAreMeansInLinearLight) {
     scene.meshes = {test::makeSquare(0, 0)};
     scene.instances = {{0, test::kIdentity}};
     scene.images = {{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}}};
-    // sRGB: half of the light, 0.5, rounded to 188 of 255 in the format. Linear: 127 or 128 of 255.
+    // For sRGB, half of the light, 0.5, is rounded to 188 of 255 in the format. Linear gives 127 or 128 of
+    // 255.
     for (const std::uint32_t texture : {0U, 1U}) {
         spec.materials[0].textures[0].textureIndex = texture;
         const Package package = load(spec);

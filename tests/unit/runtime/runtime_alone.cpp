@@ -1,4 +1,4 @@
-// A program that links the runtime and nothing else: what a shipped game would be.
+// A program that links only the runtime, like a shipped game.
 #include <glint/context.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
@@ -16,7 +16,7 @@ int main() {
         return 0;
     }
     std::printf("%s\n", (*context)->deviceName().c_str());
-    // Refers to the rest of the library in a way that no optimiser sees through, so that all of it is linked.
+    // Refers to the rest of the library in a way that no optimiser can remove, so that all of it is linked.
     auto* volatile create = &glint::Renderer::create;
     auto* volatile upload = &glint::GpuScene::upload;
     return create == nullptr || upload == nullptr ? 1 : 0;

@@ -40,7 +40,7 @@ inline RadianceMap grayMap(std::uint32_t width, std::uint32_t height,
     });
 }
 
-// Sky of 1, and a sun of 2 x 2 texels with 1e5.
+// Returns a sky of 1, and a sun of 2 x 2 texels with 1e5.
 inline RadianceMap sunMap(std::uint32_t width, std::uint32_t height) {
     RadianceMap map = grayMap(width, height, [](const Direction&) { return 1.0; });
     for (const std::uint32_t row : {height / 4, height / 4 + 1}) {

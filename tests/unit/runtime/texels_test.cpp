@@ -36,7 +36,7 @@ TEST(TexelsTest, LinearizesColourAndLeavesAlpha) {
     EXPECT_EQ(channels[7], 1);
 }
 
-// Each of the 256 values of 8-bit sRGB stays apart from its neighbours, and finds its way back.
+// Each of the 256 values of 8-bit sRGB stays distinct from its neighbours, and converts back to itself.
 TEST(TexelsTest, LinearKeepsEveryStepOfEightBits) {
     std::vector<std::uint16_t> encoded;
     for (std::uint32_t value = 0; value < 256; ++value) {

@@ -1,4 +1,4 @@
-// Which workgroups the ordering tile-sort gets of a device.
+// Tests which workgroups the ordering tile-sort uses on a device.
 #include "tile_sort.h"
 
 #include "interop/frame.h"
@@ -52,7 +52,7 @@ TEST(TileSort, HasAsManyWorkgroupsAsRunAtOnce) {
     EXPECT_EQ(tileSortGroups(limits, 256, kManyHits).copy, 20U);
     EXPECT_EQ(tileSortGroups(limits, 1024, kManyHits).copy, 10U);
     EXPECT_EQ(tileSortGroups(limits, 64, kManyHits).count, 20U);
-    // A device that does not say how many multiprocessors it has is not taken to have one.
+    // If a device does not report its number of multiprocessors, it must not be assumed to have one.
     DeviceLimits unknown = limits;
     unknown.multiprocessors = 0;
     EXPECT_GT(tileSortGroups(unknown, 64, kManyHits).copy, tileSortGroups(limits, 64, kManyHits).copy);

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// Two cases, each a function of its own, over a chain of calls that literals cut short.
+// Two cases, each a function of its own, above a chain of calls that literals cut short.
 constexpr const char* kTwoCases = R"(#version 460
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform sampler2D images[3];
@@ -78,7 +78,7 @@ TEST(CallGraph, AFunctionApartHoldsWhatItsLiteralsLeave) {
     for (const auto& words : {*apart, *inlined}) {
         const auto statistics = measureSpirv(words);
         ASSERT_TRUE(statistics);
-        // One texture of the first case, two of the second.
+        // There is one texture in the first case, and two in the second.
         EXPECT_EQ(statistics->textureFetches, 3U);
     }
 }

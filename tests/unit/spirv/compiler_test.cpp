@@ -12,8 +12,8 @@
 namespace glint {
 namespace {
 
-// The shape of the generated shaders: one shade() for all cases, features decided by literals and a mask.
-// Case 0 reads textures 0 and 1, case 1 texture 2; in case 2 the mask decides on texture 3.
+// The shape of the generated shaders: one shade() for all cases, with features decided by literals and a
+// mask. Case 0 reads textures 0 and 1, and case 1 reads texture 2. In case 2 the mask decides on texture 3.
 constexpr const char* kThreeCases = R"(#version 460
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform sampler2D images[5];
@@ -53,7 +53,7 @@ TEST(CompileShader, FoldsDecidedFeaturesAway) {
     const auto statistics = measureSpirv(*words);
     ASSERT_TRUE(statistics);
     EXPECT_EQ(statistics->textureFetches, 4U);
-    // One branch on the mask, for the feature that some have.
+    // There is one branch on the mask, for the feature that some keys have.
     EXPECT_EQ(statistics->branches, 2U);
 }
 
@@ -148,7 +148,7 @@ TEST(ValidateSpirv, RefusesWhatIsNotValid) {
     auto words = compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {});
     ASSERT_TRUE(words);
     EXPECT_TRUE(validateSpirv(*words, "three.comp"));
-    // The bound on IDs below the IDs in use.
+    // The bound on IDs is below the IDs in use.
     words->at(3) = 2;
     const Status status = validateSpirv(*words, "three.comp");
     ASSERT_FALSE(status);

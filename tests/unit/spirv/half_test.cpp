@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// A light of a buffer, whose position and intensity are far outside of 16 bits, and a colour that fits.
+// A light from a buffer, whose position and intensity are far outside of 16 bits, and a colour that fits.
 std::string lightShader(const std::string& relaxed) {
     return "#version 460\n#extension GL_EXT_buffer_reference : require\n"
            "#extension GL_EXT_scalar_block_layout : require\n"
@@ -45,13 +45,13 @@ TEST(HalfPrecision, IsThatOfMediump) {
     const std::string text = disassembled(lightShader("mediump"));
     EXPECT_EQ(count(text, "OpCapability Float16"), 1) << text;
     EXPECT_EQ(count(text, "OpTypeFloat 16"), 1) << text;
-    // a * b + 0.25, which may be fused.
+    // This is a * b + 0.25, which may be fused.
     EXPECT_EQ(count(text, R"(OpFMul %v3half|Fma %\w+ %\w+)"), 1) << text;
     EXPECT_EQ(count(text, "= Op(Dot|FDiv) %(v3)?half"), 0) << text;
     EXPECT_EQ(count(text, "RelaxedPrecision"), 0) << text;
 }
 
-// What comes out of a structure or an array is of relaxed precision to SPIRV-Tools' pass.
+// SPIRV-Tools' pass treats values that come out of a structure or an array as relaxed.
 TEST(HalfPrecision, LeavesWhatIsTakenOutOfStructures) {
     const std::string text = disassembled(lightShader("mediump"));
     EXPECT_EQ(count(text, "OpCompositeExtract %(v3)?half"), 0) << text;

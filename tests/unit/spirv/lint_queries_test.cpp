@@ -14,7 +14,7 @@ constexpr std::uint32_t kOpString = 7;
 constexpr std::uint32_t kOpLine = 8;
 constexpr std::uint32_t kOpRayQueryInitialize = 4473;
 
-// What lint finds in a main() of these statements.
+// Returns what lint finds in a main() with these statements.
 Rules rulesOf(const std::string& statements) {
     return rules(compileQuery("void main() {" + statements + "}"));
 }
@@ -72,14 +72,14 @@ TEST(LintQueries, ConditionalProceedIsAnError) {
         if (data.a == 3u) { rayQueryProceedEXT(q); }
         data.b = HIT(q);)"),
               expected);
-    // A loop that may run no round.
+    // The loop may run no round.
     EXPECT_EQ(rulesOf(R"(
         rayQueryEXT q;
         START(q, kAny);
         for (uint i = 0u; i < data.a; ++i) { rayQueryProceedEXT(q); }
         data.b = HIT(q);)"),
               expected);
-    // A return between the two.
+    // There is a return between the two.
     EXPECT_EQ(rulesOf(R"(
         rayQueryEXT q;
         START(q, kAny);
@@ -128,7 +128,7 @@ TEST(LintQueries, TwoLiveObjectsAreAnError) {
         rayQueryProceedEXT(q);
         data.t = DISTANCE(p) + DISTANCE(q);)"),
               Rules{"error query-live-objects"});
-    // The first is read after a loop that uses the second.
+    // The first query is read after a loop that uses the second.
     EXPECT_EQ(rulesOf(R"(
         rayQueryEXT p;
         START(p, kFast);
@@ -192,13 +192,13 @@ TEST(LintQueries, LooksThroughCalls) {
     EXPECT_EQ(rules(compileQuery(functionsWith("t"), {"isVisible"})), Rules{});
     const std::vector<LintFinding> found =
         findings(compileQuery(functionsWith("DISTANCE(p)"), {"isVisible"}));
-    // One finding for the function, however often it is called.
+    // There is one finding for the function, however often it is called.
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].rule, "query-live-objects");
     EXPECT_EQ(found[0].place.function, "isVisible");
 }
 
-// A line at the first initialise.
+// Adds a line at the first initialise.
 Words withLine(const Words& words, std::uint32_t line) {
     Words result(words.begin(), words.begin() + 5);
     const std::uint32_t file = result[3]++;

@@ -48,7 +48,7 @@ inline std::vector<LintFinding> findings(const Words& words) {
     return lint ? lint->findings : std::vector<LintFinding>();
 }
 
-// "error query-proceeds", sorted.
+// Returns the findings as "error query-proceeds", sorted.
 inline Rules rules(const Words& words) {
     constexpr const char* kNames[] = {"note", "warning", "error"};
     Rules list;
@@ -59,7 +59,7 @@ inline Rules rules(const Words& words) {
     return list;
 }
 
-// Two functions that stay functions: one passes constants on, the other holds its own query.
+// Two functions that stay functions: one passes constants on, and the other has its own query.
 inline constexpr const char* kFunctions = R"(
     bool isVisible(uint flags, float t) {
         if (t < 0.0) { return false; }

@@ -92,7 +92,7 @@ TEST(Lint, ReportsWhatIsNotValid) {
     }
 }
 
-// Words changed at random: an error or findings, never a crash.
+// Words are changed at random. The result must be an error or findings, never a crash.
 TEST(Lint, SurvivesAlteredModules) {
     const Words good = compileQuery(functionsWith("DISTANCE(p)"), {"isVisible"});
     ASSERT_FALSE(good.empty());

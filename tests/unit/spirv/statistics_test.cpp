@@ -61,7 +61,7 @@ TEST(SpirvStatistics, ReportsWhatIsNoModule) {
     }
 }
 
-// Whatever follows a good header, the reader ends, and stays within the words that it was given.
+// Whatever follows a good header, the reader ends, and stays within the given words.
 TEST(SpirvStatistics, SurvivesGarbage) {
     std::mt19937 engine(7);
     const auto random = [&] { return static_cast<std::uint32_t>(engine()); };
@@ -69,7 +69,7 @@ TEST(SpirvStatistics, SurvivesGarbage) {
         std::vector<std::uint32_t> words = header();
         const std::size_t count = random() % 64;
         for (std::size_t i = 0; i < count; ++i) {
-            // Short lengths half of the time, so that walks get far.
+            // Half of the lengths are short, so that walks get far.
             words.push_back(random() % 2 == 0 ? random() : first(random() % 300, random() % 4));
         }
         std::size_t visited = 5;

@@ -1,4 +1,4 @@
-// Generated scenes: as many keys as asked for, whatever else is asked.
+// Generated scenes must have as many keys as asked for, whatever the other options are.
 #include "synthetic/cases_scene.h"
 
 #include "gltf/import.h"
@@ -37,7 +37,7 @@ TEST(CasesScene, HasAsManyKeysAsCases) {
     }
 }
 
-// What is asked for must decide, not what happens to follow: the scenes of one cost share their cases.
+// Only the options may decide, not their side effects: the scenes of one cost share their cases.
 TEST(CasesScene, HasTheSameKeysHoweverRaysGo) {
     for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
         const Plan mirror = planOf(makeCasesScene({16, cost, Coherence::Coherent}));
@@ -49,13 +49,13 @@ TEST(CasesScene, HasTheSameKeysHoweverRaysGo) {
     }
 }
 
-// Features that keys have on average: work must not grow with the number of cases.
+// The average number of features of keys: work must not grow with the number of cases.
 TEST(CasesScene, KeepsItsWork) {
     for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
         std::map<int, double> features;
         for (const int cases : {4, 16, 64, 256}) {
             for (const Key& key : planOf(makeCasesScene({cases, cost})).keys) {
-                // Texture coordinates are in a key for any texture, which is none of the switches.
+                // Texture coordinates are in a key for any texture, so they are not one of the switches.
                 features[cases] += std::popcount(key.mask & ~bit(Feature::TexCoord0)) / double(cases);
             }
         }
@@ -78,7 +78,8 @@ TEST(CasesScene, GivesEveryCaseATile) {
                 ASSERT_EQ(tiles.size(), static_cast<std::size_t>(cases));
                 EXPECT_EQ(ceiling.cases.size(), static_cast<std::size_t>(ceiling.tiles * ceiling.tiles));
                 const double all = static_cast<double>(ceiling.cases.size());
-                // The first case has least of the rounding and of what those below one tile took.
+                // The first case is least affected by rounding and by the tiles given to cases below one
+                // tile.
                 EXPECT_NEAR(static_cast<double>(tiles[0]) / all, sharesOf(options)[0], 0.06);
                 EXPECT_TRUE(std::ranges::is_sorted(
                                 tiles, [](const auto& a, const auto& b) { return a.second > b.second; }) ||
@@ -94,7 +95,7 @@ TEST(CasesScene, GivesEveryCaseATile) {
     }
 }
 
-// Fronts towards the rays: hits of back faces are culled.
+// Fronts must face the rays, because hits of back faces are culled.
 TEST(CasesScene, FacesItsRays) {
     const Scene scene = makeCasesScene({4, Cost::Expensive, Coherence::Incoherent});
     for (std::size_t mesh = 0; mesh < 2; ++mesh) {
@@ -103,7 +104,7 @@ TEST(CasesScene, FacesItsRays) {
                 const Float3& a = primitive.positions[primitive.indices[i]];
                 const Float3& b = primitive.positions[primitive.indices[i + 1]];
                 const Float3& c = primitive.positions[primitive.indices[i + 2]];
-                // The height of the cross product of two edges.
+                // This is the height of the cross product of two edges.
                 const float up = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);
                 ASSERT_GT(mesh == 0 ? up : -up, 0.0F);
                 ASSERT_EQ(primitive.normals[primitive.indices[i]][1], mesh == 0 ? 1.0F : -1.0F);

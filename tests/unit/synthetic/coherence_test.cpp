@@ -1,4 +1,4 @@
-// The measure of coherence at its ends, and in the order that it is for.
+// Tests the measure of coherence at its extremes, and that it orders scenes as intended.
 #include "synthetic/coherence.h"
 
 #include <gtest/gtest.h>
@@ -23,11 +23,11 @@ TEST(CoherentShare, IsNoneWhereChanceDecides) {
 }
 
 TEST(CoherentShare, GrowsWithThePicture) {
-    // Blocks of 8 x 4 pixels in a grid of 2 x 2 cases: those across its lines are as good as none.
+    // There are blocks of 8 x 4 pixels in a grid of 2 x 2 cases, so almost no block crosses its lines.
     EXPECT_GT(shareOf(4, Coherence::Coherent, 1024), 0.95);
     EXPECT_GT(shareOf(256, Coherence::Coherent, 4096), 0.9);
     EXPECT_LT(shareOf(256, Coherence::Coherent, 64), shareOf(256, Coherence::Coherent, 512));
-    // A case is 16 x 8 blocks of a picture of 128 x 64 blocks, its edges on theirs.
+    // A case is 16 x 8 blocks of a picture of 128 x 64 blocks, and its edges are edges of blocks.
     EXPECT_EQ(shareOf(64, Coherence::Coherent, 1024), 1.0);
 }
 

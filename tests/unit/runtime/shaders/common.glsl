@@ -1,4 +1,4 @@
-// Passes that show what the runtime gave them, in the place of those that shade.
+// Passes that show what the runtime gave them, instead of passes that shade.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Running mean of: what the raster pass saw, what the ray saw, the texel, the ray's distance.
+// Computes the running mean of what the raster pass saw, what the ray saw, the texel, and the ray's distance.
 #include "common.glsl"
 #include "images.glsl"
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The camera's own rays, so that what they hit must be what the raster pass saw.
+// Sends the camera's own rays, so that they must hit what the raster pass saw.
 #include "common.glsl"
 
 layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Radiance: geometry + 1, primitive, and the first texel of the material's base colour at mip 1.
+// The radiance is geometry + 1, primitive, and the first texel of the material's base colour at mip 1.
 #include "common.glsl"
 #include "images.glsl"
 

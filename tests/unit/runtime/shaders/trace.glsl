@@ -19,7 +19,7 @@ HitRecord traceRay(RayRecord ray, uint index) {
     return hit;
 }
 
-// Geometry + 1, primitive, distance; 0 for a miss.
+// Returns geometry + 1, primitive, distance; 0 for a miss.
 vec4 describe(HitRecord hit) {
     return hit.geometry == kMissGeometry ? vec4(0.0)
                                          : vec4(float(hit.geometry) + 1.0, float(hit.primitive), hit.distance_orDirectionZ, 1.0);
