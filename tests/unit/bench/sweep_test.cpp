@@ -70,7 +70,7 @@ TEST(ParetoFront, LeavesOutWhatIsBeaten) {
     EXPECT_TRUE(paretoFront({}).empty());
 }
 
-// Returns the dominating points of all combinations.
+// The dominating points of all combinations must be found.
 TEST(Proposals, FindTheFrontOfASeparableWorld) {
     std::vector<Rated> known = measuredSingles();
     for (int round = 0; round < 3; ++round) {

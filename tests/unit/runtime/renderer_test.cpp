@@ -14,8 +14,8 @@ using test::TestScene;
 constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kHeight = 24;
 
-// Counts the pixels of an image in which the raster pass (channel 0) or the rays (channel 1) see a geometry +
-// 1.
+// Counts the pixels in which the raster pass (channel 0) or the rays (channel 1) see `value`, which is
+// geometry + 1.
 std::size_t countPixels(const LinearImage& image, std::size_t channel, float value) {
     return static_cast<std::size_t>(
         std::ranges::count_if(image.pixels, [&](const auto& pixel) { return pixel[channel] == value; }));
