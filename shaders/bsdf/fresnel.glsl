@@ -49,8 +49,8 @@ GLINT_RELAXED vec3 fresnelInterface(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f
     return refracted2 > 0.0 ? fresnelSchlick(f0, f90, sqrt(refracted2)) : vec3(1.0);
 }
 
-// What a surface lets through in the channel that it reflects most: 1 - largest(fresnelSchlick()). It keeps its digits
-// where little passes. f90 is at least f0.
+// The share that a surface lets through in the channel that it reflects most: 1 - largest(fresnelSchlick()). It keeps
+// its digits where little passes. f90 is at least f0.
 GLINT_RELAXED float schlickPassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float cosine) {
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
 }

@@ -23,8 +23,8 @@ enum class Cause : std::uint8_t {
     Chance,      // it chose one of several lights or mirrors: it shows what one of the choices gives
     Filtering,   // it filters textures in less than single precision
     Edge,        // another surface within 1/128 of a pixel: the rasteriser rounds to half of that
-    ShadowEdge,  // likewise, another light reaches it
-    MirrorEdge,  // likewise, a mirror shows another surface
+    ShadowEdge,  // the same, where another light reaches it
+    MirrorEdge,  // the same, where a mirror shows another surface
     Steep,       // the light changes as much within 1/128 of a pixel: highlights, textures
     Terminator,  // a light or the view near a tangent plane
     Other,

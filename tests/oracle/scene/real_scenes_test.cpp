@@ -31,7 +31,7 @@ struct Bounds {
     std::size_t differs;  // pixels off by more than kDiffers, without those of chance
     std::size_t other;    // of these without a cause
     double rms;           // of the mean over samples, besides what chance explains
-    double mean;          // signed, likewise, besides four standard errors
+    double mean;          // signed, of the mean over samples, besides four standard errors
 };
 
 struct RealScene {

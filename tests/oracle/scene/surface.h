@@ -41,7 +41,7 @@ public:
     std::vector<Mirror> mirrors() const;
 
     Vec3 normal() const;           // on the viewer's side
-    Vec3 geometricNormal() const;  // likewise
+    Vec3 geometricNormal() const;  // on the viewer's side
 
 private:
     struct Lobes;
