@@ -57,10 +57,11 @@ Result<std::string> escape(std::string_view name, bool isTarget) {
 }  // namespace
 
 void addDepfileOptions(CLI::App& command, DepfileArguments& arguments) {
-    addText(command, "--depfile", arguments.file, "FILE", "list what was read, for Make and Ninja")
+    addText(command, "--depfile", arguments.file, "FILE", "list the files that were read, for Make and Ninja")
         .group("Output");
     addTexts(command, "--depfile-target", arguments.targets, "NAME",
-             "what the list is of (default: the package's\nmanifest.json, else the file of --embed)")
+             "target of that list (default: the package's\n"
+             "manifest.json, else the file of --embed); may be repeated")
         .group("Output")
         ->allow_extra_args(false);
 }

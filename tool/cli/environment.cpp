@@ -64,7 +64,8 @@ void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments) {
             "--environment)")
         .group(group);
     addReal(command, kMapIntensity, arguments.intensity, 0.0, kMaxIntensity,
-            "times the map's radiance (0 to 1e9, default: 1; needs\n--environment)")
+            "factor of the map's radiance (0 to 1e9, default: 1; needs\n"
+            "--environment)")
         .group(group);
 }
 

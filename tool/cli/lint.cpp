@@ -185,7 +185,10 @@ int lint(const Console& console, const LintArguments& arguments) {
 
 void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const std::string& what) {
     auto& option = addInteger(command, flag, budget.limit, 0, std::numeric_limits<std::int32_t>::max(), "");
-    option.description(fmt::format("error above N {} in a module\n(default: no limit)", what));
+    option.description(
+        fmt::format("report an error above N {} in a module (0 to 2147483647,\n"
+                    "default: no limit)",
+                    what));
     option.group("Budgets");
     budget.option = &option;
 }

@@ -183,19 +183,20 @@ private:
 
 void addLockInput(CLI::App& command, LockArguments& arguments) {
     addText(command, "--lock", arguments.file, "FILE",
-            "shader IDs as this file of glint compile --lock keeps them")
+            "take shader IDs from this file, which glint compile\n"
+            "--lock keeps")
         .group("Shaders");
 }
 
 void addLockOptions(CLI::App& command, LockArguments& arguments) {
     arguments.isWritten = true;
     CLI::Option& lock = addText(command, "--lock", arguments.file, "FILE",
-                                "keep shader IDs from build to build in this file, which is\n"
-                                "made, or changed where keys are new; commit it");
+                                "keep shader IDs from build to build in this file, which\n"
+                                "is created, and extended by new keys; commit it");
     CLI::Option& frozen = addFlag(command, "--locked", arguments.frozen,
                                   "fail, and write nothing, if the lock file would change\n(needs --lock)");
     CLI::Option& prune = addFlag(command, "--lock-prune", arguments.prune,
-                                 "drop keys from the lock file that no scene has, which\n"
+                                 "remove keys that no scene has from the lock file, which\n"
                                  "frees their IDs (needs --lock, excludes --locked)");
     frozen.needs(&lock);
     prune.needs(&lock)->excludes(&frozen);

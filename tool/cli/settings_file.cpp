@@ -66,7 +66,8 @@ std::optional<std::string> given(std::span<const char* const> arguments, std::st
 
 void addSettingsFile(CLI::App& command, std::string& file) {
     addText(command, kOption, file, "FILE.json",
-            "options of a file, such as `glint bench` writes; those that\nare given here, too, hold instead")
+            "read options from this file, such as `glint bench`\n"
+            "writes; options on the command line win")
         .group("Settings");
 }
 
