@@ -129,7 +129,7 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     for (const char* const name : {"--budget-ms", "--max-error"}) {
         const CLI::Option* const option = command.get_option(name);
         if (option->count() > 0 && !(option->as<double>() > 0.0)) {
-            throw CLI::ValidationError(name, "0 is within no setting's reach: give more");
+            throw CLI::ValidationError(name, "no setting can reach 0; give a larger number");
         }
     }
     for (const std::string& text : arguments.candidateWords) {

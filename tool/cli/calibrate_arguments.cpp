@@ -124,9 +124,10 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
         }
         const std::string name = option->get_name();
         if (arguments.enabled && !isTaken(*option)) {
-            throw CLI::ValidationError(
-                name, option->get_positional() ? "has no place beside --calibrate, which makes its own scenes"
-                                               : "has no place beside --calibrate; leave out one of them");
+            throw CLI::ValidationError(name,
+                                       option->get_positional()
+                                           ? "can't be combined with --calibrate, which makes its own scenes"
+                                           : "can't be combined with --calibrate; leave out one of them");
         }
         if (!arguments.enabled && option->get_group() == kGroup) {
             throw CLI::ValidationError(name, "needs --calibrate");
@@ -136,8 +137,7 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
         throw CLI::RequiredError("SCENE");
     }
     if (arguments.shadows && arguments.lights == 0) {
-        throw CLI::ValidationError("--calibrate-shadows",
-                                   "needs a light that throws them: give --calibrate-lights 1 or more");
+        throw CLI::ValidationError("--calibrate-shadows", "needs lights; give --calibrate-lights 1 or more");
     }
 }
 

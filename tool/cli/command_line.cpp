@@ -57,7 +57,7 @@ int act(const Action& chosen, const ReportArguments& report) {
     int code = chosen(console);
     if (console.refused()) {
         console.report(makeError("werror", "", "there are warnings that count as errors",
-                                 "mend them, or leave out --werror and -Werror"));
+                                 "fix them, or leave out --werror and -Werror"));
         code = kExitFailed;
     }
     if (Status finished = console.finish(); !finished) {

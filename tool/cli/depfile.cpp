@@ -26,7 +26,7 @@ bool isAmong(char c, std::string_view characters) {
 
 Diagnostic nameError(std::string_view name, const std::string& why) {
     return makeError("depfile-name", std::string(name),
-                     "can't stand in a file that Make and Ninja read: " + why,
+                     "can't be written to a file for Make and Ninja: " + why,
                      "rename the file, or leave out --depfile");
 }
 

@@ -81,7 +81,7 @@ ConsoleOptions ReportArguments::options() const {
 
 void ReportArguments::check() const {
     if (quiet && verbose) {
-        throw CLI::ValidationError("--verbose", "says more, and --quiet less: leave out one of them");
+        throw CLI::ValidationError("--verbose", "contradicts --quiet; leave out one of them");
     }
 }
 

@@ -60,8 +60,9 @@ void checkEffects(const EffectArguments& arguments) {
     for (const char* const alone : {kNothing, kEverything}) {
         const bool named = std::ranges::find(arguments.effects, alone) != arguments.effects.end();
         if (named && arguments.effects.size() > 1) {
-            throw CLI::ValidationError("--effects",
-                                       std::string(alone) + " stands alone: leave out it or the others");
+            throw CLI::ValidationError(
+                "--effects",
+                std::string(alone) + " can't be combined with other effects; leave out one or the others");
         }
     }
 }
@@ -158,7 +159,7 @@ void addEffectFrameOptions(CLI::App& command, EffectFrameArguments& arguments) {
 
 void checkEffectFrame(const EffectFrameArguments& arguments) {
     if (arguments.occlusionFalloff == "linear" && arguments.occlusionRadius <= 0.0) {
-        throw CLI::ValidationError("--ao-falloff", "linear ends at a radius: give one by --ao-radius");
+        throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");
     }
 }
 

@@ -72,7 +72,7 @@ void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments) {
 void checkEnvironmentOptions(const CLI::App& command) {
     for (const char* option : {kRotation, kMapIntensity}) {
         if (command.count(option) > 0 && command.count(kMap) == 0) {
-            throw CLI::ValidationError(option, "needs --environment, the map that it is about");
+            throw CLI::ValidationError(option, "needs --environment");
         }
     }
 }

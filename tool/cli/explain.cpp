@@ -146,7 +146,7 @@ std::string sharesText(const Planned& planned, const Key& key, const Case& shade
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
     return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
-                       counted ? "as counted" : "expected from areas");
+                       counted ? "counted by the profile" : "expected from areas");
 }
 
 std::string toText(const Planned& planned, int material) {

@@ -158,7 +158,7 @@ int lint(const Console& console, const LintArguments& arguments) {
     LintReport report;
     report.malioc = findProgram(arguments.malioc.empty() ? "malioc" : arguments.malioc);
     if (!report.malioc && !arguments.malioc.empty()) {
-        console.report(makeError("malioc", arguments.malioc, "is no program that can be run"));
+        console.report(makeError("malioc", arguments.malioc, "is not a program that can be run"));
         return kExitFailed;
     }
     for (const std::string& path : arguments.paths) {

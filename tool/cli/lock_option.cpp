@@ -129,8 +129,7 @@ private:
         if (!lost_.empty()) {
             choice.warnings.push_back(makeWarning(
                 "lock-conflict", arguments_.file,
-                fmt::format("has IDs for keys that are different cases now; these get new ones: {}",
-                            moves(lost_)),
+                fmt::format("has IDs that several cases claim now; these keys get new IDs: {}", moves(lost_)),
                 "commit the file that is written now"));
         }
     }
@@ -154,12 +153,12 @@ private:
         if (arguments_.prune) {
             choice.notes.push_back(
                 {Severity::Note, "lock-stale", arguments_.file,
-                 fmt::format("loses {} that nothing has here: {}", count(update_.stale.size(), "key"), list),
+                 fmt::format("loses {} that no scene has: {}", count(update_.stale.size(), "key"), list),
                  ""});
         } else {
             choice.notes.push_back(
                 {Severity::Note, "lock-stale", arguments_.file,
-                 fmt::format("keeps {} that nothing has here: {}", count(update_.stale.size(), "key"), list),
+                 fmt::format("keeps {} that no scene has: {}", count(update_.stale.size(), "key"), list),
                  fmt::format("--lock-prune drops {}", many ? "them" : "it")});
         }
     }

@@ -301,7 +301,8 @@ void addProfileInput(CLI::App& command, PlanArguments& arguments) {
 void settleProfile(PlanArguments& arguments) {
     if (const auto split = splitPolicy(arguments.merge)) {
         if (!arguments.profile.empty()) {
-            throw CLI::ValidationError("--merge", "names a profile, and --profile another: give one of them");
+            throw CLI::ValidationError("--merge",
+                                       "names a profile, and so does --profile; give only one of them");
         }
         std::tie(arguments.merge, arguments.profile) = *split;
     }

@@ -151,10 +151,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         checkSceneOptions(command, *arguments);
         const bool plays = !arguments->motion.frames.empty() || !arguments->motion.time.empty();
         if (!plays && command.get_option("--animation")->count() > 0) {
-            throw CLI::ValidationError("--animation", "plays with --frames or --time; give one of them");
+            throw CLI::ValidationError("--animation", "needs --frames or --time; give one of them");
         }
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
-            throw CLI::ValidationError("--coverage", "is of one picture; leave out --frames, or use --time");
+            throw CLI::ValidationError("--coverage", "shows one picture; leave out --frames, or use --time");
         }
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,

@@ -155,7 +155,7 @@ std::optional<Diagnostic> blameFile(const CompletedLine& line, const std::string
         if (complaint.starts_with(option + ":")) {
             const std::string name = option.substr(2);
             return refusal(line.file, "/settings/" + name, complaint.substr(option.size() + 2),
-                           fmt::format("mend it there, or give {} on the command line", option));
+                           fmt::format("correct it there, or give {} on the command line", option));
         }
     }
     return std::nullopt;

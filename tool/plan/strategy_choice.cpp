@@ -97,10 +97,9 @@ void explain(StrategyChoice& choice) {
     if (const StrategyEstimate* const rival = rivalOf(choice)) {
         choice.why += fmt::format(" {}", comparisonText(*chosen, *rival));
     } else {
-        choice.why += fmt::format(
-            " {} is expected to take {}; nothing else can be chosen that treats hits "
-            "otherwise.",
-            choice.strategy, milliseconds(chosen->ms));
+        choice.why +=
+            fmt::format(" {} is expected to take {}; no strategy can be chosen that treats hits differently.",
+                        choice.strategy, milliseconds(chosen->ms));
     }
 }
 
