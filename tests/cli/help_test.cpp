@@ -35,8 +35,7 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
         {"compile", "what is kept of a hit between passes (visibility, sorted-uber);"},
         {"compile",
          "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no limit, "
-         "or 32 for "
-         "auto and profile"},
+         "or 32 for auto and profile"},
         {"compile", "if the lock file would change (needs --lock)"},
         {"compile", "(needs --lock, excludes --locked)"},
         {"compile", "-Wno-ID"},

@@ -80,8 +80,7 @@ std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimat
     const double around = sorted.ms - unsorted.ms + spared - shading;
     return fmt::format(
         "{} is expected to take {}, and {} {} ({:.2f} times): sorting {} {} of divergence, {} {} of "
-        "launches, "
-        "records and sorting, and {} {} of shading.",
+        "launches, records and sorting, and {} {} of shading.",
         chosen.strategy, milliseconds(chosen.ms), rival.strategy, milliseconds(rival.ms),
         rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "saves",
         milliseconds(std::abs(spared)), around < 0.0 ? "saves" : "adds", milliseconds(std::abs(around)),
