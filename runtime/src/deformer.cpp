@@ -103,8 +103,8 @@ Result<std::unique_ptr<Deformer>> Deformer::create(Context::State& context, cons
                                                    DeformedBuffers& target) {
     if (!package.shape().deforms) {
         return makeError("scene-package", "",
-                         "the scene has meshes that follow joints or morph targets, and the package no pass "
-                         "that moves them",
+                         "the scene has meshes that follow joints or morph targets, but the package has no "
+                         "pass that moves them",
                          "compile the package from this scene");
     }
     std::unique_ptr<Deformer> deformer(new Deformer(context));

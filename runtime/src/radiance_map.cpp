@@ -40,7 +40,7 @@ Diagnostic radianceError(const std::string& what, std::size_t pixel, std::uint32
     return makeError("environment-radiance", "",
                      "the pixel at column " + std::to_string(pixel % width) + ", row " +
                          std::to_string(pixel / width) + " from the top left " + what,
-                     "mend the image: radiance is 0 to 1e18");
+                     "correct the image: radiance is 0 to 1e18");
 }
 
 }  // namespace

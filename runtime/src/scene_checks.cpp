@@ -57,7 +57,7 @@ Status checkIndices(const PrimitiveView& view, const std::string& where) {
     if (view.indices.size() % 3 != 0) {
         return makeError("scene-index", where,
                          std::to_string(view.indices.size()) + " indices are no list of triangles",
-                         "give three indices a triangle");
+                         "give three indices for each triangle");
     }
     if (view.indices.size() > kMaxCount || view.positions.size() > kMaxCount) {
         return makeError("scene-index", where, "the primitive has more than 2^32 - 1 vertices or indices",

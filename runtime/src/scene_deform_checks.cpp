@@ -120,7 +120,7 @@ Status checkDeformation(const SceneView& scene) {
             return makeError("scene-motion", where,
                              "there are " + std::to_string(instance.morphWeights.size()) + " weights for " +
                                  std::to_string(targets) + " morph targets",
-                             "give a weight a target");
+                             "give one weight for each target");
         }
     }
     return okStatus();

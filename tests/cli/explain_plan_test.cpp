@@ -89,7 +89,7 @@ TEST_F(ExplainPlan, EstimatesAreNearWhatIsCompiled) {
 TEST_F(ExplainPlan, TextSaysWhatEachCaseCostsAndWhy) {
     const Outcome apart = explain({"--merge", "none"});
     ASSERT_EQ(apart.exit, 0) << apart.err;
-    EXPECT_NE(apart.out.find("scene.gltf: 2 keys in 2 cases, --merge none; hits as areas let expect"),
+    EXPECT_NE(apart.out.find("scene.gltf: 2 keys in 2 cases, --merge none; hits expected from areas"),
               std::string::npos)
         << apart.out;
     EXPECT_NE(apart.out.find("what merging with the nearest case would cost"), std::string::npos);

@@ -35,8 +35,8 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
          "queries; hit-shaders always has its own"},
         {"compile", "what is kept of a hit between passes (visibility, sorted-uber);"},
         {"compile",
-         "most shaders: --merge auto and profile keep to it, others fail above it; 0: no limit, 32 for those "
-         "two"},
+         "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no limit, "
+         "or 32 for auto and profile"},
         {"compile", "if the lock file would change (needs --lock)"},
         {"compile", "(needs --lock, excludes --locked)"},
         {"compile", "-Wno-ID"},

@@ -57,8 +57,7 @@ TEST_F(Lock, KeysKeepTheirIdsAndComeBackToThem) {
     const Outcome coated = compile({"--lock", "glint.lock"});
     ASSERT_EQ(coated.exit, 0) << coated.err;
     EXPECT_EQ(lock(), "version 1\n2 clearcoat normals\n1 normals\n0 unlit\n");
-    EXPECT_TRUE(
-        has(coated.err, "glint.lock: note: keeps 1 key that nothing has here: 1 normals; --lock-prune"))
+    EXPECT_TRUE(has(coated.err, "glint.lock: note: keeps 1 key that no scene has: 1 normals; --lock-prune"))
         << coated.err;
     // The gap is also in the package.
     const Json shaders = run({"inspect", "package", "--json"}).json().at("shaders");
@@ -73,7 +72,7 @@ TEST_F(Lock, KeysKeepTheirIdsAndComeBackToThem) {
     EXPECT_EQ(lock(), "version 1\n2 clearcoat normals\n1 normals\n0 unlit\n");
     const Outcome pruned = compile({"--lock", "glint.lock", "--lock-prune"});
     ASSERT_EQ(pruned.exit, 0);
-    EXPECT_TRUE(has(pruned.err, "note: loses 1 key that nothing has here: 2 clearcoat normals [lock-stale]"))
+    EXPECT_TRUE(has(pruned.err, "note: loses 1 key that no scene has: 2 clearcoat normals [lock-stale]"))
         << pruned.err;
     EXPECT_EQ(lock(), "version 1\n1 normals\n0 unlit\n");
 }

@@ -76,7 +76,7 @@ TEST_F(Merge, ProfileTellsHotFromNeverHit) {
     ASSERT_EQ(explained.exit, 0) << explained.err;
     EXPECT_NE(explained.out.find("never-hit: no hit of the profile has its key"), std::string::npos)
         << explained.out;
-    EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
+    EXPECT_NE(explained.out.find("counted by the profile"), std::string::npos) << explained.out;
 }
 
 // The floor has the larger area, and the wall has the hits that the profile counts.
@@ -93,7 +93,7 @@ TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
     EXPECT_EQ(sharesOf(named), std::pair(0.75, 0.25));
     EXPECT_NE(sharesOf(plan({"--merge", "auto"})), std::pair(0.75, 0.25));
     const Outcome explained = run({"explain", scene_, "--merge", "auto:hits.json"});
-    EXPECT_NE(explained.out.find("as counted"), std::string::npos) << explained.out;
+    EXPECT_NE(explained.out.find("counted by the profile"), std::string::npos) << explained.out;
     EXPECT_EQ(plan({"--merge", "auto:missing.json"}).exit, 1);
 }
 
@@ -166,7 +166,7 @@ TEST_F(Merge, MalformedProfilesFailWithTheirPlace) {
         EXPECT_NE(outcome.err.find("[profile-format]"), std::string::npos) << outcome.err;
     }
     writeText(path("hits.json"), "{\"format\": ");
-    EXPECT_NE(plan({"--merge", "profile:hits.json"}).err.find("is no JSON: byte "), std::string::npos);
+    EXPECT_NE(plan({"--merge", "profile:hits.json"}).err.find("is not valid JSON: byte "), std::string::npos);
     EXPECT_NE(plan({"--merge", "profile:missing.json"}).err.find("[file-open]"), std::string::npos);
 }
 
@@ -211,11 +211,11 @@ TEST_F(Merge, OptionsThatDisagreeAreRefused) {
         {{"compile", "a.gltf", "-o", "x", "--merge", "profle"}, "did you mean profile?"},
         {{"compile", "a.gltf", "-o", "x", "--profile", "p"},
          "is for --merge profile and auto, not for --merge family"},
-        {{"compile", "a.gltf", "-o", "x", "--merge", "profile:p", "--profile", "q"}, "give one of them"},
+        {{"compile", "a.gltf", "-o", "x", "--merge", "profile:p", "--profile", "q"}, "give only one of them"},
         {{"explain", "a.gltf", "--merge", "none", "--profile", "p"}, "is for --merge profile"},
         {{"explain", "a.gltf", "--merge", "family:p"}, "is none of"},
         {{"explain", "a.gltf", "--merge", "auto:"}, "is none of"},
-        {{"explain", "a.gltf", "--merge", "auto:p", "--profile", "q"}, "give one of them"},
+        {{"explain", "a.gltf", "--merge", "auto:p", "--profile", "q"}, "give only one of them"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "profile"}, "profile:FILE"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "profile:p", "--profile", "q"}, "leave out --merge"},
         {{"render", "a.gltf", "-o", "a.png", "--merge", "all", "--profile", "q"}, "leave out --merge all"},

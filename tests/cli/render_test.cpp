@@ -113,7 +113,7 @@ TEST_F(RenderCommand, SamplesThatAreNoNumberAreWarnedOf) {
     const Outcome outcome = render("a.png", {"--json"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     EXPECT_GT(outcome.json().at("counters").at("nonFinite").get<int>(), 0);
-    EXPECT_NE(outcome.err.find("were no number and count as black"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("were NaN or infinite and count as black"), std::string::npos) << outcome.err;
 }
 
 TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {

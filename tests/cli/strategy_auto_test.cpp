@@ -166,7 +166,7 @@ TEST_F(StrategyAuto, BadDeviceFilesAreRefused) {
     writeText(path("bad.json"), "{\"format\": ");
     const Outcome broken = run({"explain", "scene.gltf", "--calibration", "bad.json"});
     EXPECT_EQ(broken.exit, 1);
-    EXPECT_NE(broken.err.find("is no JSON"), std::string::npos) << broken.err;
+    EXPECT_NE(broken.err.find("is not valid JSON"), std::string::npos) << broken.err;
     const Outcome absent =
         run({"compile", "scene.gltf", "-o", "package", "--strategy", "auto", "--calibration", "none.json"});
     EXPECT_EQ(absent.exit, 1);

@@ -118,7 +118,7 @@ Json sampleSettingsJson() {
                     {"option", "--max-interfaces"},
                     {"stage", "render"},
                     {"approximates", true},
-                    {"what", "surfaces that a refracted ray meets at most"},
+                    {"what", "the most surfaces that a refracted ray meets"},
                     {"default", "8"},
                     {"values", {"8"}},
                     {"skipped",

@@ -313,10 +313,9 @@ int run(const Console& console, const BenchArguments& arguments) {
                                   (std::filesystem::path(arguments.output) / kReportFile).string()));
     }
     if (report.advice && !report.advice->point) {
-        return fail(
-            makeError("bench-advice", arguments.render.scene, report.advice->why,
-                      "ask for more time or more error, or leave out the demand; the measurements are "
-                      "written all the same"));
+        return fail(makeError(
+            "bench-advice", arguments.render.scene, report.advice->why,
+            "allow more time or more error, or leave out the limit; the measurements are still written"));
     }
     return kExitDone;
 }

@@ -66,27 +66,29 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     command.get_option("SCENE")->required(false)->description(
         "the scene, .gltf or .glb; none with --calibrate");
     const std::string sweep = "Sweep";
-    addFlag(
-        command, "--quick", arguments.quick,
-        fmt::format("fewer values, pairs and rounds, a less certain\nreference, and {} unless --size says "
-                    "else",
-                    kQuickSize))
+    addFlag(command, "--quick", arguments.quick,
+            fmt::format("fewer values, pairs and rounds, a less certain reference,\n"
+                        "and {} unless --size is given",
+                        kQuickSize))
         .group(sweep);
     addChoice(command, "--depth", arguments.depth, {"singles", "pairs", "search"},
-              "how far; singles: one setting at a time; pairs: then\nthose that matter; search: then for the "
-              "Pareto front")
+              "how far the sweep goes; singles: one setting at a time;\n"
+              "pairs: then the pairs that matter; search: then a search\n"
+              "for the Pareto front")
         .group(sweep);
     addChoices(command, "--only", arguments.only, bench::settingNames(),
-               "sweep these settings alone, separated by commas\n(default: all)")
+               "sweep only these settings, separated by commas (default:\n"
+               "all)")
         .type_name("LIST")
         ->group(sweep);
     addInteger(command, "--rounds", arguments.rounds, 0, 1000,
-               fmt::format("pictures of each configuration, each with other random\nnumbers; 0: {}, with "
-                           "--quick or --calibrate {}",
+               fmt::format("pictures of each configuration, each with other random\n"
+                           "numbers; 0: {}, or {} with --quick or --calibrate",
                            kRounds, kQuickRounds))
         .group(sweep);
     addInteger(command, "--batch", arguments.batch, 1, 64,
-               "configurations on the device at a time, besides the one\nthat all are compared with")
+               "configurations on the device at a time, besides the one\n"
+               "with which all are compared")
         .group(sweep);
     addTexts(command, "--candidate", arguments.candidateWords, "NAME=DIR",
              "measure this package of the scene, too; may be repeated")
@@ -94,16 +96,18 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
         ->group(sweep);
     const std::string errors = "Errors";
     addChoice(command, "--metric", arguments.metric, {"relMse", "trimmed", "rmse", "flip"},
-              "the error that configurations are ordered by; trimmed:\nrelMSE without the 0.1 % of pixels "
-              "that are worst, which\nfireflies decide otherwise")
+              "the error by which configurations are ordered; trimmed:\n"
+              "relMSE without the worst 0.1 % of pixels, so that\n"
+              "fireflies do not decide")
         .group(errors);
     addReal(command, "--reference-error", arguments.referenceError, 0.0, 1.0,
-            fmt::format("relative error that the reference itself may have;\n0: {}, with --quick {} (0 to "
-                        "1, default: 0)",
+            fmt::format("relative error that the reference itself may have; 0: {},\n"
+                        "or {} with --quick (0 to 1, default: 0)",
                         kReferenceError, kQuickReferenceError))
         .group(errors);
     addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
-               fmt::format("samples a pixel of the reference at most; 0: {}, with\n--quick {}",
+               fmt::format("the most samples per pixel of the reference; 0: {}, or {}\n"
+                           "with --quick",
                            kReferenceSamples, kQuickReferenceSamples))
         .group(errors);
     const std::string advice = "Advice";
@@ -125,7 +129,7 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     for (const char* const name : {"--budget-ms", "--max-error"}) {
         const CLI::Option* const option = command.get_option(name);
         if (option->count() > 0 && !(option->as<double>() > 0.0)) {
-            throw CLI::ValidationError(name, "0 is within no setting's reach: give more");
+            throw CLI::ValidationError(name, "no setting can reach 0; give a larger number");
         }
     }
     for (const std::string& text : arguments.candidateWords) {

@@ -116,8 +116,8 @@ Status checkBenchFolder(const fs::path& folder, const char* mark) {
         return makeError("bench-folder", folder.string(), "is a file, not a folder", "give another -o");
     }
     if (fs::exists(status) && !fs::is_empty(folder, error) && !fs::exists(folder / mark, error)) {
-        return makeError("bench-folder", folder.string(), "holds something else than a bench",
-                         "give an empty folder, one that is not there yet, or that of an earlier bench");
+        return makeError("bench-folder", folder.string(), "holds something other than a bench",
+                         "give an empty folder, a new one, or that of an earlier bench");
     }
     fs::path parent = fs::absolute(folder, error);
     while (!parent.empty() && !fs::exists(parent, error) && parent != parent.parent_path()) {

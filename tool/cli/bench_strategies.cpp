@@ -88,31 +88,29 @@ void explain(StrategyReport& report) {
         }
     }
     report.why.push_back(
-        fmt::format("Of {}'s time {:.0f} % are what all strategies do alike: primary surfaces, rays, the "
-                    "composition. Only the rest is theirs.",
+        fmt::format("In a picture with {}, {:.0f} % of the time is work that all strategies share: primary "
+                    "surfaces, rays, the composition. Strategies differ only in the rest.",
                     least->strategy, percent(least->commonMs, *least)));
     for (const StrategyRow& row : report.rows) {
         if (row.orderMs > 0.0) {
             report.why.push_back(
-                fmt::format("{} spends {:.1f} % on tracing to records, {:.1f} % on their order and {:.1f} % "
-                            "on shading them.",
+                fmt::format("{} spends {:.1f} % on tracing into hit records, {:.1f} % on sorting them and "
+                            "{:.1f} % on shading them.",
                             row.strategy, percent(row.traceMs, row), percent(row.orderMs, row),
                             percent(row.shadeMs, row)));
         } else {
             report.why.push_back(
-                fmt::format("{} orders nothing: it spends {:.1f} % on tracing and shading "
-                            "hits at once.",
+                fmt::format("{} sorts nothing: it spends {:.1f} % on tracing and shading hits at once.",
                             row.strategy, percent(row.shadeMs, row)));
         }
     }
     const std::uint32_t rays = report.rows.front().rays;
     report.why.push_back(fmt::format("A sample sends {} rays whose hits are shaded.", rays));
     if (report.cases > 0) {
-        report.why.push_back(
-            fmt::format("Hits are of {} of {} shaders, {:.0f} % of them of one; 32 hits in random order are "
-                        "of {:.1f}: so "
-                        "many a subgroup of an uber shader runs one after another at most.",
-                        report.filledCases, report.cases, 100.0 * report.largestShare, report.casesInWave));
+        report.why.push_back(fmt::format(
+            "Hits have {} of {} shaders, and {:.0f} % of them have the same one. 32 hits in random order "
+            "have {:.1f} shaders: a subgroup of an uber shader runs at most that many one after another.",
+            report.filledCases, report.cases, 100.0 * report.largestShare, report.casesInWave));
     }
 }
 

@@ -137,7 +137,7 @@ std::string toText(const BenchReport& report) {
                       reference.reached ? fmt::format("asked for {:.2g} %", 100.0 * reference.target)
                                         : fmt::format("NOT the {:.2g} % asked for: give more --reference-spp",
                                                       100.0 * reference.target))},
-         {"its relMSE", fmt::format("{:.2g}: no error below tells anything", reference.noise.relMse)},
+         {"its relMSE", fmt::format("{:.2g}: smaller errors can't be told apart", reference.noise.relMse)},
          {"measured", fmt::format("{} configurations in {} rounds, {:.0f} s", report.points.size(),
                                   report.rounds, report.seconds)}});
     text +=

@@ -29,12 +29,14 @@ std::string variable(const char* name) {
 
 void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
     addText(command, "--cache", arguments.folder, "DIR",
-            "folder that keeps compiled shaders; none: no folder\n"
-            "(default: $GLINT_CACHE, else $XDG_CACHE_HOME/glint,\nelse ~/.cache/glint)")
+            "folder that keeps compiled shaders; none: keep nothing\n"
+            "(default: $GLINT_CACHE, else $XDG_CACHE_HOME/glint, else\n"
+            "~/.cache/glint)")
         .group("Output");
     constexpr std::int64_t kLargest = 1 << 20;
     addInteger(command, "--cache-size", arguments.mebibytes, 1, kLargest,
-               "MiB that the cache may have; what was not used for\nlongest goes")
+               "size limit of the cache in MiB; the least recently used\n"
+               "entries are removed first")
         .group("Output");
 }
 

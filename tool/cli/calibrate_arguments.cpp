@@ -83,20 +83,20 @@ bool isTaken(const CLI::Option& option) {
 }  // namespace
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
-    addFlag(
-        command, "--calibrate", arguments.enabled,
-        "time the strategies on generated scenes instead of a\nSCENE: which is fastest on this device, by "
-        "the number of\nshaders, of rays, and what a hit costs")
+    addFlag(command, "--calibrate", arguments.enabled,
+            "time the strategies on generated scenes instead of a\n"
+            "SCENE: which one is fastest on this device, depending on\n"
+            "the numbers of shaders and rays and on the cost of a hit")
         .group(kGroup);
     addCounts(command, "--calibrate-cases", arguments.caseWords, 1, synthetic::kMaxCases,
-              "numbers of shaders, 1 to 256, separated by commas; auto:\n1,4,16,64,256, with --quick 1,16,64 "
-              "(default: auto)");
-    addCounts(
-        command, "--calibrate-rays", arguments.rayWords, kMinRays, kMaxRays,
-        "numbers of rays, 1024 to 64M (k: thousands, M: millions);\nauto: 1M,8M,32M, with --quick 1M,8M; "
-        "on a CPU\n16k,64k,256k, with --quick 16k,64k (default: auto)");
+              "numbers of shaders, 1 to 256, separated by commas; auto:\n"
+              "1,4,16,64,256, or 1,16,64 with --quick (default: auto)");
+    addCounts(command, "--calibrate-rays", arguments.rayWords, kMinRays, kMaxRays,
+              "numbers of rays, 1024 to 64M (k: thousands, M: millions);\n"
+              "auto: 1M,8M,32M, or 1M,8M with --quick; on a CPU\n"
+              "16k,64k,256k, or 16k,64k with --quick (default: auto)");
     addChoices(command, "--calibrate-cost", arguments.costs, {"cheap", "expensive"},
-               "what shading a hit takes")
+               "what shading a hit costs")
         .type_name("LIST")
         ->group(kGroup);
     addChoices(command, "--calibrate-coherence", arguments.coherences, {"coherent", "incoherent"},
@@ -104,10 +104,11 @@ void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
         .type_name("LIST")
         ->group(kGroup);
     addChoice(command, "--calibrate-shares", arguments.shares, {"uniform", "zipf"},
-              "how hits fall to shaders; zipf: as 1, 1/2, 1/3, …")
+              "how hits are shared among shaders; zipf: in the\n"
+              "proportions 1, 1/2, 1/3, …")
         .group(kGroup);
     addInteger(command, "--calibrate-lights", arguments.lights, 0, 64,
-               "point lights that each hit is shaded with; 0: the sky\nalone")
+               "point lights that shade each hit; 0: only the sky")
         .group(kGroup);
     addFlag(command, "--calibrate-shadows", arguments.shadows,
             "hits send shadow rays to those lights; needs\n--calibrate-lights")
@@ -124,9 +125,10 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
         }
         const std::string name = option->get_name();
         if (arguments.enabled && !isTaken(*option)) {
-            throw CLI::ValidationError(
-                name, option->get_positional() ? "has no place beside --calibrate, which makes its own scenes"
-                                               : "has no place beside --calibrate; leave out one of them");
+            throw CLI::ValidationError(name,
+                                       option->get_positional()
+                                           ? "can't be combined with --calibrate, which makes its own scenes"
+                                           : "can't be combined with --calibrate; leave out one of them");
         }
         if (!arguments.enabled && option->get_group() == kGroup) {
             throw CLI::ValidationError(name, "needs --calibrate");
@@ -136,8 +138,7 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
         throw CLI::RequiredError("SCENE");
     }
     if (arguments.shadows && arguments.lights == 0) {
-        throw CLI::ValidationError("--calibrate-shadows",
-                                   "needs a light that throws them: give --calibrate-lights 1 or more");
+        throw CLI::ValidationError("--calibrate-shadows", "needs lights; give --calibrate-lights 1 or more");
     }
 }
 

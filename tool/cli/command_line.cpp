@@ -26,7 +26,7 @@ using Arguments = std::span<const char* const>;
 void describe(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.name("glint");
-    app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
+    app.description("Compiles the materials of glTF scenes into shaders for ray hits, and runs them.");
     app.set_version_flag("--version",
                          std::string("glint ") + GLINT_VERSION +
                              (gltf::hasBasisu() ? "\nKTX2 textures (KHR_texture_basisu): read by libktx"
@@ -36,8 +36,8 @@ void describe(CLI::App& app) {
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"
         "Results go to stdout, diagnostics and progress to stderr.\n"
-        "Environment: NO_COLOR turns colour off; TMPDIR holds temporary files; GLINT_CACHE\n"
-        "keeps compiled shaders (see glint compile --help).\n"
+        "Environment: NO_COLOR turns colour off; TMPDIR names the folder of temporary files,\nGLINT_CACHE "
+        "the one that keeps compiled shaders (see glint compile --help).\n"
         "Run glint COMMAND --help for the options of a command.");
     app.get_formatter()->label("SUBCOMMAND", "COMMAND");
     app.get_formatter()->label("REQUIRED", "(required)");
@@ -57,7 +57,7 @@ int act(const Action& chosen, const ReportArguments& report) {
     int code = chosen(console);
     if (console.refused()) {
         console.report(makeError("werror", "", "there are warnings that count as errors",
-                                 "mend them, or leave out --werror and -Werror"));
+                                 "fix them, or leave out --werror and -Werror"));
         code = kExitFailed;
     }
     if (Status finished = console.finish(); !finished) {

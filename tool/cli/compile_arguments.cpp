@@ -30,7 +30,8 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addEffectOptions(command, arguments.effects);
     addAccuracyOptions(command, arguments.accuracy);
     addFlag(command, "--environment-map", arguments.environmentMap,
-            "what leaves the scene sees an environment map, which\nrenderers then need; without: a gradient")
+            "rays that leave the scene see an environment map, which\n"
+            "every frame then needs, instead of a gradient")
         .group("Shaders");
     addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
         .group("Shaders");
@@ -43,11 +44,11 @@ void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option&
                                 "folder, and a build.ninja that compiles them one by one\n"
                                 "and makes the package");
     CLI::Option& launcher = addText(command, kLauncher, arguments.launcher, "COMMAND",
-                                    "with --plan-only: what runs each of these compilations,\n"
-                                    "such as the client of a farm");
-    CLI::Option& modules =
-        addText(command, kModules, arguments.modules, "DIR",
-                "take modules that glint compile-module made instead of\ncompiling: what build.ninja does");
+                                    "with --plan-only: the command that runs each compilation,\n"
+                                    "such as the client of a build farm");
+    CLI::Option& modules = addText(command, kModules, arguments.modules, "DIR",
+                                   "take modules that glint compile-module made instead of\n"
+                                   "compiling; build.ninja uses this");
     launcher.needs(&plan);
     plan.excludes(&dry)->excludes(&modules);
     modules.excludes(&dry);
@@ -58,20 +59,22 @@ void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option&
 
 void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the package; one that is there is replaced\n(required without --embed or --dry-run)")
+            "folder of the package; an earlier package is replaced\n"
+            "(required without --embed or --dry-run)")
         .group("Output");
     addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
-                   "the package as a C++ source, with a header beside it, for\n"
-                   "programs that ship no files; -o may then be left out")
+                   "write the package as a C++ source, with a header beside\n"
+                   "it, for programs that ship no files; -o is then optional")
         .group("Output")
         ->type_name("FILE.cpp");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
                "what else the package holds, separated by commas:\n"
                "glsl: the shaders' sources; header: C++ tables")
         .group("Output");
-    CLI::Option& dry = addFlag(command, "--dry-run", arguments.dryRun, "compile and write nothing");
+    CLI::Option& dry =
+        addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
     dry.group("Output");
-    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one a core")
+    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")
         .group("Output");
     addCacheOptions(command, arguments.cache);
     addDepfileOptions(command, arguments.depfile);

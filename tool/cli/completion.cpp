@@ -14,7 +14,7 @@ void addCompletion(CLI::App& app, Action& chosen) {
     CLI::App& command =
         addCommand(app, "completion", "Print a script that completes this command line in a shell",
                    "glint completion bash > ~/.local/share/bash-completion/completions/glint");
-    addChoice(command, "SHELL", *shell, {"bash", "zsh", "fish"}, "for which shell").required();
+    addChoice(command, "SHELL", *shell, {"bash", "zsh", "fish"}, "the shell").required();
     command.callback([shell, &app, &chosen] {
         chosen = [shell, &app](const Console& console) {
             const std::vector<CommandModel> commands = describeCommands(app);

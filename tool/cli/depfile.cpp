@@ -27,7 +27,7 @@ bool isAmong(char c, std::string_view characters) {
 
 Diagnostic nameError(std::string_view name, const std::string& why) {
     return makeError("depfile-name", std::string(name),
-                     "can't stand in a file that Make and Ninja read: " + why,
+                     "can't be written to a file for Make and Ninja: " + why,
                      "rename the file, or leave out --depfile");
 }
 
@@ -58,10 +58,11 @@ Result<std::string> escape(std::string_view name, bool isTarget) {
 }  // namespace
 
 void addDepfileOptions(CLI::App& command, DepfileArguments& arguments) {
-    addText(command, "--depfile", arguments.file, "FILE", "list what was read, for Make and Ninja")
+    addText(command, "--depfile", arguments.file, "FILE", "list the files that were read, for Make and Ninja")
         .group("Output");
     addTexts(command, "--depfile-target", arguments.targets, "NAME",
-             "what the list is of (default: the package's\nmanifest.json, else the file of --embed)")
+             "target of that list (default: the package's\n"
+             "manifest.json, else the file of --embed); may be repeated")
         .group("Output")
         ->allow_extra_args(false);
 }

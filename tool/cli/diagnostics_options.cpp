@@ -81,7 +81,7 @@ ConsoleOptions ReportArguments::options() const {
 
 void ReportArguments::check() const {
     if (quiet && verbose) {
-        throw CLI::ValidationError("--verbose", "says more, and --quiet less: leave out one of them");
+        throw CLI::ValidationError("--verbose", "contradicts --quiet; leave out one of them");
     }
 }
 
@@ -91,22 +91,23 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
         addFlag(command, "--json", arguments.json, "print the result and all diagnostics as JSON")
             .group(group);
     }
-    addFlag(command, "--quiet", arguments.quiet, "print errors, and nothing else").group(group);
-    addFlag(command, "--verbose", arguments.verbose, "say what is read, decided and made, and when")
+    addFlag(command, "--quiet", arguments.quiet, "print only errors").group(group);
+    addFlag(command, "--verbose", arguments.verbose, "say what is read, decided and made, with times")
         .group(group);
     addChoice(command, "--color", arguments.color, {"auto", "always", "never"},
               "colour of diagnostics; auto: where stderr is a terminal\nand NO_COLOR is not set")
         .group(group);
     command
         .add_flag("--werror", arguments.werror,
-                  "warnings are errors; --werror=ID: those of that id are,\nmay be repeated")
+                  "treat warnings as errors; --werror=ID: only those of this\n"
+                  "id; may be repeated")
         ->group(group)
         ->check(CLI::Validator(
             [](const std::string& id) { return id == kAll ? std::string() : checkId(id, kWarning); }, ""));
     command
         .add_option("-W", arguments.warnings,
-                    "what becomes of warnings; -Wno-ID: those of that id are\nleft out, and notes; -Werror, "
-                    "-Werror=ID: as --werror")
+                    "-Wno-ID: hide warnings and notes of this id; -Werror,\n"
+                    "-Werror=ID: the same as --werror; may be repeated")
         ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)
         ->group(group)

@@ -45,10 +45,10 @@ void EffectArguments::apply(CompileSettings& settings) const {
 
 CLI::Option& addEffectOptions(CLI::App& command, EffectArguments& arguments) {
     CLI::Option& effects = addChoices(command, "--effects", arguments.effects, effectChoices(),
-                                      "which effects there are, separated by commas; auto: those\n"
-                                      "that the scene calls for, of shadow, reflection and\n"
-                                      "refraction; further: ambient-occlusion, indirect-diffuse;\n"
-                                      "none; all");
+                                      "which effects the package has, separated by commas; auto:\n"
+                                      "shadow, reflection and refraction, where the scene calls\n"
+                                      "for them; ambient-occlusion and indirect-diffuse have to\n"
+                                      "be named; none; all");
     effects.type_name("auto|none|all|LIST")->group("Effects");
     addReal(command, "--max-roughness", arguments.maxRoughness, 0.0, 1.0,
             "rougher surfaces send no reflection ray\n(0 to 1, default: 0.3)")
@@ -60,8 +60,9 @@ void checkEffects(const EffectArguments& arguments) {
     for (const char* const alone : {kNothing, kEverything}) {
         const bool named = std::ranges::find(arguments.effects, alone) != arguments.effects.end();
         if (named && arguments.effects.size() > 1) {
-            throw CLI::ValidationError("--effects",
-                                       std::string(alone) + " stands alone: leave out it or the others");
+            throw CLI::ValidationError(
+                "--effects",
+                std::string(alone) + " can't be combined with other effects; leave out one or the others");
         }
     }
 }
@@ -123,28 +124,33 @@ void EffectFrameArguments::apply(SceneViewData& scene) const {
 void addEffectFrameOptions(CLI::App& command, EffectFrameArguments& arguments) {
     const std::string group = "Effects";
     addReal(command, "--skip-below", arguments.skipBelow, 0.0, 1.0,
-            "rays whose light would count less than this are not\nsent, and it is lost (0 to 1, default: 0, "
-            "none)")
+            "do not send rays whose weight is below X; their light is\n"
+            "lost (0 to 1, default: 0, every ray is sent)")
         .group(group);
     addReal(command, "--light-radius", arguments.lightRadius, 0.0, kMaxMetres,
-            "of point and spot lights, metres: soft shadows\n(default: 0, hard)")
+            "radius of point and spot lights in metres, for soft\n"
+            "shadows (0 to 1e6, default: 0, hard shadows)")
         .group(group);
     addReal(command, "--sun-angle", arguments.sunAngle, 0.0, 90.0,
-            "angular diameter of directional lights, degrees; the sun\nhas 0.53 (0 to 90, default: 0, hard)")
+            "angular diameter of directional lights in degrees; the\n"
+            "sun has 0.53 (0 to 90, default: 0, hard shadows)")
         .group(group);
     addInteger(command, "--shadow-spp", arguments.shadowSamples, 1, 4096,
-               "shadow rays a sample to each light that has a size")
+               "shadow rays per sample to each light that has a size")
         .group(group);
     addReal(command, "--ao-radius", arguments.occlusionRadius, 0.0, kMaxMetres,
-            "how far ambient-occlusion looks, metres\n(default: 0, without a limit)")
+            "how far ambient-occlusion looks, in metres (0 to 1e6,\n"
+            "default: 0, without a limit)")
         .group(group);
     addChoice(command, "--ao-falloff", arguments.occlusionFalloff, {"none", "linear"},
-              "whether what occludes counts less the farther it is")
+              "linear: surfaces occlude less the farther away they are;\n"
+              "needs --ao-radius")
         .group(group);
-    addInteger(command, "--ao-spp", arguments.occlusionSamples, 1, 4096, "rays a sample of ambient-occlusion")
+    addInteger(command, "--ao-spp", arguments.occlusionSamples, 1, 4096,
+               "rays per sample of ambient-occlusion")
         .group(group);
     addInteger(command, "--max-interfaces", arguments.maxInterfaces, 1, 64,
-               "surfaces that a refracted ray meets at most")
+               "the most surfaces that a refracted ray meets")
         .group(group);
     addFlag(command, "--batch-effects", arguments.batch,
             "shade the hits of all effects together: fewer and larger\ndispatches, more memory")
@@ -153,7 +159,7 @@ void addEffectFrameOptions(CLI::App& command, EffectFrameArguments& arguments) {
 
 void checkEffectFrame(const EffectFrameArguments& arguments) {
     if (arguments.occlusionFalloff == "linear" && arguments.occlusionRadius <= 0.0) {
-        throw CLI::ValidationError("--ao-falloff", "linear ends at a radius: give one by --ao-radius");
+        throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");
     }
 }
 

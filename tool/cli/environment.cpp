@@ -64,14 +64,15 @@ void addEnvironmentOptions(CLI::App& command, EnvironmentArguments& arguments) {
             "--environment)")
         .group(group);
     addReal(command, kMapIntensity, arguments.intensity, 0.0, kMaxIntensity,
-            "times the map's radiance (0 to 1e9, default: 1; needs\n--environment)")
+            "factor of the map's radiance (0 to 1e9, default: 1; needs\n"
+            "--environment)")
         .group(group);
 }
 
 void checkEnvironmentOptions(const CLI::App& command) {
     for (const char* option : {kRotation, kMapIntensity}) {
         if (command.count(option) > 0 && command.count(kMap) == 0) {
-            throw CLI::ValidationError(option, "needs --environment, the map that it is about");
+            throw CLI::ValidationError(option, "needs --environment");
         }
     }
 }

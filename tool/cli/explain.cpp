@@ -146,7 +146,7 @@ std::string sharesText(const Planned& planned, const Key& key, const Case& shade
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
     return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
-                       counted ? "as counted" : "expected from areas");
+                       counted ? "counted by the profile" : "expected from areas");
 }
 
 std::string toText(const Planned& planned, int material) {
@@ -319,10 +319,12 @@ void addExplain(CLI::App& app, Action& chosen) {
                    "glint explain scene.gltf --material Leaves --alpha tested");
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
     CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
-                                    "only this one; a number counts from 0 (default: all)");
+                                    "show only this material; numbers count from 0 (default:\n"
+                                    "all)");
     addFlag(command, "--plan", arguments->wholePlan,
-            "what each shader costs by the cost model of --merge auto,\n"
-            "what shares it and why, instead of materials")
+            "show the shaders instead of the materials: what each\n"
+            "costs by the cost model of --merge auto, what shares it,\n"
+            "and why")
         .excludes(&material);
     addVariant(command, arguments->variant);
     addCalibration(command, arguments->calibration);

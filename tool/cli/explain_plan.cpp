@@ -51,11 +51,11 @@ std::string headText(const PlannedScenes& planned) {
         "more\n"
         "              than its key: branches, and code that other lanes of its subgroup wait for\n"
         "spared        {:.0f} for each case that sharing makes unnecessary\n"
-        "instructions  of the case's shader, estimated, as are fetches\n"
-        "apart         those of shaders of its keys alone, on average over its hits\n",
+        "instructions  of the case's shader; they and the fetches are estimated\n"
+        "apart         instructions of shaders of its keys alone, on average over its hits\n",
         planned.scenes.fileNames(), counted(planned.plan.keys.size(), "key"),
         counted(caseCount(planned.plan), "case"), toString(planned.options.merge), limit,
-        countsHits(planned.options) ? "as counted" : "as areas let expect", kCaseCost);
+        countsHits(planned.options) ? "counted by the profile" : "expected from areas", kCaseCost);
 }
 
 std::string overviewText(const PlannedScenes& planned, const PlanCost& cost) {

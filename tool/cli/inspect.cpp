@@ -57,8 +57,9 @@ void addInspect(CLI::App& app, Action& chosen) {
     CLI::App& command = addCommand(app, "inspect", "Show what a package holds", "glint inspect scene.glint");
     addText(command, "DIR", arguments->folder, "DIR", "folder of the package").required();
     addText(command, "--disassemble", arguments->disassemble, "ID|NAME",
-            "print modules as SPIR-V assembly instead: those of a\nshader by ID or name, of a role, or of a "
-            "file");
+            "print modules as SPIR-V assembly instead: those of a\n"
+            "shader by ID or name, of a role, or of a file (default:\n"
+            "off)");
     command.callback([arguments, &chosen] {
         chosen = [arguments](const Console& console) { return inspect(console, *arguments); };
     });

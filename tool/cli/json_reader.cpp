@@ -19,7 +19,7 @@ Result<Json> JsonReader::read(std::uint64_t mostBytes) {
     try {
         return Json::parse(bytes->begin(), bytes->end());
     } catch (const Json::parse_error& error) {
-        fail("", fmt::format("is no JSON: byte {} is wrong", error.byte));
+        fail("", fmt::format("is not valid JSON: byte {} is wrong", error.byte));
     } catch (const Json::exception&) {
         // The syntax is right, but a double can't hold the number.
         fail("", "holds a number that is too large");

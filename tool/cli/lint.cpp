@@ -158,7 +158,7 @@ int lint(const Console& console, const LintArguments& arguments) {
     LintReport report;
     report.malioc = findProgram(arguments.malioc.empty() ? "malioc" : arguments.malioc);
     if (!report.malioc && !arguments.malioc.empty()) {
-        console.report(makeError("malioc", arguments.malioc, "is no program that can be run"));
+        console.report(makeError("malioc", arguments.malioc, "is not a program that can be run"));
         return kExitFailed;
     }
     for (const std::string& path : arguments.paths) {
@@ -185,7 +185,10 @@ int lint(const Console& console, const LintArguments& arguments) {
 
 void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const std::string& what) {
     auto& option = addInteger(command, flag, budget.limit, 0, std::numeric_limits<std::int32_t>::max(), "");
-    option.description(fmt::format("error above N {} in a module\n(default: no limit)", what));
+    option.description(
+        fmt::format("report an error above N {} in a module (0 to 2147483647,\n"
+                    "default: no limit)",
+                    what));
     option.group("Budgets");
     budget.option = &option;
 }

@@ -129,8 +129,7 @@ private:
         if (!lost_.empty()) {
             choice.warnings.push_back(makeWarning(
                 "lock-conflict", arguments_.file,
-                fmt::format("has IDs for keys that are different cases now; these get new ones: {}",
-                            moves(lost_)),
+                fmt::format("has IDs that several cases claim now; these keys get new IDs: {}", moves(lost_)),
                 "commit the file that is written now"));
         }
     }
@@ -154,12 +153,12 @@ private:
         if (arguments_.prune) {
             choice.notes.push_back(
                 {Severity::Note, "lock-stale", arguments_.file,
-                 fmt::format("loses {} that nothing has here: {}", count(update_.stale.size(), "key"), list),
+                 fmt::format("loses {} that no scene has: {}", count(update_.stale.size(), "key"), list),
                  ""});
         } else {
             choice.notes.push_back(
                 {Severity::Note, "lock-stale", arguments_.file,
-                 fmt::format("keeps {} that nothing has here: {}", count(update_.stale.size(), "key"), list),
+                 fmt::format("keeps {} that no scene has: {}", count(update_.stale.size(), "key"), list),
                  fmt::format("--lock-prune drops {}", many ? "them" : "it")});
         }
     }
@@ -183,19 +182,20 @@ private:
 
 void addLockInput(CLI::App& command, LockArguments& arguments) {
     addText(command, "--lock", arguments.file, "FILE",
-            "shader IDs as this file of glint compile --lock keeps them")
+            "take shader IDs from this file, which glint compile\n"
+            "--lock keeps")
         .group("Shaders");
 }
 
 void addLockOptions(CLI::App& command, LockArguments& arguments) {
     arguments.isWritten = true;
     CLI::Option& lock = addText(command, "--lock", arguments.file, "FILE",
-                                "keep shader IDs from build to build in this file, which is\n"
-                                "made, or changed where keys are new; commit it");
+                                "keep shader IDs from build to build in this file, which\n"
+                                "is created, and extended by new keys; commit it");
     CLI::Option& frozen = addFlag(command, "--locked", arguments.frozen,
                                   "fail, and write nothing, if the lock file would change\n(needs --lock)");
     CLI::Option& prune = addFlag(command, "--lock-prune", arguments.prune,
-                                 "drop keys from the lock file that no scene has, which\n"
+                                 "remove keys that no scene has from the lock file, which\n"
                                  "frees their IDs (needs --lock, excludes --locked)");
     frozen.needs(&lock);
     prune.needs(&lock)->excludes(&frozen);

@@ -73,11 +73,13 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
         },
         ""));
     addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
-            "frames a second (0.001 to 10000, default: 24; needs\n--frames)")
+            "frames per second (0.001 to 10000, default: 24; needs\n"
+            "--frames)")
         .needs(&frames)
         ->group(group);
     addText(command, "--time", arguments.time, "SECONDS",
-            "one picture at this time of the animation, 0 to 1000000\n(default: the rest pose)")
+            "render one picture at this time of the animation, 0 to\n"
+            "1000000 (default: the rest pose)")
         .excludes(&frames)
         ->group(group)
         ->check(CLI::Validator(
@@ -89,11 +91,13 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
             },
             ""));
     addText(command, "--animation", arguments.animation, "NAME|INDEX|all",
-            "which one plays, by name or number from 0; all: every one\nat once (default: 0)")
+            "which animation plays, by name or number from 0; all: all\n"
+            "of them at once (default: 0)")
         .group(group);
     addChoice(command, "--refit", arguments.refit, {"auto", "always", "never"},
-              "acceleration structures of what moved; auto: refitted,\n"
-              "and built anew by rule; always: only refitted; never:\nbuilt anew each frame")
+              "how acceleration structures follow; auto: they are\n"
+              "refitted, and rebuilt by rule; always: only refitted;\n"
+              "never: rebuilt in each frame; needs --frames")
         .needs(&frames)
         ->group(group);
 }

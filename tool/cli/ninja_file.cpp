@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 Diagnostic nameError(const std::string& name, const char* why) {
-    return makeError("ninja-name", name, fmt::format("can't stand in a file for Ninja: it has {}", why),
+    return makeError("ninja-name", name, fmt::format("can't be written to a file for Ninja: it has {}", why),
                      "rename it, or give another path");
 }
 

@@ -129,12 +129,12 @@ CLI::Option& addMerge(CLI::App& command, std::string& value) {
     CLI::Option* option =
         command
             .add_option("--merge", value,
-                        fmt::format("which permutations share a shader:\n"
-                                    "none: every permutation its own; family: those with the\n"
-                                    "same lobes; all: one shader; auto: by a cost model, within\n"
-                                    "--max-shaders; profile: those with many counted hits their\n"
-                                    "own, the others merged; FILE: counted hits\n"
-                                    "(default: {})",
+                        fmt::format("which permutations share a shader; none: every\n"
+                                    "permutation has its own; family: those with the same\n"
+                                    "lobes share one; all: one shader; auto: decided by a cost\n"
+                                    "model, within --max-shaders; profile: those with many\n"
+                                    "counted hits have their own, the others are merged; FILE:\n"
+                                    "counted hits (default: {})",
                                     value))
             ->type_name("none|family|all|auto[:FILE]|profile[:FILE]");
     keepChoices(option, choices);
@@ -275,8 +275,9 @@ PlanOptions PlanArguments::options() const {
 std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& arguments) {
     CLI::Option& merge = addMerge(command, arguments.merge);
     CLI::Option& limit = addInteger(command, "--max-shaders", arguments.maxShaders, 0, 1'000'000,
-                                    "most shaders: --merge auto and profile keep to it,\n"
-                                    "others fail above it; 0: no limit, 32 for those two");
+                                    "limit of shaders: --merge auto and profile stay within\n"
+                                    "it, the others fail above it; 0: no limit, or 32 for auto\n"
+                                    "and profile");
     CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"opaque", "tested"},
                                    "alpha masks of hits; opaque: ignored;\ntested: each candidate is tested");
     CLI::Option& lobes = addChoices(command, "--hit-lobes", arguments.hitLobes, hitLobeChoices(),
@@ -292,16 +293,17 @@ std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& argum
 }
 
 void addProfileInput(CLI::App& command, PlanArguments& arguments) {
-    addText(
-        command, "--profile", arguments.profile, "FILE",
-        "hits that `glint render --profile FILE` counted,\nfor --merge profile; --merge auto takes them too")
+    addText(command, "--profile", arguments.profile, "FILE",
+            "hits that `glint render --profile FILE` counted, for\n"
+            "--merge profile; --merge auto uses them too")
         .group("Shaders");
 }
 
 void settleProfile(PlanArguments& arguments) {
     if (const auto split = splitPolicy(arguments.merge)) {
         if (!arguments.profile.empty()) {
-            throw CLI::ValidationError("--merge", "names a profile, and --profile another: give one of them");
+            throw CLI::ValidationError("--merge",
+                                       "names a profile, and so does --profile; give only one of them");
         }
         std::tie(arguments.merge, arguments.profile) = *split;
     }
@@ -325,8 +327,8 @@ void AccuracyArguments::apply(CompileSettings& settings) const {
 std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments) {
     CLI::Option& energy =
         addChoice(command, "--energy-compensation", arguments.energyCompensation, {"on", "off"},
-                  "give back what rough surfaces lose without light that\n"
-                  "bounces between microfacets more than once");
+                  "add the light that bounces between microfacets more than\n"
+                  "once, which rough surfaces otherwise lose");
     CLI::Option& lod = addChoice(command, "--texture-lod", arguments.textureLod, {"cones", "mip0"},
                                  "which level of a texture is read; cones: by the\n"
                                  "footprint of the ray; mip0: the finest");

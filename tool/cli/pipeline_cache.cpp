@@ -14,12 +14,13 @@ namespace fs = std::filesystem;
 
 void addPipelineOptions(CLI::App& command, PipelineArguments& arguments) {
     addText(command, "--pipeline-cache", arguments.cache, "DIR",
-            "folder that keeps what the driver made of shaders; none:\nno folder (default: pipelines in the "
-            "folder of\nglint compile --cache)")
+            "folder that keeps the driver's compiled pipelines; none:\n"
+            "keep nothing (default: pipelines in the folder of glint\n"
+            "compile --cache)")
         .group("Device");
     constexpr std::int64_t kMostThreads = 1024;
     addInteger(command, "--pipeline-threads", arguments.threads, 0, kMostThreads,
-               "threads that make pipelines; 0: one a core")
+               "threads that create pipelines; 0: one for each core")
         .group("Device");
 }
 

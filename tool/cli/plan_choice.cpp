@@ -48,7 +48,7 @@ void checkSettings(const Profile& profile, const Profile& expected, const std::s
             warnings.push_back(makeWarning("profile-settings", file,
                                            fmt::format("was counted with {} {}, but this is {}", what,
                                                        was.empty() ? "none" : was, is.empty() ? "none" : is),
-                                           "its keys may be others: count the hits again"));
+                                           "its keys may differ; count the hits again"));
         }
     };
     warn("--alpha", profile.alpha, expected.alpha);

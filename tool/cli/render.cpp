@@ -55,7 +55,7 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         const bool isLit = arguments.addsSun(scene) || !scene.lights.empty();
         if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
-                                      "has no effect shadow: the lights of the picture cast none",
+                                      "has no effect shadow, so the lights of the picture cast no shadows",
                                       "compile it with --effects auto,shadow, or render with --sun off"});
         }
         return checked ? std::move(package) : Result<Package>(checked.error());
@@ -108,7 +108,8 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
 void warnOfNonFinite(const Console& console, const RenderReport& report) {
     console.report(makeWarning(
         "non-finite", report.scene,
-        fmt::format("{} samples of pixels were no number and count as black", report.counters.nonFinite),
+        fmt::format("{} samples of pixels were NaN or infinite and count as black",
+                    report.counters.nonFinite),
         "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
 }
 

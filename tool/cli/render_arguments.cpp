@@ -23,14 +23,15 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             },
             ""))
         ->group(group);
-    addInteger(command, "--spp", arguments.samples, 1, 65536, "samples a pixel").group(group);
-    addInteger(command, "--seed", arguments.seed, 0, 0xFFFFFFFFLL, "of the random numbers").group(group);
+    addInteger(command, "--spp", arguments.samples, 1, 65536, "samples per pixel").group(group);
+    addInteger(command, "--seed", arguments.seed, 0, 0xFFFFFFFFLL, "seed of the random numbers").group(group);
     addText(command, "--camera", arguments.camera, "NAME|INDEX|auto",
             "a camera of the scene by name or number from 0;\nauto: one that frames everything\n"
             "(default: the first of the scene, else auto)")
         .group(group);
     addText(command, "--exposure", arguments.exposure, "auto|EV",
-            "stops, -32 to 32, of PNG files; auto: log-average luminance\nto 18 % grey (default: auto)")
+            "exposure of PNG files in stops, -32 to 32; auto: brings\n"
+            "the log-average luminance to 18 % grey (default: auto)")
         .check(CLI::Validator(
             [](const std::string& text) {
                 double stops = 0.0;
@@ -41,7 +42,8 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             ""))
         ->group(group);
     addChoice(command, "--sun", arguments.sun, {"auto", "on", "off"},
-              "add a directional light; auto: if the scene has no light\nand no --environment")
+              "add a directional light; auto: only if the scene has no\n"
+              "light and there is no --environment")
         .group(group);
 }
 
@@ -57,9 +59,11 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
-    addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters").group("Report");
+    addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters as JSON")
+        .group("Report");
     addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
-            "say what the driver tells of each pipeline: registers,\nspills, instructions, whatever it has")
+            "report what the driver says about each pipeline:\n"
+            "registers, spills, instructions, or whatever it has")
         .group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
                    "write how each pixel of the last sample came to its\n"
@@ -69,8 +73,8 @@ void addRenderReports(CLI::App& command, RenderArguments& arguments) {
         .group("Report");
     addText(command, "--profile", arguments.profileOutput, "FILE.json",
             "count the hits of every permutation, for --merge profile\n"
-            "and auto; needs --merge none (here the default then) and\n"
-            "--strategy visibility")
+            "and auto; needs --strategy visibility; the default of\n"
+            "--merge is then none, and no other value works")
         .group("Report");
 }
 
@@ -147,10 +151,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         checkSceneOptions(command, *arguments);
         const bool plays = !arguments->motion.frames.empty() || !arguments->motion.time.empty();
         if (!plays && command.get_option("--animation")->count() > 0) {
-            throw CLI::ValidationError("--animation", "plays with --frames or --time; give one of them");
+            throw CLI::ValidationError("--animation", "needs --frames or --time; give one of them");
         }
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
-            throw CLI::ValidationError("--coverage", "is of one picture; leave out --frames, or use --time");
+            throw CLI::ValidationError("--coverage", "shows one picture; leave out --frames, or use --time");
         }
         settleProfileOutput(arguments->profileOutput, arguments->package,
                             arguments->tracing.strategies.front(), decided.front()->count() > 0,

@@ -94,7 +94,8 @@ Status checkOutputFile(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";
     if (!std::filesystem::is_directory(parent, error)) {
-        return makeError("output-folder", file.string(), "is to be written where there is no folder",
+        return makeError("output-folder", file.string(),
+                         "can't be written, because its folder does not exist",
                          "make the folder " + parent.string() + " first");
     }
     if (std::filesystem::is_directory(file, error)) {

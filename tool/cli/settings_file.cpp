@@ -66,7 +66,8 @@ std::optional<std::string> given(std::span<const char* const> arguments, std::st
 
 void addSettingsFile(CLI::App& command, std::string& file) {
     addText(command, kOption, file, "FILE.json",
-            "options of a file, such as `glint bench` writes; those that\nare given here, too, hold instead")
+            "read options from this file, such as `glint bench`\n"
+            "writes; options on the command line win")
         .group("Settings");
 }
 
@@ -154,7 +155,7 @@ std::optional<Diagnostic> blameFile(const CompletedLine& line, const std::string
         if (complaint.starts_with(option + ":")) {
             const std::string name = option.substr(2);
             return refusal(line.file, "/settings/" + name, complaint.substr(option.size() + 2),
-                           fmt::format("mend it there, or give {} on the command line", option));
+                           fmt::format("correct it there, or give {} on the command line", option));
         }
     }
     return std::nullopt;

@@ -116,10 +116,10 @@ Result<StrategyAdvice> adviseRender(const RenderArguments& arguments, const Plan
     if (costs->builtIn && context.subgroupSize() > 0) {
         costs->device.subgroupSize = context.subgroupSize();
     } else if (!costs->builtIn && costs->device.device != context.deviceName()) {
-        warnings.push_back(makeWarning(
-            "calibration-device", arguments.calibration,
-            fmt::format("was measured on {}, and this is {}", costs->device.device, context.deviceName()),
-            "measure this device with glint bench --calibrate"));
+        warnings.push_back(makeWarning("calibration-device", arguments.calibration,
+                                       fmt::format("was measured on {}, but this device is {}",
+                                                   costs->device.device, context.deviceName()),
+                                       "measure this device with glint bench --calibrate"));
     }
     const std::uint32_t tracers = context.handles().tracers;
     const SceneList scenes({&scene, 1});

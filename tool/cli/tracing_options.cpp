@@ -58,8 +58,8 @@ std::vector<CLI::Option*> addPlacement(CLI::App& command, TracingArguments& argu
         command, "--hit-record", arguments.hitRecord, {"full", "packed"},
         "what is kept of a hit between passes (visibility,\nsorted-uber); full: 32 bytes; packed: 16");
     CLI::Option& fetch = addFlag(command, "--position-fetch", arguments.positionFetch,
-                                 "uber with ray queries and hit-shaders read positions\n"
-                                 "from the acceleration structure, not from vertices");
+                                 "uber (with ray queries) and hit-shaders read positions\n"
+                                 "from the acceleration structure instead of from vertices");
     shadows.group("Shaders");
     record.group("Shaders");
     fetch.group("Shaders");
@@ -104,11 +104,12 @@ void addTracingLists(CLI::App& command, TracingArguments& arguments) {
     arguments.strategies = {"uber", "visibility"};
     arguments.tracers = {"ray-query"};
     addChoices(command, "--strategy", arguments.strategies, withAuto(withAll(namesOf(package::kStrategies))),
-               "how hits can be shaded, separated by commas;\n"
-               "uber: one shader traces and shades; visibility: hits\n"
-               "are ordered by shader first, one dispatch a shader;\n"
-               "sorted-uber: ordered, and one dispatch; hit-shaders: a\n"
-               "ray tracing pipeline; auto: that which should be fastest\nat 1920x1080, by --calibration")
+               "how hits can be shaded, separated by commas; uber: one\n"
+               "shader traces and shades; visibility: hits are sorted by\n"
+               "shader first, then one dispatch for each shader;\n"
+               "sorted-uber: hits are sorted, then one dispatch;\n"
+               "hit-shaders: a ray tracing pipeline; auto: the one that\n"
+               "should be fastest at 1920x1080, by --calibration")
         .type_name("auto|all|LIST")
         ->group("Shaders");
     addChoices(command, "--tracer", arguments.tracers, withAll(namesOf(package::kTracers)),
@@ -142,15 +143,16 @@ std::vector<CLI::Option*> addTracingChoice(CLI::App& command, TracingArguments& 
     std::vector<std::string> tracers = namesOf(package::kTracers);
     tracers.insert(tracers.begin(), "auto");
     addChoice(command, "--strategy", arguments.strategies.front(), withAuto(namesOf(package::kStrategies)),
-              "how hits are shaded; uber: one shader traces and\n"
-              "shades; visibility: hits are ordered by shader first,\n"
-              "one dispatch a shader; sorted-uber: ordered, and one\n"
-              "dispatch; hit-shaders: a ray tracing pipeline; auto: that\nwhich should be fastest, by "
-              "--calibration")
+              "how hits are shaded; uber: one shader traces and shades;\n"
+              "visibility: hits are sorted by shader first, then one\n"
+              "dispatch for each shader; sorted-uber: hits are sorted,\n"
+              "then one dispatch; hit-shaders: a ray tracing pipeline;\n"
+              "auto: the one that should be fastest, by --calibration")
         .group("Shaders");
-    addChoice(
-        command, "--tracer", arguments.tracers.front(), tracers,
-        "what traces rays; auto: ray-query where the device has\nthem; hit-shaders: always ray-pipeline")
+    addChoice(command, "--tracer", arguments.tracers.front(), tracers,
+              "what traces rays; auto: ray-query where the device has\n"
+              "it, else ray-pipeline; hit-shaders always uses\n"
+              "ray-pipeline")
         .group("Shaders");
     return addPlacement(command, arguments);
 }
@@ -191,12 +193,12 @@ void addFrameOptions(CLI::App& command, FrameArguments& arguments) {
             ""))
         ->group(group);
     addReal(command, "--ssr-thickness", arguments.ssrThickness, 0.0, 1.0,
-            "how far behind its depth a surface reaches in that\nmarch, share of its distance (0 to 1, "
-            "default: 0.02)")
+            "how far a surface reaches behind its depth in that march,\n"
+            "as a share of its distance (0 to 1, default: 0.02)")
         .group(group);
     addReal(command, "--clamp", arguments.clamp, 0.0, 1e9,
-            "luminance that a ray brings at most in a sample:\nless noise, some light lost (default: "
-            "0, no limit)")
+            "the most luminance that a ray adds to a sample: less\n"
+            "noise, some light lost (0 to 1e9, default: 0, no limit)")
         .group(group);
     addChoice(command, "--binning", arguments.binning, {"none", "sign", "octahedral"},
               "sort the rays of a workgroup by direction")

@@ -63,11 +63,10 @@ Status checkPositionFetch(const CompileSettings& settings, const std::string& wh
     const bool uber = (settings.strategies & package::kStrategyUber) != 0 &&
                       (settings.tracers & package::kTracerRayQuery) != 0;
     if (!uber && (settings.strategies & package::kStrategyHitShaders) == 0) {
-        return makeError(
-            "position-fetch", where,
-            "no shader of this package could fetch positions: only those that shade a hit where they "
-            "find it can, of uber with ray queries and of hit-shaders",
-            "add one of these strategies, or leave out --position-fetch");
+        return makeError("position-fetch", where,
+                         "no shader of this package could fetch positions: only uber with ray queries and "
+                         "hit-shaders can, because they shade a hit where they find it",
+                         "add one of these strategies, or leave out --position-fetch");
     }
     return okStatus();
 }

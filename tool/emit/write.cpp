@@ -153,7 +153,7 @@ Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path
         }
         if (failure) {
             return makeError("output-write", entry->path().string(),
-                             "stands in the way of the new package: " + failure.message(),
+                             "is in the way of the new package: " + failure.message(),
                              "move it elsewhere; nothing was changed");
         }
     }

@@ -169,7 +169,7 @@ Status readInfluences(const Reader& reader) {
         reader.document().warn(
             "skin-influences", reader.pointer(beyond.c_str()),
             fmt::format("only {} sets of joints are read; the others are left out", sets.size()),
-            "export the mesh with fewer joints a vertex");
+            "export the mesh with fewer joints for each vertex");
     }
     reader.primitive.influences = joinInfluences(reader.document(), reader.primitive.pointer, sets);
     return okStatus();

@@ -158,7 +158,7 @@ EffectPlan decideEffects(std::span<const Material* const> materials, const Scene
         } else if (!request.automatic) {
             decision.reason = "not asked for";
         } else if (decision.usable && refines) {
-            decision.reason = "refines the sky's light, which no file asks for: name it to have it";
+            decision.reason = "refines the sky's light; no file asks for it, so it has to be named";
         }
         if (decision.chosen) {
             plan.effects |= info.effect;

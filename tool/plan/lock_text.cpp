@@ -92,7 +92,7 @@ private:
             parseVersion(rest);
         } else if (!hasVersion_) {
             fail(fmt::format("{} comes before a line \"{} {}\"", quote(first), kVersionWord, kVersion),
-                 "this is no lock file, or a merge took its head off");
+                 "this is not a lock file, or a merge removed its first line");
         } else {
             parseKey(first, rest);
         }
@@ -147,7 +147,7 @@ private:
             const auto row = std::ranges::find(table, word, &FeatureInfo::name);
             if (row == table.end()) {
                 fail(fmt::format("{} is no feature", quote(word)),
-                     "mend the name, or use the version of Glint that wrote it", word);
+                     "correct the name, or use the version of Glint that wrote it", word);
                 break;
             }
             mask |= bit(row->feature);

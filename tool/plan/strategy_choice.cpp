@@ -80,12 +80,12 @@ std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimat
     const double shading = partOf(sorted, CostTerm::Instructions) - partOf(unsorted, CostTerm::Instructions);
     const double around = sorted.ms - unsorted.ms + spared - shading;
     return fmt::format(
-        "{} is expected to take {}, {} {} ({:.2f} times): ordering {} {} of divergence, {} {} of launches, "
-        "records and order, and {} {} of shading.",
+        "{} is expected to take {}, and {} {} ({:.2f} times): sorting {} {} of divergence, {} {} of "
+        "launches, records and sorting, and {} {} of shading.",
         chosen.strategy, milliseconds(chosen.ms), rival.strategy, milliseconds(rival.ms),
-        rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "spares",
-        milliseconds(std::abs(spared)), around < 0.0 ? "spares" : "adds", milliseconds(std::abs(around)),
-        shading < 0.0 ? "spares" : "adds", milliseconds(std::abs(shading)));
+        rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "saves",
+        milliseconds(std::abs(spared)), around < 0.0 ? "saves" : "adds", milliseconds(std::abs(around)),
+        shading < 0.0 ? "saves" : "adds", milliseconds(std::abs(shading)));
 }
 
 void explain(StrategyChoice& choice) {
@@ -98,10 +98,9 @@ void explain(StrategyChoice& choice) {
     if (const StrategyEstimate* const rival = rivalOf(choice)) {
         choice.why += fmt::format(" {}", comparisonText(*chosen, *rival));
     } else {
-        choice.why += fmt::format(
-            " {} is expected to take {}; nothing else can be chosen that treats hits "
-            "otherwise.",
-            choice.strategy, milliseconds(chosen->ms));
+        choice.why +=
+            fmt::format(" {} is expected to take {}; no strategy can be chosen that treats hits differently.",
+                        choice.strategy, milliseconds(chosen->ms));
     }
 }
 

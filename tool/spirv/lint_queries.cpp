@@ -111,12 +111,11 @@ private:
                    "rayTraversalPrimitiveCulling)");
         }
         if ((*flags & kFirstHit) == 0 && readsTypeAlone(function, after)) {
-            report(
-                Severity::Note, "query-flags", initialize,
-                fmt::format(
-                    "ray flags {:#x} lack TerminateOnFirstHit (0x4), yet only whether there is a hit is read",
-                    *flags),
-                "add gl_RayFlagsTerminateOnFirstHitEXT if any hit will do");
+            report(Severity::Note, "query-flags", initialize,
+                   fmt::format("ray flags {:#x} lack TerminateOnFirstHit (0x4), although the shader reads "
+                               "only whether there is a hit",
+                               *flags),
+                   "add gl_RayFlagsTerminateOnFirstHitEXT if any hit will do");
         }
     }
 
