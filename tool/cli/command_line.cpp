@@ -29,7 +29,7 @@ void describe(CLI::App& app) {
     app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
     app.set_version_flag("--version",
                          std::string("glint ") + GLINT_VERSION +
-                             (gltf::hasBasisu() ? "\nKTX2 textures (KHR_texture_basisu): read by libktx"
+                             (gltf::hasBasisu() ? "\nKTX2 textures (KHR_texture_basisu): read by the transcoder of Basis Universal"
                                                 : "\nKTX2 textures (KHR_texture_basisu): not built in"),
                          "Print the version and what is built in, and exit");
     app.set_help_flag("-h,--help", "Print this help and exit");

@@ -13,22 +13,6 @@ using package::TextureEntry;
 
 namespace {
 
-// Whether the slot's texture is sRGB; its alpha, where something reads that, is linear all the same.
-bool isColor(const Material& material, TextureSlot slot) {
-    switch (slot) {
-        case TextureSlot::BaseColor:
-        case TextureSlot::Emissive:
-        case TextureSlot::SheenColor:
-        case TextureSlot::SpecularColor:
-        case TextureSlot::DiffuseTransmissionColor:
-            return true;
-        case TextureSlot::MetallicRoughness:
-            return material.specularGlossiness.given;
-        default:
-            return false;
-    }
-}
-
 // Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
 // points down; the extension's GLSL listing turns the other way, its text and test models this one
 // (KhronosGroup/glTF issue 1563).

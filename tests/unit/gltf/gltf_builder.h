@@ -95,6 +95,9 @@ std::string base64(const Bytes& bytes);
 Result<Scene> importText(const std::string& text, const ImportOptions& options = {});
 Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options = {});
 
+// A material whose base colour is the image of those bytes.
+GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png");
+
 // Warnings of that kind.
 std::size_t countWarnings(const Scene& scene, std::string_view id);
 // The first warning of that kind; an empty one where there is none.
