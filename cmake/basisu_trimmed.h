@@ -1,5 +1,5 @@
-// Included before basisu_transcoder.cpp of Basis Universal 2.0, which without XUASTC and UASTC HDR still names what only
-// those have: a constant and a function that is then called by nothing.
+// Included before basisu_transcoder.cpp of Basis Universal 2.0, which without XUASTC and UASTC HDR still
+// names what only those have: a constant and a function that is then called by nothing.
 #pragma once
 
 #include <cstdint>

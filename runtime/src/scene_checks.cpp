@@ -1,8 +1,8 @@
 #include "scene_checks.h"
 
 #include <algorithm>
-#include <bit>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -147,8 +147,8 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
         const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
         if (image.levels == 0 || image.levels > most) {
             return makeError("scene-image", where,
-                             "the image has " + std::to_string(image.levels) + " levels, its size takes 1 to " +
-                                 std::to_string(most),
+                             "the image has " + std::to_string(image.levels) +
+                                 " levels, its size takes 1 to " + std::to_string(most),
                              "give the levels that there are");
         }
         if (image.pixels.size() != image.byteCount(image.levels)) {

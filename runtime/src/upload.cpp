@@ -170,8 +170,9 @@ void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
     }
     const auto recordReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
         if (count > 0) {
-            recordTransition(*context_, commands_,
-                             {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
+            recordTransition(
+                *context_, commands_,
+                {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
         }
     };
     // What was blitted from is a source, the rest are targets.

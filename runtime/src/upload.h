@@ -16,9 +16,10 @@ public:
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills the first mips of an image of undefined layout with texels of `texelBytes` bytes, blits the others
-    // that it has each from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. Requires one
-    // mip at least. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage where mips are blitted.
+    // Fills the first mips of an image of undefined layout with texels of `texelBytes` bytes, blits the
+    // others that it has each from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL.
+    // Requires one mip at least. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage where mips are
+    // blitted.
     Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                        const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.

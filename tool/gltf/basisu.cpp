@@ -26,6 +26,13 @@ void makeTables() {
 // look at overflow.
 bool decode(ByteView bytes, Image& image, std::string& problem) {
     makeTables();
+    // Blocks lie at multiples of 16 bytes in the file, but a buffer view may start anywhere.
+    constexpr std::uintptr_t kAlignment = 16;
+    Bytes aligned;
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % kAlignment != 0) {
+        aligned.assign(bytes.begin(), bytes.end());
+        bytes = aligned;
+    }
     basist::ktx2_transcoder transcoder;
     if (!transcoder.init(bytes.data(), static_cast<std::uint32_t>(bytes.size())) ||
         !transcoder.start_transcoding()) {

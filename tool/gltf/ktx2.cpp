@@ -84,9 +84,10 @@ struct Header {
 std::string checkShape(const Reader& file, Header& header) {
     const std::uint32_t format = file.word(12);
     if (format != 0) {
-        return fmt::format("it holds data of VkFormat {}; KHR_texture_basisu allows ETC1S and UASTC, and "
-                           "neither uncompressed data nor other block compression",
-                           format);
+        return fmt::format(
+            "it holds data of VkFormat {}; KHR_texture_basisu allows ETC1S and UASTC, and "
+            "neither uncompressed data nor other block compression",
+            format);
     }
     header.width = file.word(20);
     header.height = file.word(24);
@@ -122,32 +123,33 @@ std::string nameOf(Model model) {
 std::string checkFormat(const Reader& file, Header& header, Ktx2& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
-    if (start < kHeaderBytes || !file.has(start, length) ||
-        (length != kOneSample && length != kTwoSamples) || file.word(start) != length) {
+    if (start < kHeaderBytes || !file.has(start, length) || (length != kOneSample && length != kTwoSamples) ||
+        file.word(start) != length) {
         return "its data format descriptor is damaged";
     }
     header.model = static_cast<Model>(file.byte(start + 12));
     header.twoSamples = length == kTwoSamples;
     const bool isEtc1s = header.model == Model::Etc1s;
     if (!isEtc1s && header.model != Model::Uastc) {
-        return fmt::format("it holds {}, which Glint does not read; KHR_texture_basisu allows ETC1S and UASTC",
-                           nameOf(header.model));
+        return fmt::format(
+            "it holds {}, which Glint does not read; KHR_texture_basisu allows ETC1S and UASTC",
+            nameOf(header.model));
     }
     const bool schemeFits = isEtc1s ? header.scheme == Scheme::BasisLz
                                     : header.scheme == Scheme::None || header.scheme == Scheme::Zstandard;
     if (!schemeFits) {
-        return fmt::format("its supercompression scheme is {}, which KHR_texture_basisu does not allow for {}",
-                           static_cast<std::uint32_t>(header.scheme), isEtc1s ? "ETC1S" : "UASTC");
+        return fmt::format(
+            "its supercompression scheme is {}, which KHR_texture_basisu does not allow for {}",
+            static_cast<std::uint32_t>(header.scheme), isEtc1s ? "ETC1S" : "UASTC");
     }
     const auto channelOf = [&](std::uint64_t sample) {
         return static_cast<std::uint8_t>(file.byte(start + 28 + 16 * sample + 3) & 15U);
     };
     const std::uint8_t channel = channelOf(0);
     const bool isGray = channel == (isEtc1s ? kChannelEtc1sRrr : kChannelUastcRrr) && !header.twoSamples;
-    const bool isColor = isEtc1s ? channel == kChannelRgb &&
-                                       (!header.twoSamples || channelOf(1) == kChannelEtc1sAlpha)
-                                 : (channel == kChannelRgb || channel == kChannelUastcRgba) &&
-                                       !header.twoSamples;
+    const bool isColor =
+        isEtc1s ? channel == kChannelRgb && (!header.twoSamples || channelOf(1) == kChannelEtc1sAlpha)
+                : (channel == kChannelRgb || channel == kChannelUastcRgba) && !header.twoSamples;
     if (isGray) {
         image.deviations.emplace_back("its channels are RRR, not RGB or RGBA; it is read as gray");
     } else if (!isColor) {
@@ -155,12 +157,13 @@ std::string checkFormat(const Reader& file, Header& header, Ktx2& image) {
     }
     const std::uint8_t primaries = file.byte(start + 13);
     if (primaries != kPrimariesUnspecified && primaries != kPrimariesBt709) {
-        image.deviations.push_back(
-            fmt::format("its colour primaries have the number {}; they are taken for those of BT.709", primaries));
+        image.deviations.push_back(fmt::format(
+            "its colour primaries have the number {}; they are taken for those of BT.709", primaries));
     }
     const std::uint8_t transfer = file.byte(start + 14);
     if (transfer != kTransferLinear && transfer != kTransferSrgb) {
-        return fmt::format("its transfer function has the number {}, which is neither linear nor sRGB", transfer);
+        return fmt::format("its transfer function has the number {}, which is neither linear nor sRGB",
+                           transfer);
     }
     image.transfer = transfer == kTransferSrgb ? Transfer::Srgb : Transfer::Linear;
     if ((file.byte(start + 15) & kPremultiplied) != 0) {
@@ -203,7 +206,8 @@ std::string checkMetadata(const Reader& file, Ktx2& image) {
                 "its KTXorientation is not \"rd\"; its first row is taken to be on top all the same");
         }
         if (key == "KTXswizzle" && value != "rgba") {
-            image.deviations.emplace_back("its KTXswizzle is not \"rgba\"; its channels are read as they are");
+            image.deviations.emplace_back(
+                "its KTXswizzle is not \"rgba\"; its channels are read as they are");
         }
         place = std::min(end, (place + bytes + 3) / 4 * 4);
     }
@@ -253,10 +257,15 @@ std::string checkLevels(const Reader& file, const Header& header) {
         const std::uint64_t start = file.longWord(entry);
         const std::uint64_t length = file.longWord(entry + 8);
         const std::uint64_t unpacked = file.longWord(entry + 16);
-        const std::uint64_t wanted = header.scheme == Scheme::BasisLz ? 0 : kBlockBytes * blocksOf(header, level);
+        const std::uint64_t wanted =
+            header.scheme == Scheme::BasisLz ? 0 : kBlockBytes * blocksOf(header, level);
         if (start < kHeaderBytes + kLevelBytes * header.levels || !file.has(start, length) || length == 0 ||
             unpacked != wanted || (header.scheme == Scheme::None && length != wanted)) {
             return fmt::format("its level {} is damaged", level);
+        }
+        // Section 3.9.7, "mipPadding"; the transcoder reads blocks as structures.
+        if (header.scheme == Scheme::None && start % kBlockBytes != 0) {
+            return fmt::format("its level {} does not start at a multiple of {} bytes", level, kBlockBytes);
         }
     }
     return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header) : "";
@@ -267,8 +276,10 @@ std::string checkLevels(const Reader& file, const Header& header) {
 std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
     const Reader file(bytes);
     // Every file has one level, which the index names.
-    if (!file.has(0, kHeaderBytes + kLevelBytes) || bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
-        problem = bytes.size() < kHeaderBytes + kLevelBytes ? "it ends within its header" : "larger than 4 GiB";
+    if (!file.has(0, kHeaderBytes + kLevelBytes) ||
+        bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+        problem =
+            bytes.size() < kHeaderBytes + kLevelBytes ? "it ends within its header" : "larger than 4 GiB";
         return std::nullopt;
     }
     Header header;

@@ -140,7 +140,8 @@ Result<int> TextureTable::chooseImage(int texture) {
     if (basisu >= 0) {
         return document_.error(
             "texture-basisu", pointer,
-            fmt::format("/images/{} is KTX2, which this build of Glint does not decode", basisu), kBasisuHint);
+            fmt::format("/images/{} is KTX2, which this build of Glint does not decode", basisu),
+            kBasisuHint);
     }
     if (plain >= 0) {
         document_.warn("texture-source", pointer,

@@ -159,7 +159,8 @@ struct Material {
     }
 };
 
-// Whether the slot's texture is colour, in sRGB; its alpha, where something reads that, is linear all the same.
+// Whether the slot's texture is colour, in sRGB; its alpha, where something reads that, is linear all the
+// same.
 inline bool isColor(const Material& material, TextureSlot slot) {
     switch (slot) {
         case TextureSlot::BaseColor:

@@ -55,8 +55,8 @@ struct ImageView {
     std::uint32_t height = 0;
     std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes
     Format format = Format::Rgba8;
-    // In `pixels`, one after another from the largest on, each of half the size of the one before, rounded down.
-    // Upload makes the others of a full pyramid from the last.
+    // In `pixels`, one after another from the largest on, each of half the size of the one before, rounded
+    // down. Upload makes the others of a full pyramid from the last.
     std::uint32_t levels = 1;
 
     std::uint32_t bytesPerPixel() const {

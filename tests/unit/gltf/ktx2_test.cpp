@@ -1,8 +1,9 @@
-// KTX2 images (KHR_texture_basisu): what is decoded, what is refused and why, and which source of a texture is taken.
-// The files were made by ktx2/make.py.
+// KTX2 images (KHR_texture_basisu): what is decoded, what is refused and why, and which source of a texture
+// is taken. The files were made by ktx2/make.py.
+#include "gltf/ktx2.h"
+
 #include "gltf/basisu.h"
 #include "gltf/codecs.h"
-#include "gltf/ktx2.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -119,6 +120,19 @@ TEST_F(GltfKtx2, DecodesEveryKindOfData) {
     }
 }
 
+// Buffer views start anywhere; the transcoder reads structures, which builds with sanitizers check.
+TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
+    for (const std::size_t padding : {std::size_t{1}, std::size_t{6}}) {
+        const Bytes bytes = readKtx2File("uastc_linear");
+        GltfBuilder builder = basisuScene(bytes);
+        builder.root["bufferViews"][0]["byteOffset"] = padding;
+        builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
+        const Result<Scene> scene = import(builder, kDecode);
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        EXPECT_TRUE(isNear(pixelAt(scene->images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
+    }
+}
+
 // Each mip of these files has a colour of its own.
 TEST_F(GltfKtx2, KeepsTheMipsOfTheFile) {
     constexpr std::array<std::array<int, 4>, 5> kSteps{
@@ -131,7 +145,8 @@ TEST_F(GltfKtx2, KeepsTheMipsOfTheFile) {
         for (int level = 0; level < image.levels; ++level) {
             const int last = (16 >> level) - 1;
             EXPECT_TRUE(isNear(pixelAt(image, level, 0, 0), kSteps[static_cast<std::size_t>(level)], 12));
-            EXPECT_TRUE(isNear(pixelAt(image, level, last, last), kSteps[static_cast<std::size_t>(level)], 12));
+            EXPECT_TRUE(
+                isNear(pixelAt(image, level, last, last), kSteps[static_cast<std::size_t>(level)], 12));
         }
     }
 }
@@ -147,12 +162,13 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     EXPECT_TRUE(scene->warnings.empty());
 }
 
-// Pixels that are damaged behind a sound header are decoded or refused; the memory stays sound, which builds with
-// AddressSanitizer see.
+// Pixels that are damaged behind a sound header are decoded or refused; the memory stays sound, which builds
+// with AddressSanitizer see.
 TEST_F(GltfKtx2, SurvivesDamage) {
     std::mt19937 random(7);
     int refused = 0;
-    for (const char* name : {"etc1s_alpha_mips", "etc1s", "uastc_linear", "uastc_alpha_zstd", "uastc_zstd_steps"}) {
+    for (const char* name :
+         {"etc1s_alpha_mips", "etc1s", "uastc_linear", "uastc_alpha_zstd", "uastc_zstd_steps"}) {
         const Bytes whole = readKtx2File(name);
         for (int round = 0; round < 200; ++round) {
             Bytes bytes = whole;
@@ -162,7 +178,8 @@ TEST_F(GltfKtx2, SurvivesDamage) {
             if (round % 8 == 0) {
                 bytes.resize(random() % bytes.size());
             }
-            const Result<Scene> scene = import(basisuScene(bytes), {.decodeImages = true, .maxImageSize = 256});
+            const Result<Scene> scene =
+                import(basisuScene(bytes), {.decodeImages = true, .maxImageSize = 256});
             if (scene) {
                 EXPECT_EQ(scene->images[0].pixels.size(), byteCount(scene->images[0]));
             } else {
@@ -243,12 +260,19 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
         // Zstandard data that say they are more than their blocks.
         {"uastc_zstd_steps", [](Bytes& b) { setWord(b, kLevelIndex + 24 + 16, 0x7FFFFFFFU); }, "level 1"},
         {"uastc_linear", [](Bytes& b) { setWord(b, kLevelIndex + 8, 64); }, "level 0"},
+        {"uastc_linear",
+         [](Bytes& b) {
+             b.push_back(0);
+             setWord(b, kLevelIndex, static_cast<std::uint32_t>(wordAt(b, kLevelIndex) + 1));
+         },
+         "multiple of 16"},
     };
     for (const Row& row : rows) {
         EXPECT_NE(problemOf(row.file, row.change).find(row.reason), std::string::npos)
             << row.file << ", " << row.reason << ": " << problemOf(row.file, row.change);
     }
-    for (const char* name : {"etc1s", "etc1s_alpha_mips", "etc1s_steps", "uastc_linear", "uastc_alpha_zstd"}) {
+    for (const char* name :
+         {"etc1s", "etc1s_alpha_mips", "etc1s_steps", "uastc_linear", "uastc_alpha_zstd"}) {
         EXPECT_EQ(problemOf(name, [](Bytes&) {}), "") << name;
     }
 }
@@ -263,9 +287,12 @@ TEST(GltfKtx2Header, DeviationsAreTold) {
         return file && !file->deviations.empty() ? file->deviations[0] : std::string();
     };
     EXPECT_EQ(deviationsOf([](Bytes&) {}), "");
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 15) = 1; }).find("premultiplied"), std::string::npos);
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 13) = 10; }).find("primaries"), std::string::npos);
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 28 + 3) = 3; }).find("gray"), std::string::npos);
+    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 15) = 1; }).find("premultiplied"),
+              std::string::npos);
+    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 13) = 10; }).find("primaries"),
+              std::string::npos);
+    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 28 + 3) = 3; }).find("gray"),
+              std::string::npos);
     EXPECT_NE(deviationsOf([](Bytes& b) { setWord(b, 20, 15); }).find("multiples of 4"), std::string::npos);
     // The one pair that the files have, "KTXwriter", is as long as these.
     const auto rename = [](const std::string& pair) {
@@ -295,7 +322,8 @@ TEST_F(GltfKtx2, OtherUseThanTheFileSaysIsAWarning) {
     EXPECT_EQ(warningOf("etc1s", true), "");
     EXPECT_EQ(warningOf("uastc_linear", false), "");
     EXPECT_NE(warningOf("etc1s", false).find("/images/0 says that it is colour in sRGB"), std::string::npos);
-    EXPECT_NE(warningOf("uastc_linear", true).find("/images/0 says that it is linear data"), std::string::npos);
+    EXPECT_NE(warningOf("uastc_linear", true).find("/images/0 says that it is linear data"),
+              std::string::npos);
 }
 
 // --- Without the transcoder ---
