@@ -73,19 +73,25 @@ fetch_sources() {
     done
 }
 
+copy_archives() {
+    local triplet archive
+    triplet=$(gcc -dumpmachine)
+    for archive in "${kArchives[@]}"; do
+        cp "/usr/lib/$triplet/$archive" "$deps/lib/"
+    done
+}
+
 build_deps() {
     if [[ -e $deps/done ]]; then
+        copy_archives
         return
     fi
     say "fetching source packages"
     rm -rf "$deps"
     mkdir -p "$deps/lib" "$deps/source"
     fetch_sources "$deps/source"
-    local triplet archive source name
-    triplet=$(gcc -dumpmachine)
-    for archive in "${kArchives[@]}"; do
-        cp "/usr/lib/$triplet/$archive" "$deps/lib/"
-    done
+    copy_archives
+    local source name
     for source in "${kSources[@]}"; do
         name=${source%%|*}
         say "building $name"

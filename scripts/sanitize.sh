@@ -159,6 +159,12 @@ check_farm examples/cmake-consumer/scene/cubes.gltf "$work/gallery/gallery.gltf"
 # The gallery first: it takes longest.
 mapfile -d '' scenes < <(find "$work/gallery" "$models/large" examples "$models/features" \
     \( -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
+# A scene whose textures are KTX2 alone is an error in a build without the transcoder.
+if "$build/bin/glint" --version | grep -q 'KTX2.*not built in'; then
+    for i in "${!scenes[@]}"; do
+        [[ ${scenes[i]} == *-ktx2/* ]] && unset "scenes[i]"
+    done
+fi
 say "${#scenes[@]} scenes through every command"
 each 1 check_scene "${scenes[@]}"
 
