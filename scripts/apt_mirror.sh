@@ -50,5 +50,5 @@ private_apt() {
     private_apt_options=(-q -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$1/parts"
         -o "Dir::State::Lists=$1/lists" -o "Dir::Cache=$1/cache" -o "APT::Sandbox::User=root"
         -o "Acquire::AllowInsecureRepositories=false" -o "APT::Get::AllowUnauthenticated=false"
-        -o "Acquire::http::Timeout=30" -o "Acquire::https::Timeout=30")
+        -o "Acquire::Retries=1" -o "Acquire::http::Timeout=30" -o "Acquire::https::Timeout=30")
 }

@@ -32,7 +32,7 @@ fail() {
 # shellcheck source=scripts/apt_mirror.sh
 source "$(dirname "${BASH_SOURCE[0]}")/apt_mirror.sh"
 
-root=${GLINT_BASISU_ROOT:-${XDG_CACHE_HOME:-$HOME/.cache}/glint-sources/basis-universal}
+root=${GLINT_BASISU_ROOT:-${XDG_CACHE_HOME:-${HOME:-}/.cache}/glint-sources/basis-universal}
 
 # Suites that have the package, the one that changes least first.
 suites_of() {
@@ -99,15 +99,15 @@ mirror_stanza deb-src any >/dev/null ||
 mkdir -p "$(dirname "$root")" || fail "$(dirname "$root") can't be made"
 scratch=$(mktemp -d "$root.XXXXXX") || fail "$(dirname "$root") can't be written"
 trap 'rm -rf "$scratch"' EXIT
+say "fetching the sources of Basis Universal, for KTX2 textures (about 140 MB)"
 while read -r suite component; do
-    say "fetching the sources of Basis Universal, for KTX2 textures (about 140 MB, from $suite)"
     if fetch "$suite" "$component" "$scratch/apt"; then
         unpack "$scratch/apt" || fail "the package basis-universal has another layout than that of 2.0"
         [[ -e $scratch/apt/kept/transcoder/basisu_transcoder.cpp ]] ||
             fail "the package basis-universal has no transcoder"
         rm -rf "$root"
         mv -T "$scratch/apt/kept" "$root"
-        say "$(cat "$root/package") is in $root"
+        say "$(cat "$root/package") of $suite is in $root"
         exit 0
     fi
 done < <(suites_of "$distribution")
