@@ -48,6 +48,9 @@ fetch() {
     rm -rf "$folder"
     private_apt "$folder"
     mirror_stanza deb-src "$suite" "$component" >"$folder/parts/source.sources" || return 1
+    # Unlike a release's, the index of these suites expires after a week. A mirror that is older has what is wanted, and its
+    # signature still holds.
+    private_apt_options+=(-o "Acquire::Check-Valid-Until=false")
     apt-get update "${private_apt_options[@]}" >"$folder/apt.log" 2>&1 || return 1
     (cd "$folder" && apt-get source "${private_apt_options[@]}" --download-only --only-source basis-universal) \
         >>"$folder/apt.log" 2>&1

@@ -29,6 +29,7 @@ kNeeds=(
     "command pkg-config|pkg-config pkgconf"
     "command git|git"
     "command ccache|ccache"
+    "command xz|xz-utils"
     "file /etc/ssl/certs/ca-certificates.crt|ca-certificates"
     "file /usr/include/glslang/Public/ShaderLang.h|glslang-dev"
     "command glslangValidator|glslang-tools"
