@@ -116,7 +116,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"json-syntax", kError, "The scene is no valid JSON."},
     {"json-type", kError, "A member has the wrong type."},
     {"ktx2-metadata", kWarning,
-     "A KTX2 image says what `KHR_texture_basisu` does not allow, or is used as something else than it says."},
+     "A KTX2 image says what `KHR_texture_basisu` does not allow, or is used as something else than it "
+     "says."},
     {"light-range", kWarning, "A value of a light is outside of its range."},
     {"light-type", kError, "A light's type is unknown."},
     {"lint-path", kError, "`glint lint`: there is nothing to read at a path."},
