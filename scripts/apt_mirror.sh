@@ -1,5 +1,5 @@
-# Where this machine gets Debian from, for scripts that need more of it than is configured. Sourced, by setup.sh and
-# portable.sh; expects fail().
+# Where this machine gets its distribution from, for scripts that need more of it than is configured. Sourced, by setup.sh,
+# portable.sh and fetch_basisu.sh; expects fail().
 # shellcheck shell=bash
 
 # Prints the Signed-By field of an apt source, as lines of a deb822 stanza; nothing where it has none.
@@ -26,16 +26,29 @@ apt_indices() {
     apt-get indextargets --format '$(RELEASE)|$(COMPONENT)|$(ORIGIN)|$(REPO_URI)|$(SOURCESENTRY)' 'Created-By: Packages'
 }
 
-# debian_stanza TYPE SUITE: a deb822 stanza for a suite of Debian's main component, from the mirror and under the key that
-# this machine uses for Debian 12 itself. Status 1 where it uses none.
-debian_stanza() {
-    local release component origin uri entry
+# mirror_stanza TYPE SUITE [COMPONENT]: a deb822 stanza for a suite of Debian or Ubuntu (its component main), from the
+# mirror and under the key that this machine uses for its own release of it. Status 1 where it uses none.
+mirror_stanza() {
+    local release component origin uri entry own
+    # shellcheck source=/dev/null
+    own=$(. /etc/os-release && printf '%s|main|%s|' "${VERSION_CODENAME:-}" "${ID:-}")
     while IFS='|' read -r release component origin uri entry; do
-        if [[ $release == bookworm && $component == main && $origin == Debian ]]; then
-            printf 'Types: %s\nURIs: %s\nSuites: %s\nComponents: main\n' "$1" "$uri" "$2"
+        if [[ "$release|$component|${origin,,}|" == "$own" ]]; then
+            printf 'Types: %s\nURIs: %s\nSuites: %s\nComponents: %s\n' "$1" "$uri" "$2" "${3:-main}"
             signed_by "$entry"
             return
         fi
     done < <(apt_indices)
     return 1
+}
+
+# private_apt FOLDER: sets the array private_apt_options, by which apt-get reads the sources in FOLDER/parts alone and
+# keeps its lists and caches below FOLDER: this machine's stay as they are. What apt fetches must be signed.
+private_apt() {
+    mkdir -p "$1/parts" "$1/lists/partial" "$1/cache/archives/partial"
+    # shellcheck disable=SC2034 # for the caller
+    private_apt_options=(-q -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$1/parts"
+        -o "Dir::State::Lists=$1/lists" -o "Dir::Cache=$1/cache" -o "APT::Sandbox::User=root"
+        -o "Acquire::AllowInsecureRepositories=false" -o "APT::Get::AllowUnauthenticated=false"
+        -o "Acquire::Retries=1" -o "Acquire::http::Timeout=30" -o "Acquire::https::Timeout=30")
 }

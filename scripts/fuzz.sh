@@ -26,7 +26,7 @@ fi
 shift || true
 targets=("$@")
 if [[ ${#targets[@]} -eq 0 ]]; then
-    targets=(gltf_json gltf_glb package manifest lock lint profile cache image)
+    targets=(gltf_json gltf_glb ktx2 package manifest lock lint profile cache image)
 fi
 
 # Bounds for inputs of a few KB: what asks for more is a finding.

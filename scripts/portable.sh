@@ -52,42 +52,46 @@ kSources=(
     "tinygltf|-DTINYGLTF_BUILD_LOADER_EXAMPLE=OFF -Dstb_LIBRARY=$deps/lib/libstb.a"
 )
 # Debian's own static archives, which are taken where a shared library of the same name would be found first.
-kArchives=(libstb.a libwebp.a libxxhash.a libz.a)
+kArchives=(libstb.a libwebp.a libxxhash.a libz.a libzstd.a)
 
 # Fetches and unpacks the source packages in the folder, with sources and lists of apt of its own: this machine's stay as
 # they are. Checked by apt, as packages are.
 fetch_sources() {
     local folder=$1 names=()
-    mkdir -p "$folder/lists/partial" "$folder/parts"
-    debian_stanza deb-src bookworm > "$folder/parts/debian.sources" ||
+    private_apt "$folder"
+    mirror_stanza deb-src bookworm > "$folder/parts/debian.sources" ||
         fail "found no source of Debian 12's main component to take source packages from"
-    local apt=(-q -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$folder/parts"
-        -o "Dir::State::Lists=$folder/lists" -o "APT::Sandbox::User=root")
-    apt-get update "${apt[@]}" > "$folder/apt.log"
+    apt-get update "${private_apt_options[@]}" > "$folder/apt.log"
     local source
     for source in "${kSources[@]}"; do
         names+=("${source%%|*}")
     done
-    (cd "$folder" && apt-get source "${apt[@]}" --download-only "${names[@]}") >> "$folder/apt.log"
+    (cd "$folder" && apt-get source "${private_apt_options[@]}" --download-only "${names[@]}") >> "$folder/apt.log"
     for source in "${names[@]}"; do
         # apt has checked the files by their sums; the uploaders' own keys need not be here.
         dpkg-source -q --no-check -x "$folder/$source"_*.dsc "$folder/$source" >> "$folder/apt.log" 2>&1
     done
 }
 
+copy_archives() {
+    local triplet archive
+    triplet=$(gcc -dumpmachine)
+    for archive in "${kArchives[@]}"; do
+        cp "/usr/lib/$triplet/$archive" "$deps/lib/"
+    done
+}
+
 build_deps() {
     if [[ -e $deps/done ]]; then
+        copy_archives
         return
     fi
     say "fetching source packages"
     rm -rf "$deps"
     mkdir -p "$deps/lib" "$deps/source"
     fetch_sources "$deps/source"
-    local triplet archive source name
-    triplet=$(gcc -dumpmachine)
-    for archive in "${kArchives[@]}"; do
-        cp "/usr/lib/$triplet/$archive" "$deps/lib/"
-    done
+    copy_archives
+    local source name
     for source in "${kSources[@]}"; do
         name=${source%%|*}
         say "building $name"
@@ -131,7 +135,7 @@ check_program() {
 
 # Debian's packages of what is linked, whose copyright files go along.
 kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
-    libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
+    libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
     libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
 
 pack() {
@@ -155,6 +159,7 @@ pack() {
         [[ -r /usr/share/doc/$package/copyright ]] || fail "no licence of $package in /usr/share/doc"
         cp -L "/usr/share/doc/$package/copyright" "$folder/licences/$package.txt"
     done
+    cp "$(scripts/fetch_basisu.sh --where)/LICENSE" "$folder/licences/basis-universal.txt"
     "$folder/bin/gallery" "$folder/example" > /dev/null
     "$folder/bin/glint" compile "$folder/example/gallery.gltf" -o "$folder/example/gallery.glint" --strategy all \
         --tracer all --cache none --quiet
@@ -170,10 +175,10 @@ test_in() {
     local root=$1 name
     name=$(basename "$archive" .tar.gz)
     if [[ ! -e $root/usr/bin/apt-get ]]; then
-        debian_stanza deb bookworm > /dev/null || fail "found no source of Debian 12's main component"
+        mirror_stanza deb bookworm > /dev/null || fail "found no source of Debian 12's main component"
         say "making $root"
-        debootstrap --variant=minbase bookworm "$root" "$(debian_stanza deb bookworm | sed -n 's/^URIs: //p')" > /dev/null
-        debian_stanza deb bookworm-backports > "$root/etc/apt/sources.list.d/backports.sources"
+        debootstrap --variant=minbase bookworm "$root" "$(mirror_stanza deb bookworm | sed -n 's/^URIs: //p')" > /dev/null
+        mirror_stanza deb bookworm-backports > "$root/etc/apt/sources.list.d/backports.sources"
         chroot "$root" apt-get update -q > /dev/null
         chroot "$root" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends libvulkan1 > /dev/null
         chroot "$root" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
@@ -219,6 +224,7 @@ done
 [[ $(. /etc/os-release && printf '%s %s' "$ID" "${VERSION_ID:-}") == "debian 12" ]] ||
     fail "this is for Debian 12, whose C library is old enough"
 scripts/setup.sh --check --portable || fail "run scripts/setup.sh --portable"
+scripts/fetch_basisu.sh || fail "the archive is to read KTX2 textures"
 build_deps
 say "building glint"
 cmake --preset portable > "$build/configure.log"

@@ -8,6 +8,8 @@ usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
+Then scripts/fetch_basisu.sh fetches the sources by which Glint reads KTX2 textures; where
+they can't be had, that is said, and Glint builds without.
 
   --check     install nothing; print what is missing and exit 1 if anything is
   --browser   also Chromium and its driver, in which scripts/test.sh looks at the page of glint bench
@@ -27,6 +29,7 @@ kNeeds=(
     "command pkg-config|pkg-config pkgconf"
     "command git|git"
     "command ccache|ccache"
+    "command xz|xz-utils"
     "file /etc/ssl/certs/ca-certificates.crt|ca-certificates"
     "file /usr/include/glslang/Public/ShaderLang.h|glslang-dev"
     "command glslangValidator|glslang-tools"
@@ -37,6 +40,7 @@ kNeeds=(
     "file /usr/include/draco/compression/decode.h|libdraco-dev"
     "file /usr/include/meshoptimizer.h|libmeshoptimizer-dev"
     "file /usr/include/webp/decode.h|libwebp-dev"
+    "file /usr/include/zstd.h|libzstd-dev"
     "file /usr/include/vulkan/vulkan.h|libvulkan-dev"
     "file /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json|vulkan-validationlayers"
     "file /usr/share/vulkan/icd.d/lvp_icd*.json|mesa-vulkan-drivers"
@@ -182,7 +186,7 @@ configure_backports() {
         say "bookworm-backports is configured already"
         return
     fi
-    if ! stanza=$(debian_stanza deb bookworm-backports); then
+    if ! stanza=$(mirror_stanza deb bookworm-backports); then
         fail "found no source of Debian's main component to take the mirror of backports from;" \
             "configure bookworm-backports by hand and run this again"
     fi
@@ -210,6 +214,26 @@ install_packages() {
     done
     say "installing ${packages[*]}"
     apt_get install -q -y --no-install-recommends "${packages[@]}"
+}
+
+# The sources for KTX2 textures. Glint builds without them, so that nothing here fails.
+fetch_basisu() {
+    local script root
+    script=$(dirname "${BASH_SOURCE[0]}")/fetch_basisu.sh
+    root=$("$script" --where)
+    if [[ -e $root/transcoder/basisu_transcoder.cpp ]]; then
+        say "nothing to do"
+        return
+    fi
+    if [[ $check_only == true ]]; then
+        say "not there: the sources for KTX2 textures, in $root (optional)"
+        return
+    fi
+    # A new machine may not have read its package lists yet, and the mirror is found by them.
+    if ! apt_indices 2>/dev/null | grep -qi '|main|\(debian\|ubuntu\)|'; then
+        apt_get update -q || true
+    fi
+    "$script" || true
 }
 
 # --- Main ------------------------------------------------------------------------------------------
@@ -255,7 +279,7 @@ if mesa_too_old; then
 fi
 
 if [[ ${#missing[@]} -eq 0 && $old_mesa == false ]]; then
-    say "nothing to do"
+    fetch_basisu
     exit 0
 fi
 
@@ -265,6 +289,7 @@ if [[ $check_only == true ]]; then
         names=${need#*|}
         say "missing: ${probe#* } (package ${names// / or })"
     done
+    fetch_basisu
     if [[ $old_mesa == true && -n $(mesa_version) ]]; then
         say "too old: mesa-vulkan-drivers $(mesa_version) (from $kOldestMesa on, in bookworm-backports)"
     fi
@@ -300,4 +325,5 @@ if [[ ${#missing[@]} -gt 0 ]]; then
     printf 'setup: still missing: %s\n' "${missing[@]%%|*}" >&2
     fail "the packages installed did not bring all that is needed"
 fi
+fetch_basisu
 say "done"

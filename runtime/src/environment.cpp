@@ -97,7 +97,7 @@ Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& l
     if (!uploader) {
         return uploader.error();
     }
-    if (Status status = (*uploader)->copyMips(views, half ? 8 : 16, state.map); !status) {
+    if (Status status = (*uploader)->copyToImage(views, half ? 8 : 16, state.map); !status) {
         return status;
     }
     return (*uploader)->finish();

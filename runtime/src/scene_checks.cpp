@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -143,11 +144,18 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
             return makeError("scene-image", where, "the image has an unknown format",
                              "use a value of ImageView::Format");
         }
-        if (image.pixels.size() != std::uint64_t{image.bytesPerPixel()} * image.width * image.height) {
+        const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+        if (image.levels == 0 || image.levels > most) {
+            return makeError("scene-image", where,
+                             "the image has " + std::to_string(image.levels) +
+                                 " levels, its size takes 1 to " + std::to_string(most),
+                             "give the levels that there are");
+        }
+        if (image.pixels.size() != image.byteCount(image.levels)) {
             return makeError("scene-image", where,
                              std::to_string(image.pixels.size()) + " bytes do not make " +
-                                 std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                 " RGBA pixels",
+                                 std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
+                                 " x " + std::to_string(image.height) + " RGBA pixels",
                              "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
         }
     }

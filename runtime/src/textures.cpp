@@ -33,8 +33,15 @@ Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Upl
     if (image.format == ImageView::Format::Rgba16 && (srgb || !isWide)) {
         converted = isWide ? linearizeRgba16(image.pixels) : narrowRgba16(image.pixels);
     }
-    const std::span<const std::uint8_t> texels = converted.empty() ? image.pixels : converted;
-    if (Status status = uploader.copyToImage(texels, isWide ? 8 : 4, *texture); !status) {
+    ImageView stored = image;
+    stored.pixels = converted.empty() ? image.pixels : converted;
+    stored.format = isWide ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8;
+    std::vector<std::span<const std::uint8_t>> mips;
+    for (std::uint32_t level = 0; level < stored.levels; ++level) {
+        const std::uint64_t start = stored.byteCount(level);
+        mips.push_back(stored.pixels.subspan(start, stored.byteCount(level + 1) - start));
+    }
+    if (Status status = uploader.copyToImage(mips, stored.bytesPerPixel(), *texture); !status) {
         return status.error();
     }
     return texture;

@@ -130,20 +130,8 @@ Status Uploader::copyRows(std::span<const std::uint8_t> texels, std::uint32_t te
     return okStatus();
 }
 
-Status Uploader::copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                              const DeviceImage& target) {
-    if (Status status = startImage(target); !status) {
-        return status;
-    }
-    if (Status status = copyRows(texels, texelBytes, target, 0); !status) {
-        return status;
-    }
-    recordMips(target);
-    return okStatus();
-}
-
-Status Uploader::copyMips(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
-                          const DeviceImage& target) {
     if (Status status = startImage(target); !status) {
         return status;
     }
@@ -152,17 +140,16 @@ Status Uploader::copyMips(std::span<const std::span<const std::uint8_t>> mips, s
             return status;
         }
     }
-    recordTransition(*context_, commands_,
-                     {target.handle.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders});
+    recordMips(target, static_cast<std::uint32_t>(mips.size()));
     return okStatus();
 }
 
-void Uploader::recordMips(const DeviceImage& target) {
+void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
     const VkImage image = target.handle.get();
-    auto width = static_cast<std::int32_t>(target.extent.width);
-    auto height = static_cast<std::int32_t>(target.extent.height);
-    for (std::uint32_t mip = 1; mip < target.mips; ++mip) {
+    const std::uint32_t last = given - 1;
+    auto width = static_cast<std::int32_t>(std::max(target.extent.width >> last, 1U));
+    auto height = static_cast<std::int32_t>(std::max(target.extent.height >> last, 1U));
+    for (std::uint32_t mip = given; mip < target.mips; ++mip) {
         recordTransition(*context_, commands_,
                          {image,
                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -181,14 +168,17 @@ void Uploader::recordMips(const DeviceImage& target) {
         context_->vk.CmdBlitImage(commands_, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
     }
-    if (target.mips > 1) {
-        recordTransition(*context_, commands_,
-                         {image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, 0, target.mips - 1});
-    }
-    recordTransition(*context_, commands_,
-                     {image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                      kToShaders, target.mips - 1, 1});
+    const auto recordReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
+        if (count > 0) {
+            recordTransition(
+                *context_, commands_,
+                {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
+        }
+    };
+    // What was blitted from is a source, the rest are targets.
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);
 }
 
 }  // namespace glint

@@ -16,15 +16,12 @@ public:
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills mip 0 of an image of undefined layout with texels of `texelBytes` bytes, blits the other mips
-    // from it, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. `target` needs TRANSFER_SRC and
-    // TRANSFER_DST usage.
-    Status copyToImage(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+    // Fills the first mips of an image of undefined layout with texels of `texelBytes` bytes, blits the
+    // others that it has each from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL.
+    // Requires one mip at least. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage where mips are
+    // blitted.
+    Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                        const DeviceImage& target);
-    // Fills every mip of an image of undefined layout, without blits; otherwise as copyToImage(). `target`
-    // needs TRANSFER_DST usage.
-    Status copyMips(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
-                    const DeviceImage& target);
     // Waits until everything is on the device, visible to all commands that are submitted later.
     Status finish();
 
@@ -37,7 +34,8 @@ private:
     Status startImage(const DeviceImage& target);
     Status copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes, const DeviceImage& target,
                     std::uint32_t mip);
-    void recordMips(const DeviceImage& target);
+    // Blits the mips behind the first `given`, and makes all of them readable.
+    void recordMips(const DeviceImage& target, std::uint32_t given);
 
     Context::State* context_;
     MemoryPool pool_;

@@ -63,6 +63,21 @@ std::string hugeWebp() {
     return file.append(little(static_cast<std::uint32_t>(data.size()))).append(data);
 }
 
+// UASTC with Zstandard, 16000 x 16000 pixels: the header of KTX 2.0, a level, and its data format descriptor.
+std::string hugeKtx2() {
+    constexpr std::uint32_t kSize = 16000;
+    constexpr std::uint32_t kDescriptor = 104;
+    std::string file = "\xABKTX 20\xBB\r\n\x1A\n" + little(0) + little(1) + little(kSize) + little(kSize) +
+                       little(0) + little(0) + little(1) + little(1) + little(2) + little(kDescriptor) +
+                       little(44);
+    file.resize(80, '\0');
+    file += little(kDescriptor + 44) + little(0) + little(16) + little(0) + little(kSize * kSize) + little(0);
+    file += little(44) + little(0) + little(2U | 40U << 16U) + little(166U | 1U << 8U | 2U << 16U) +
+            little(0x0303) + little(16) + little(0) + little(127U << 16U) + little(0) + little(0) +
+            little(0xFFFFFFFFU);
+    return file + std::string(16, '\0');
+}
+
 std::string hugeExr() {
     const auto attribute = [](const std::string& name, const std::string& type, const std::string& value) {
         return name + '\0' + type + '\0' + little(static_cast<std::uint32_t>(value.size())) + value;
@@ -227,6 +242,7 @@ TEST_F(Memory, ImagesOfScenes) {
     expectImageRefused("chunk of a PNG", pngOfHugeChunk(), "image-decode");
     expectImageRefused("JPEG", hugeJpeg(), "image-decode");
     expectImageRefused("WebP", hugeWebp(), "image-size");
+    expectImageRefused("KTX2", hugeKtx2(), "image-size");
 }
 
 TEST_F(Memory, Pictures) {

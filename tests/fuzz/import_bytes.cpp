@@ -98,9 +98,7 @@ void checkScene(const Scene& scene) {
         require(node.light < static_cast<int>(scene.lights.size()), "a node's light exists");
     }
     for (const Image& image : scene.images) {
-        require(image.pixels.size() == bytesPerPixel(image.format) * static_cast<std::size_t>(image.width) *
-                                           static_cast<std::size_t>(image.height),
-                "an image has the pixels that it says");
+        require(image.pixels.size() == byteCount(image), "an image has the pixels that it says");
     }
 }
 

@@ -34,6 +34,10 @@ protected:
         ImportOptions options;
         options.decodeImages = true;
         Result<Scene> scene = importScene(path, options);
+        if (!scene && scene.error().id == "texture-basisu") {
+            skip("this build does not decode the KTX2 textures of " + path.filename().string());
+            return std::nullopt;
+        }
         if (!scene) {
             ADD_FAILURE() << toString(scene.error());
             return std::nullopt;

@@ -26,12 +26,14 @@ using Arguments = std::span<const char* const>;
 void describe(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.name("glint");
-    app.description("Compiles the materials of glTF scenes into shaders for ray hits, and runs them.");
-    app.set_version_flag("--version",
-                         std::string("glint ") + GLINT_VERSION +
-                             (gltf::hasBasisu() ? "\nKTX2 textures (KHR_texture_basisu): read by libktx"
-                                                : "\nKTX2 textures (KHR_texture_basisu): not built in"),
-                         "Print the version and what is built in, and exit");
+    app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
+    app.set_version_flag(
+        "--version",
+        std::string("glint ") + GLINT_VERSION +
+            (gltf::hasBasisu()
+                 ? "\nKTX2 textures (KHR_texture_basisu): read by the transcoder of Basis Universal"
+                 : "\nKTX2 textures (KHR_texture_basisu): not built in"),
+        "Print the version and what is built in, and exit");
     app.set_help_flag("-h,--help", "Print this help and exit");
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"

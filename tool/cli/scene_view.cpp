@@ -135,7 +135,8 @@ SceneViewData makeSceneView(const Scene& scene) {
     for (const Image& image : scene.images) {
         data.images.push_back(
             {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
-             image.format == PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8});
+             image.format == PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8,
+             static_cast<std::uint32_t>(image.levels)});
     }
     data.lights.resize(scene.lights.size());
     poseSceneView(scene, data);

@@ -13,25 +13,9 @@ using package::TextureEntry;
 
 namespace {
 
-// Returns whether the slot's texture is sRGB. Alpha is linear even then.
-bool isColor(const Material& material, TextureSlot slot) {
-    switch (slot) {
-        case TextureSlot::BaseColor:
-        case TextureSlot::Emissive:
-        case TextureSlot::SheenColor:
-        case TextureSlot::SpecularColor:
-        case TextureSlot::DiffuseTransmissionColor:
-            return true;
-        case TextureSlot::MetallicRoughness:
-            return material.specularGlossiness.given;
-        default:
-            return false;
-    }
-}
-
-// Sets the rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image,
-// where v points down. The GLSL listing of the extension turns the other way; its text and test models turn
-// this way (KhronosGroup/glTF issue 1563).
+// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
+// points down; the extension's GLSL listing turns the other way, its text and test models this one
+// (KhronosGroup/glTF issue 1563).
 void setTransform(const TextureTransform& transform, gpu::TextureRecord& record) {
     const double sine = std::sin(static_cast<double>(transform.rotation));
     const double cosine = std::cos(static_cast<double>(transform.rotation));

@@ -1,19 +1,20 @@
-// A build without libktx.
+// A build without the transcoder of Basis Universal.
 #include "gltf/basisu.h"
 #include "gltf/codecs.h"
+#include "gltf/ktx2.h"
 
 namespace glint::gltf {
 
 namespace {
 
 bool refuse(ByteView /*bytes*/, Image& /*image*/, std::string& problem) {
-    problem = "this Glint was built without libktx";
+    problem = "this Glint was built without the transcoder of Basis Universal";
     return false;
 }
 
 }  // namespace
 
-const Codec kBasisu{"KTX2", refuse, refuse};
+const Codec kBasisu{"KTX2", readKtx2Header, refuse};
 
 bool hasBasisu() {
     return false;

@@ -21,7 +21,7 @@ struct Codec {
 extern const Codec kPng;
 extern const Codec kJpeg;
 extern const Codec kWebp;
-// Of a build without libktx, kBasisu fails with what to do about it.
+// In a build without hasBasisu() its decode() fails, and says why.
 extern const Codec kBasisu;
 
 // The codec for what the bytes start with; null for none.

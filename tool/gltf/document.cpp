@@ -292,4 +292,8 @@ void Document::warn(std::string id, std::string_view pointer, std::string messag
     warnings_.push_back(makeWarning(std::move(id), where(pointer), std::move(message), std::move(hint)));
 }
 
+void Document::note(std::string id, std::string_view pointer, std::string message, std::string hint) {
+    warnings_.push_back({Severity::Note, std::move(id), where(pointer), std::move(message), std::move(hint)});
+}
+
 }  // namespace glint::gltf

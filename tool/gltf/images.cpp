@@ -2,6 +2,7 @@
 
 #include "gltf/basisu.h"
 #include "gltf/codecs.h"
+#include "gltf/ktx2.h"
 #include "gltf/uri.h"
 
 #include <fmt/format.h>
@@ -84,12 +85,21 @@ Status checkSize(Document& document, const Image& image) {
             fmt::format("is {} x {} pixels; the limit is {} either way", image.width, image.height, limit),
             "scale the image down");
     }
-    const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-    if (!document.chargeImageBytes(bytesPerPixel(image.format) * pixels)) {
+    if (!document.chargeImageBytes(byteCount(image))) {
         return document.error("image-size", image.pointer, "the scene's images ask for too much memory",
                               "scale the images down");
     }
     return okStatus();
+}
+
+void warnOfDeviations(Document& document, ByteView bytes, const Image& image) {
+    std::string problem;
+    if (const std::optional<Ktx2> file = readKtx2(bytes, problem)) {
+        for (const std::string& deviation : file->deviations) {
+            document.warn("ktx2-metadata", image.pointer, deviation,
+                          "make the KTX2 file by the rules of KHR_texture_basisu");
+        }
+    }
 }
 
 Status decode(Document& document, ByteView bytes, Image& image) {
@@ -115,7 +125,13 @@ Status decode(Document& document, ByteView bytes, Image& image) {
     if (Status status = checkSize(document, image); !status) {
         return status;
     }
-    return codec->decode(bytes, image, problem) ? okStatus() : failDecoding(problem);
+    if (!codec->decode(bytes, image, problem)) {
+        return failDecoding(problem);
+    }
+    if (codec == &kBasisu) {
+        warnOfDeviations(document, bytes, image);
+    }
+    return okStatus();
 }
 
 }  // namespace

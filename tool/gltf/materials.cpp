@@ -72,6 +72,26 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
     return okStatus();
 }
 
+// glTF says by slot which textures are colour; a KTX2 file says it of itself, and should agree.
+void checkTransfer(Document& document, const Scene& scene, const Material& material,
+                   const std::string& pointer) {
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+        if (material.textures[slot].texture < 0) {
+            continue;
+        }
+        const Texture& texture = scene.textures[static_cast<std::size_t>(material.textures[slot].texture)];
+        const Image& image = scene.images[static_cast<std::size_t>(texture.image)];
+        const bool color = isColor(material, static_cast<TextureSlot>(slot));
+        if (image.transfer == (color ? Transfer::Linear : Transfer::Srgb)) {
+            document.warn("ktx2-metadata", pointer,
+                          fmt::format("{} says that it is {}, but is used as {}; it is read as the latter",
+                                      image.pointer, color ? "linear data" : "colour in sRGB",
+                                      color ? "colour in sRGB" : "linear data"),
+                          "make the KTX2 file with the transfer function of its use");
+        }
+    }
+}
+
 AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::string& pointer) {
     if (mode == "MASK") {
         return AlphaMode::Mask;
@@ -126,6 +146,7 @@ Status importMaterials(Document& document, Scene& scene) {
         if (Status status = readTextures(document, textures, json, pointer, material); !status) {
             return status;
         }
+        checkTransfer(document, scene, material, pointer);
         scene.materials.push_back(std::move(material));
     }
     return okStatus();

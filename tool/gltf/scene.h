@@ -117,6 +117,9 @@ constexpr std::size_t bytesPerPixel(PixelFormat format) {
     return format == PixelFormat::Rgba16 ? 8 : 4;
 }
 
+// How an image file says that its colours are stored.
+enum class Transfer : std::uint8_t { Unknown, Linear, Srgb };
+
 // Pixels are empty unless ImportOptions::decodeImages.
 struct Image {
     std::string name;     // glTF name, else the file's name, else "image N"
@@ -124,9 +127,28 @@ struct Image {
     int width = 0;
     int height = 0;
     PixelFormat format = PixelFormat::Rgba8;  // Rgba16 where the file has 16 bits
-    // bytesPerPixel(format) * width * height bytes, first row on top, as stored (not linearised).
+    // Above 1 where the file has mips. Each level has half the size of the one before, rounded down.
+    int levels = 1;
+    Transfer transfer = Transfer::Unknown;  // known of KTX2 alone; what reads a texture decides how
+    // byteCount() bytes: the levels from the largest on, first row on top, as stored (not linearised).
     std::vector<std::uint8_t> pixels;
 };
+
+constexpr std::uint64_t pixelCount(const Image& image, int level) {
+    const auto sizeOf = [level](int size) { return static_cast<std::uint64_t>(size >> level); };
+    const std::uint64_t width = sizeOf(image.width);
+    const std::uint64_t height = sizeOf(image.height);
+    return (width == 0 ? 1 : width) * (height == 0 ? 1 : height);
+}
+
+// The bytes of all levels.
+constexpr std::uint64_t byteCount(const Image& image) {
+    std::uint64_t pixels = 0;
+    for (int level = 0; level < image.levels; ++level) {
+        pixels += pixelCount(image, level);
+    }
+    return bytesPerPixel(image.format) * pixels;
+}
 
 struct Texture {
     int image = 0;

@@ -110,7 +110,9 @@ Result<int> TextureTable::use(int texture) {
     return *known;
 }
 
-// The file's image that the texture shows; -1 and a warning where it has none that Glint can decode.
+// The file's image that the texture shows; -1 and a warning where it has none of a format that Glint knows. A
+// KTX2 image that this build does not decode is an error, unless there is another image and the file does not
+// require KHR_texture_basisu.
 Result<int> TextureTable::chooseImage(int texture) {
     constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
     constexpr const char* kEffect = "materials render without it";
@@ -119,12 +121,13 @@ Result<int> TextureTable::chooseImage(int texture) {
     const int plain = document_.model().textures[static_cast<std::size_t>(texture)].source;
     // Later ones are what a reader without the extensions would take.
     int basisu = -1;
+    const bool mayFallBack = !requiresExtension(document_, "KHR_texture_basisu");
     for (const int image :
          {extensionSource(json, "EXT_texture_webp"), extensionSource(json, "KHR_texture_basisu"), plain}) {
         const Decodable decodable = image < 0 ? Decodable::No : decodability(document_, image);
-        if (decodable == Decodable::Yes) {
+        if (decodable == Decodable::Yes && (basisu < 0 || mayFallBack)) {
             if (basisu >= 0) {
-                document_.warn("texture-basisu", pointer,
+                document_.note("texture-basisu", pointer,
                                fmt::format("/images/{} is KTX2, which this build of Glint does not decode; "
                                            "/images/{} is used",
                                            basisu, image),
@@ -135,13 +138,10 @@ Result<int> TextureTable::chooseImage(int texture) {
         basisu = decodable == Decodable::NeedsBasisu ? image : basisu;
     }
     if (basisu >= 0) {
-        std::string message =
-            fmt::format("/images/{} is KTX2, which this build of Glint does not decode", basisu);
-        if (requiresExtension(document_, "KHR_texture_basisu")) {
-            return document_.error("texture-basisu", pointer, std::move(message), kBasisuHint);
-        }
-        document_.warn("texture-basisu", pointer, fmt::format("{}; {}", message, kEffect), kBasisuHint);
-        return -1;
+        return document_.error(
+            "texture-basisu", pointer,
+            fmt::format("/images/{} is KTX2, which this build of Glint does not decode", basisu),
+            kBasisuHint);
     }
     if (plain >= 0) {
         document_.warn("texture-source", pointer,

@@ -19,8 +19,8 @@ public:
     TextureTable(Document& document, Scene& scene);
 
     // Index into scene.textures of the file's texture, appended on first use; -1 and a warning where its
-    // source is missing or of a kind that Glint can't decode. Error "texture-basisu": it is KTX2 only, the
-    // file requires KHR_texture_basisu, and this build does not have it.
+    // source is missing or of a format that Glint does not read. Error "texture-basisu": it is KTX2 without a
+    // fallback, or the file requires that, and this build does not decode it.
     Result<int> use(int texture);
 
 private:

@@ -160,6 +160,23 @@ struct Material {
     }
 };
 
+// Whether the slot's texture is colour, in sRGB; its alpha, where something reads that, is linear all the
+// same.
+inline bool isColor(const Material& material, TextureSlot slot) {
+    switch (slot) {
+        case TextureSlot::BaseColor:
+        case TextureSlot::Emissive:
+        case TextureSlot::SheenColor:
+        case TextureSlot::SpecularColor:
+        case TextureSlot::DiffuseTransmissionColor:
+            return true;
+        case TextureSlot::MetallicRoughness:
+            return material.specularGlossiness.given;
+        default:
+            return false;
+    }
+}
+
 enum class ColorContent : std::uint8_t {
     None,   // no COLOR_0
     White,  // COLOR_0 is (1, 1, 1, 1) everywhere, so it changes nothing.

@@ -1,6 +1,7 @@
 // A scene as the runtime takes it: spans over the caller's memory, read during upload and not kept.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -52,11 +53,23 @@ struct ImageView {
     };
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::span<const std::uint8_t> pixels;  // bytesPerPixel() * width * height bytes
+    std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes
     Format format = Format::Rgba8;
+    // In `pixels`, one after another from the largest on, each of half the size of the one before, rounded
+    // down. Upload makes the others of a full pyramid from the last.
+    std::uint32_t levels = 1;
 
     std::uint32_t bytesPerPixel() const {
         return format == Format::Rgba16 ? 8 : 4;
+    }
+    // The bytes of the first `count` levels.
+    std::uint64_t byteCount(std::uint32_t count) const {
+        std::uint64_t texels = 0;
+        for (std::uint32_t level = 0; level < count; ++level) {
+            texels += std::max(std::uint64_t{width} >> level, std::uint64_t{1}) *
+                      std::max(std::uint64_t{height} >> level, std::uint64_t{1});
+        }
+        return bytesPerPixel() * texels;
     }
 };
 

@@ -121,6 +121,17 @@ Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options) {
     return importText(builder.text(), options);
 }
 
+GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType) {
+    GltfBuilder builder;
+    const int view = builder.addView(bytes.data(), bytes.size());
+    builder.append("images", {{"bufferView", view}, {"mimeType", mimeType}});
+    builder.append("textures", {{"source", 0}});
+    Json material;
+    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    builder.append("materials", std::move(material));
+    return builder;
+}
+
 std::size_t countWarnings(const Scene& scene, std::string_view id) {
     std::size_t count = 0;
     for (const Diagnostic& warning : scene.warnings) {

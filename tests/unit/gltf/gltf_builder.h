@@ -95,7 +95,10 @@ std::string base64(const Bytes& bytes);
 Result<Scene> importText(const std::string& text, const ImportOptions& options = {});
 Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options = {});
 
-// Returns the number of warnings of that kind.
+// A material whose base colour is the image of those bytes.
+GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png");
+
+// Warnings of that kind.
 std::size_t countWarnings(const Scene& scene, std::string_view id);
 // Returns the first warning of that kind; an empty one if there is none.
 Diagnostic findWarning(const Scene& scene, std::string_view id);

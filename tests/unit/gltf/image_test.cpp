@@ -1,5 +1,4 @@
-// Tests image formats: PNG of every kind, WebP, KTX2, and which source of a texture is taken.
-#include "gltf/basisu.h"
+// Image formats: PNG of every kind, WebP, and which source of a texture is taken. KTX2 is in ktx2_test.cpp.
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -14,18 +13,6 @@ namespace glint::test {
 namespace {
 
 const ImportOptions kDecode{.decodeImages = true};
-
-// Returns a material whose base colour is the image with those bytes.
-GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png") {
-    GltfBuilder builder;
-    const int view = builder.addView(bytes.data(), bytes.size());
-    builder.append("images", {{"bufferView", view}, {"mimeType", mimeType}});
-    builder.append("textures", {{"source", 0}});
-    Json material;
-    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
-    builder.append("materials", std::move(material));
-    return builder;
-}
 
 Image decodePng(const PngSpec& spec) {
     Result<Scene> scene = import(sceneWithImage(makePng(spec)), kDecode);
@@ -134,59 +121,6 @@ TEST(GltfWebp, ExplainsDamage) {
     EXPECT_TRUE(errorOf(range).starts_with("index-range"));
     range.root["textures"][0]["extensions"]["EXT_texture_webp"] = Json::object();
     EXPECT_TRUE(errorOf(range).starts_with("json-missing"));
-}
-
-// Returns the start of a KTX2 file.
-Bytes ktx2Start() {
-    Bytes bytes{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
-    bytes.resize(80);
-    return bytes;
-}
-
-GltfBuilder basisuScene() {
-    GltfBuilder builder = sceneWithImage(ktx2Start(), "image/ktx2");
-    builder.root["extensionsUsed"] = Json::array({"KHR_texture_basisu"});
-    Json texture;
-    texture["extensions"]["KHR_texture_basisu"]["source"] = 0;
-    builder.root["textures"][0] = std::move(texture);
-    return builder;
-}
-
-TEST(GltfBasisu, FallsBackOrSaysWhatToInstall) {
-    if (gltf::hasBasisu()) {
-        GTEST_SKIP() << "this build decodes KTX2";
-    }
-    GltfBuilder builder = basisuScene();
-    const Result<Scene> without = import(builder, kDecode);
-    ASSERT_TRUE(without.ok()) << toString(without.error());
-    EXPECT_TRUE(without->textures.empty());
-    EXPECT_EQ(without->materials[0].texture(TextureSlot::BaseColor).texture, -1);
-    EXPECT_EQ(countWarnings(*without, "texture-basisu"), 1U);
-    EXPECT_EQ(countWarnings(*without, "extension-ignored"), 0U);
-    EXPECT_NE(findWarning(*without, "texture-basisu").hint.find("libktx"), std::string::npos);
-
-    builder.root["extensionsRequired"] = builder.root["extensionsUsed"];
-    const Result<Scene> required = import(builder);
-    ASSERT_FALSE(required.ok());
-    EXPECT_EQ(required.error().id, "texture-basisu");
-    EXPECT_TRUE(required.error().where.ends_with("#/textures/0"));
-    EXPECT_NE(required.error().hint.find("libktx"), std::string::npos);
-
-    builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
-    builder.root["textures"][0]["source"] = 1;
-    const Result<Scene> fallback = import(builder, kDecode);
-    ASSERT_TRUE(fallback.ok()) << toString(fallback.error());
-    ASSERT_EQ(fallback->images.size(), 1U);
-    EXPECT_EQ(fallback->images[0].pointer, "/images/1");
-    EXPECT_EQ(countWarnings(*fallback, "texture-basisu"), 1U);
-}
-
-TEST(GltfBasisu, ExplainsKtxInTheGuiseOfPng) {
-    const Result<Scene> scene = import(sceneWithImage(ktx2Start()), kDecode);
-    ASSERT_FALSE(scene.ok());
-    EXPECT_EQ(scene.error().id, "image-decode");
-    EXPECT_NE(scene.error().message.find("KTX2"), std::string::npos) << scene.error().message;
-    EXPECT_EQ(scene.error().hint.find("libktx") != std::string::npos, !gltf::hasBasisu());
 }
 
 TEST(GltfImages, NamesForeignFormats) {

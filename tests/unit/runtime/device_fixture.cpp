@@ -23,7 +23,7 @@ SceneView TestScene::view() {
     }
     imageViews_.clear();
     for (const Pixels& image : images) {
-        imageViews_.push_back({image.width, image.height, image.bytes, image.format});
+        imageViews_.push_back({image.width, image.height, image.bytes, image.format, image.levels});
     }
     return {primitiveViews_, instances, imageViews_, lights};
 }

@@ -28,6 +28,7 @@ struct TestScene {
         std::uint32_t height = 0;
         std::vector<std::uint8_t> bytes;
         ImageView::Format format = ImageView::Format::Rgba8;
+        std::uint32_t levels = 1;
     };
     std::vector<Mesh> meshes;
     std::vector<InstanceView> instances;

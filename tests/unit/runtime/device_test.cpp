@@ -303,6 +303,9 @@ TEST_F(UploadTest, BrokenScenesAreErrors) {
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = I::Format::Rgba16; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = static_cast<I::Format>(7); }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 1U << 30; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.levels = 0; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.levels = 2; }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.levels = 3; }), "scene-image");
     LightView light;
     light.range = std::numeric_limits<float>::infinity();
     EXPECT_EQ(withScene([&](P&, S& s, I&) { s.lights = {&light, 1}; }), "scene-light");

@@ -258,6 +258,36 @@ TEST_P(RendererTest, MipsAreMeansInLinearLight) {
     }
 }
 
+// The shader reads mip 1, where each image has another value than its mip 0 would make. The validation layers
+// see how the mips that are missing are made.
+TEST_P(RendererTest, MipsOfAnImageAreKept) {
+    test::PackageSpec spec = test::makeDeviceSpec();
+    spec.textures = {{0, 0}, {1, 0}, {2, 0}};
+    spec.samplers = {{0, 0, 0, 0, 0, 1}};
+    TestScene scene;
+    scene.meshes = {test::makeSquare(0, 0)};
+    scene.instances = {{0, test::kIdentity}};
+    const auto addLevels = [&](std::uint32_t size, const std::vector<std::uint8_t>& values,
+                               ImageView::Format format) {
+        const bool wide = format == ImageView::Format::Rgba16;
+        TestScene::Pixels image{size, size, {}, format, static_cast<std::uint32_t>(values.size())};
+        for (std::size_t level = 0; level < values.size(); ++level) {
+            const std::size_t edge = std::max<std::size_t>(size >> level, 1);
+            image.bytes.insert(image.bytes.end(), (wide ? 8 : 4) * edge * edge, values[level]);
+        }
+        scene.images.push_back(image);
+    };
+    addLevels(2, {255, 51}, ImageView::Format::Rgba8);
+    addLevels(5, {255, 51}, ImageView::Format::Rgba8);  // two levels of three
+    addLevels(5, {255, 51, 0}, ImageView::Format::Rgba16);
+    for (const std::uint32_t texture : {0U, 1U, 2U}) {
+        spec.materials[0].textures[0].textureIndex = texture;
+        const Package package = load(spec);
+        const LinearImage image = render(package, scene, makeFrame(4.0F));
+        EXPECT_NEAR(image.pixels[kWidth * (kHeight / 2) + kWidth / 2][2], 0.2F, 5e-3F) << texture;
+    }
+}
+
 TEST_P(RendererTest, BadRequestsAreErrors) {
     const Package package = load(test::makeDeviceSpec());
     TestScene scene;

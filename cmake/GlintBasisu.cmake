@@ -1,0 +1,70 @@
+# glint_basisu(TARGET): compiles the transcoder of Basis Universal into TARGET, with which it reads KTX2 textures, from the
+# sources that scripts/fetch_basisu.sh keeps, or those of a checkout that GLINT_BASISU_ROOT names. Sets GLINT_HAS_BASISU.
+#
+# It is compiled here, not taken from a library, so that it has the flags of each build, sanitizers and coverage among
+# them: what it reads was written by others.
+
+set(GLINT_BASISU_ROOT "" CACHE PATH "Sources of Basis Universal (default: where scripts/fetch_basisu.sh keeps them)")
+
+set(GLINT_BASISU_TRIMMED "${CMAKE_CURRENT_LIST_DIR}/basisu_trimmed.h")
+
+# Where scripts/fetch_basisu.sh keeps the sources.
+function(_glint_basisu_root result)
+  foreach(candidate IN ITEMS "${GLINT_BASISU_ROOT}" "$ENV{GLINT_BASISU_ROOT}")
+    if(candidate)
+      set(${result} "${candidate}" PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  set(caches "$ENV{XDG_CACHE_HOME}")
+  if(NOT caches)
+    set(caches "$ENV{HOME}/.cache")
+  endif()
+  set(${result} "${caches}/glint-sources/basis-universal" PARENT_SCOPE)
+endfunction()
+
+function(glint_basisu target)
+  _glint_basisu_root(root)
+  find_library(GLINT_ZSTD_LIBRARY zstd)
+  mark_as_advanced(GLINT_ZSTD_LIBRARY)
+  set(GLINT_HAS_BASISU FALSE PARENT_SCOPE)
+  if(NOT EXISTS "${root}/transcoder/basisu_transcoder.cpp")
+    message(STATUS "KHR_texture_basisu: left out, as ${root} has no transcoder; scripts/setup.sh fetches it")
+    return()
+  endif()
+  if(NOT GLINT_ZSTD_LIBRARY)
+    message(STATUS "KHR_texture_basisu: left out, as there is no libzstd; scripts/setup.sh installs it")
+    return()
+  endif()
+  message(STATUS "KHR_texture_basisu: through the transcoder in ${root}")
+
+  add_library(glint_basisu OBJECT "${root}/transcoder/basisu_transcoder.cpp")
+  target_compile_features(glint_basisu PRIVATE cxx_std_17)
+  # Its assertions are about its caller and the file alike: a file must not end the process. Optimised in every build, as
+  # it takes seconds a texture otherwise.
+  set(level $<IF:$<BOOL:${GLINT_SANITIZE}>,-O1,-O2>)
+  target_compile_options(glint_basisu PRIVATE -w ${level} -fno-strict-aliasing)
+  target_compile_definitions(glint_basisu PRIVATE NDEBUG)
+  # Of the version that is known, only what reads ETC1S and UASTC and writes pixels: a third of the time, and less code that
+  # sees a file. Another version is compiled as it comes.
+  file(STRINGS "${root}/transcoder/basisu_transcoder_internal.h" version REGEX "define BASISD_LIB_VERSION 20[0-9]")
+  if(version)
+    foreach(format IN ITEMS ASTC ATC BC7 DXT1 DXT5A ETC2_EAC_A8 ETC2_EAC_RG11 FXT1 PVRTC1 PVRTC2 UASTC_HDR XUASTC)
+      target_compile_definitions(glint_basisu PRIVATE BASISD_SUPPORT_${format}=0)
+    endforeach()
+    target_compile_options(glint_basisu PRIVATE "SHELL:-include \"${GLINT_BASISU_TRIMMED}\"")
+  endif()
+  if(GLINT_SANITIZE)
+    target_compile_options(glint_basisu PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all)
+  endif()
+  if(GLINT_FUZZ)
+    target_compile_options(glint_basisu PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+
+  # As objects: whoever installs the target installs no second library.
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:glint_basisu>)
+  target_include_directories(${target} SYSTEM PRIVATE "${root}/transcoder")
+  # By its bare name, as an installed target names it, too.
+  target_link_libraries(${target} PRIVATE zstd)
+  set(GLINT_HAS_BASISU TRUE PARENT_SCOPE)
+endfunction()
