@@ -44,6 +44,7 @@ public:
     Console& operator=(const Console&) = delete;
 
     bool isJson() const;
+    bool isVerbose() const;
     const DiagnosticPolicy& policy() const;
 
     // A result as text; it ends with a line break where one is wanted. Silent with --quiet.

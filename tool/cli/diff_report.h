@@ -3,6 +3,7 @@
 
 #include "cli/diff_compare.h"
 #include "cli/report.h"
+#include "cli/table.h"
 
 #include <string>
 
@@ -17,7 +18,7 @@ struct DiffSides {
 };
 
 // Tables of what differs, and a line that counts what does not.
-std::string diffText(const PackageDiff& diff, const DiffSides& sides);
+std::string diffText(const PackageDiff& diff, const DiffSides& sides, Detail detail);
 Json diffJson(const PackageDiff& diff, const DiffSides& sides);
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/report.h"
+#include "cli/table.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
@@ -15,7 +16,7 @@ struct PlannedScenes {
     const Plan& plan;
 };
 
-std::string planText(const PlannedScenes& planned);
+std::string planText(const PlannedScenes& planned, Detail detail);
 
 // What `explain --plan --json` has beside the plan's options: docs/cli.md has the members.
 Json planToJson(const PlannedScenes& planned);
