@@ -45,7 +45,7 @@ for name in features/{ClearCoatTest/ClearCoatTest.gltf,SpecularTest/SpecularTest
 done
 
 render() {
-    "$bin/glint" render "$@" --size "$size" --effects shadow,reflection --max-roughness 0.05 --mirror-roughness 0.05 \
+    "$bin/glint" render "$@" --size "$size" --sky 1 --effects shadow,reflection --max-roughness 0.05 --mirror-roughness 0.05 \
         --texture-lod mip0 --alpha tested --hit-record full --quiet
 }
 # Of the device's default, and filtering textures in single precision; llvmpipe alone knows the difference.

@@ -106,6 +106,10 @@ gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed) {
     return {offset(kAlpha, shift[0]), offset(kBeta, shift[1])};
 }
 
+float sampleConeScale(std::uint32_t averagedSamples) {
+    return 1.0F / std::sqrt(static_cast<float>(std::max(averagedSamples, 1U)));
+}
+
 void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
                 gpu::FrameConstants& constants) {
     const Float3 right = cross(camera.forward, camera.up);

@@ -18,6 +18,11 @@ Status checkCamera(const CameraView& camera);
 // sequence starts elsewhere, by a shift of the whole that wraps around (Cranley and Patterson 1976).
 gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed = 0);
 
+// Width of the cone that stands for one of `averagedSamples` samples of a pixel, as a share of the pixel's:
+// 1 / sqrt(n), so that n cones together cover the pixel's area once. In mip levels that is a bias of
+// -0.5 log2(n). A number of 0 counts as 1.
+float sampleConeScale(std::uint32_t averagedSamples);
+
 // Fills position to pixelWidth, and worldToClip, for an image of width x height pixels. The ray of pixel
 // (x, y) goes through p = (2 (x + 0.5 + jitter.x) / width - 1, 1 - 2 (y + 0.5 + jitter.y) / height) of the
 // view, and what worldToClip takes to that pixel's centre lies on it.

@@ -24,16 +24,16 @@ void PassRecorder::barrier(const MemoryDependency& dependency) {
     recordDependency(state_.context, commands_, dependency);
 }
 
-void PassRecorder::beginPass(const std::string& name) {
+void PassRecorder::beginPass(const PassLabel& label) {
     if (vk_.CmdBeginDebugUtilsLabelEXT != nullptr) {
-        VkDebugUtilsLabelEXT label{};
-        label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        label.pLabelName = name.c_str();
-        vk_.CmdBeginDebugUtilsLabelEXT(commands_, &label);
+        VkDebugUtilsLabelEXT text{};
+        text.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+        text.pLabelName = label.name.c_str();
+        vk_.CmdBeginDebugUtilsLabelEXT(commands_, &text);
     }
     if (timesPasses_) {
         state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.timed.size()));
-        state_.timed.push_back(name);
+        state_.timed.push_back(label);
     }
 }
 
@@ -46,11 +46,11 @@ void PassRecorder::endPass() {
     }
 }
 
-std::uint32_t PassRecorder::beginStretch(const std::string& name) {
+std::uint32_t PassRecorder::beginStretch(const PassLabel& label) {
     const auto stretch = static_cast<std::uint32_t>(state_.timed.size());
     if (!timesPasses_) {
         state_.timer.recordBegin(commands_, stretch);
-        state_.timed.push_back(name);
+        state_.timed.push_back(label);
     }
     return stretch;
 }
@@ -102,7 +102,7 @@ void PassRecorder::beginRendering() {
 }
 
 void PassRecorder::drawScene() {
-    beginPass("gbuffer");
+    beginPass({"gbuffer", Pass::Gbuffer});
     beginRendering();
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
     bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
@@ -136,8 +136,8 @@ void PassRecorder::bindSets() {
     }
 }
 
-void PassRecorder::dispatchPixels(const std::string& name, const PassPipeline& pass) {
-    beginPass(name);
+void PassRecorder::dispatchPixels(const PassLabel& label, const PassPipeline& pass) {
+    beginPass(label);
     bindPass(pass);
     if (pass.traces) {
         vk_.CmdTraceRaysKHR(commands_, &pass.rayGeneration, &pass.miss, &pass.hit, &kNoCallables,
@@ -150,16 +150,16 @@ void PassRecorder::dispatchPixels(const std::string& name, const PassPipeline& p
     endPass();
 }
 
-void PassRecorder::dispatchGroups(const std::string& name, const PassPipeline& pass, std::uint32_t groups) {
-    beginPass(name);
+void PassRecorder::dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups) {
+    beginPass(label);
     bindPass(pass);
     vk_.CmdDispatch(commands_, groups, 1, 1);
     endPass();
 }
 
-void PassRecorder::dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,
+void PassRecorder::dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
                                 std::uint32_t index) {
-    beginPass(name);
+    beginPass(label);
     bindPass(pass);
     const VkDeviceSize offset = index * sizeof(gpu::DispatchArguments);
     if (pass.traces) {

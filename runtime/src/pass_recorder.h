@@ -14,7 +14,7 @@ public:
     PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing);
 
     // A stretch of several passes, timed where passes are not; its number, for the end.
-    std::uint32_t beginStretch(const std::string& name);
+    std::uint32_t beginStretch(const PassLabel& label);
     void endStretch(std::uint32_t stretch);
 
     void barrier(const MemoryDependency& dependency);
@@ -23,11 +23,11 @@ public:
     // Into the G-buffer's visibility image.
     void drawScene();
     // Over the image.
-    void dispatchPixels(const std::string& name, const PassPipeline& pass);
+    void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
     // So many workgroups.
-    void dispatchGroups(const std::string& name, const PassPipeline& pass, std::uint32_t groups);
+    void dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups);
     // Over a list whose length the device knows: entry `index` of the arguments.
-    void dispatchList(const std::string& name, const PassPipeline& pass, const Buffer& arguments,
+    void dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
                       std::uint32_t index);
     // Which bucket the next dispatch shades.
     void setBucket(std::uint32_t bucket);
@@ -40,7 +40,7 @@ public:
     }
 
 private:
-    void beginPass(const std::string& name);
+    void beginPass(const PassLabel& label);
     void endPass();
     void bindSets(VkPipelineBindPoint point);
     void bindPass(const PassPipeline& pass);

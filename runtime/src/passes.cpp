@@ -20,7 +20,7 @@ public:
         state_.timed.clear();
         state_.timer.recordReset(commands_);
         passes_.barrier(kAllToAll);
-        const std::uint32_t whole = passes_.beginStretch("frame");
+        const std::uint32_t whole = passes_.beginStretch({"frame", Pass::Frame});
         clear(frame);
         static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
         vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
@@ -28,10 +28,10 @@ public:
         passes_.drawScene();
         passes_.barrier(dependencies().rasterToPasses);
         passes_.bindSets();
-        passes_.dispatchPixels("lighting", pass(ModuleRole::Lighting));
+        passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
         passes_.barrier(dependencies().passToPass);
         recordEffects(frame.effects & state_.size.effects);
-        passes_.dispatchPixels("compose", pass(ModuleRole::Compose));
+        passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
@@ -74,8 +74,8 @@ private:
         fill(state_.frame.visitedHits, VK_WHOLE_SIZE, 0);
     }
 
-    void dispatchRays(const std::string& name, ModuleRole role) {
-        passes_.dispatchList(name, pass(role), state_.frame.rayDispatch, 0);
+    void dispatchRays(const PassLabel& label, ModuleRole role) {
+        passes_.dispatchList(label, pass(role), state_.frame.rayDispatch, 0);
         passes_.barrier(dependencies().passToPass);
     }
 
@@ -98,7 +98,7 @@ private:
                 continue;
             }
             passes_.barrier(dependencies().passToPass);
-            const std::uint32_t stretch = passes_.beginStretch("hits");
+            const std::uint32_t stretch = passes_.beginStretch({"hits", Pass::Hits});
             recordHits();
             passes_.endStretch(stretch);
             finishRound(static_cast<std::uint32_t>(rounds.size()));
@@ -131,32 +131,32 @@ private:
     void recordRays(const package::EffectInfo& info) {
         const std::string name(info.name);
         if (info.effect == package::kEffectRefraction) {
-            passes_.dispatchPixels(name + " walk", pass(ModuleRole::RefractionWalk));
+            passes_.dispatchPixels({name + " walk", Pass::RefractionWalk}, pass(ModuleRole::RefractionWalk));
             passes_.barrier(dependencies().passToPass);
         }
         // Effects append to the same list, in any order: they need none among themselves.
-        passes_.dispatchPixels(name + " rays",
+        passes_.dispatchPixels({name + " rays", Pass::EffectRays},
                                state_.pipelines.effectRays[package::effectNumber(info.effect)]);
     }
 
     void recordOrder() {
-        dispatchRays("trace", ModuleRole::Trace);
+        dispatchRays({"trace", Pass::Trace}, ModuleRole::Trace);
         if (state_.choice.ordering == package::Ordering::TileSort) {
             const TileSortGroups groups =
                 tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
-            passes_.dispatchGroups("count", pass(ModuleRole::BucketCount), groups.count);
+            passes_.dispatchGroups({"count", Pass::Count}, pass(ModuleRole::BucketCount), groups.count);
             passes_.barrier(dependencies().passToPass);
-            passes_.dispatchGroups("copy", pass(ModuleRole::BucketCopy), groups.copy);
+            passes_.dispatchGroups({"copy", Pass::Copy}, pass(ModuleRole::BucketCopy), groups.copy);
             passes_.barrier(dependencies().passToDispatch);
         } else {
-            dispatchRays("count", ModuleRole::BucketCount);
-            passes_.dispatchGroups("offset", pass(ModuleRole::BucketOffset), 1);
+            dispatchRays({"count", Pass::Count}, ModuleRole::BucketCount);
+            passes_.dispatchGroups({"offset", Pass::Offset}, pass(ModuleRole::BucketOffset), 1);
             passes_.barrier(dependencies().passToDispatch);
-            dispatchRays("copy", ModuleRole::BucketCopy);
+            dispatchRays({"copy", Pass::Copy}, ModuleRole::BucketCopy);
         }
         if (state_.choice.checksOrder) {
             // Not by the number of rays: without any, buckets have to be empty.
-            passes_.dispatchPixels("check order", pass(ModuleRole::OrderCheck));
+            passes_.dispatchPixels({"check order", Pass::CheckOrder}, pass(ModuleRole::OrderCheck));
             passes_.barrier(dependencies().passToPass);
         }
     }
@@ -165,43 +165,45 @@ private:
         // Buckets write different samples: they need no order among themselves.
         const Buffer& arguments = state_.frame.bucketDispatch;
         passes_.setBucket(0);
-        passes_.dispatchList("shade miss", pass(ModuleRole::ShadeMiss), arguments, 0);
+        passes_.dispatchList({"shade miss", Pass::ShadeMiss}, pass(ModuleRole::ShadeMiss), arguments, 0);
         for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
             if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
                 continue;  // a retired shader ID, whose bucket stays empty
             }
             passes_.setBucket(1 + shaderId);
-            passes_.dispatchList("shade " + state_.caseNames[shaderId], state_.pipelines.cases[shaderId],
-                                 arguments, 1 + shaderId);
+            passes_.dispatchList({"shade " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
+                                 state_.pipelines.cases[shaderId], arguments, 1 + shaderId);
         }
         passes_.barrier(dependencies().passToPass);
     }
 
     // Shades what the rays of the list hit.
     void recordHits() {
-        passes_.dispatchGroups("ray dispatch", pass(ModuleRole::RayDispatch), 1);
+        passes_.dispatchGroups({"ray dispatch", Pass::RayDispatch}, pass(ModuleRole::RayDispatch), 1);
         passes_.barrier(dependencies().passToDispatch);
         switch (state_.choice.strategy) {
             case package::kStrategyUber:
-                dispatchRays("uber", ModuleRole::UberShade);
+                dispatchRays({"uber", Pass::Uber}, ModuleRole::UberShade);
                 break;
             case package::kStrategySortedUber:
                 recordOrder();
-                passes_.dispatchList("sorted uber", pass(ModuleRole::SortedShade),
+                passes_.dispatchList({"sorted uber", Pass::SortedUber}, pass(ModuleRole::SortedShade),
                                      state_.frame.bucketDispatch, state_.size.bucketCount);
                 passes_.barrier(dependencies().passToPass);
                 break;
             case package::kStrategyHitShaders:
-                dispatchRays("hit shaders", ModuleRole::HitTrace);
+                dispatchRays({"hit shaders", Pass::HitShaders}, ModuleRole::HitTrace);
                 break;
             default:
                 recordOrder();
                 recordBuckets();
         }
         if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
-            passes_.dispatchGroups("shadow dispatch", pass(ModuleRole::ShadowDispatch), 1);
+            passes_.dispatchGroups({"shadow dispatch", Pass::ShadowDispatch},
+                                   pass(ModuleRole::ShadowDispatch), 1);
             passes_.barrier(dependencies().passToDispatch);
-            passes_.dispatchList("shadow", pass(ModuleRole::ShadowTrace), state_.frame.shadowDispatch, 0);
+            passes_.dispatchList({"shadow", Pass::Shadow}, pass(ModuleRole::ShadowTrace),
+                                 state_.frame.shadowDispatch, 0);
             passes_.barrier(dependencies().passToPass);
         }
     }

@@ -2,6 +2,7 @@
 
 #include "pass_dependencies.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -80,6 +81,26 @@ Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, Comman
         return status.error();
     }
     return std::vector<std::uint8_t>(target->mapped, target->mapped + buffer.bytes);
+}
+
+Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    // Its last channel is the distance along the camera's axis, 0 where there is no surface.
+    const auto radiance = readFrameImage(*state_, *runner, gpu::kBindingRadiance);
+    if (!radiance) {
+        return radiance.error();
+    }
+    std::vector<std::uint8_t> surfaces(radiance->size());
+    std::ranges::transform(*radiance, surfaces.begin(), [](const std::array<float, 4>& pixel) {
+        return static_cast<std::uint8_t>(pixel[3] != 0.0F ? 1 : 0);
+    });
+    return surfaces;
 }
 
 Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {

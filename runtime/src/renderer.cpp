@@ -109,6 +109,10 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     gpu::FrameConstants constants{};
     fillCamera(options.camera, state.size.width, state.size.height,
                sampleJitter(options.sampleIndex, options.seed), constants);
+    const float coneScale = sampleConeScale(options.averagedSamples);
+    constants.pixelSpread *= coneScale;
+    constants.pixelWidth *= coneScale;
+    constants.sampleLodBias = std::log2(coneScale);
     constants.sampleIndex = options.sampleIndex;
     constants.seed = options.seed;
     constants.lightCount = state.scene.lightCount;
@@ -234,6 +238,9 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
     if (sampleCount == 0) {
         return makeError("frame-options", "", "0 samples make no image", "render at least one sample");
     }
+    if (sample.averagedSamples == 0) {
+        sample.averagedSamples = sampleCount;
+    }
     const Timing asked = sample.timing;
     for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
         sample.timing = sample.sampleIndex + 1 == sampleCount ? asked : Timing::Frame;
@@ -289,7 +296,8 @@ Result<std::vector<PassTiming>> Renderer::timings() {
     }
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
-        timings.push_back({state_->timed[i], (*milliseconds)[i]});
+        const PassLabel& label = state_->timed[i];
+        timings.push_back({label.name, (*milliseconds)[i], label.pass, label.shaderId});
     }
     return timings;
 }

@@ -21,6 +21,13 @@ inline constexpr std::uint32_t kMaxFixedPasses = 24;
 // Rounds at most: one an effect with rays.
 inline constexpr std::uint32_t kMaxRounds = package::rayEffectCount(package::kAllEffects);
 
+// What a stretch of the timer is of.
+struct PassLabel {
+    std::string name;  // for people
+    Pass pass = Pass::Frame;
+    std::uint32_t shaderId = 0;  // of Pass::ShadeCase
+};
+
 struct Renderer::State {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
         : context(contextState),
@@ -40,7 +47,7 @@ struct Renderer::State {
     // That set 1 names; alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
     // Of the last recording.
-    std::vector<std::string> timed;     // stretches of the timer
+    std::vector<PassLabel> timed;       // stretches of the timer
     std::vector<std::uint32_t> rounds;  // of rays: Effect bits of each
     bool recorded = false;
 };

@@ -179,10 +179,11 @@ struct FrameConstants {
     vec3 cameraRight;  // from the image centre to its right edge, on the plane at distance 1 (perspective) or in world
                        // units (orthographic)
     uint orthographic;  // 1: rays are parallel
-    vec3 cameraUp;      // from the image centre to its top edge, in the same way
-    float pixelSpread;  // growth of a pixel's cone in a metre (perspective); 0 if orthographic
+    vec3 cameraUp;      // from the image centre to its top edge, likewise
+    float pixelSpread;  // growth of the cone of one of a pixel's samples by metre (perspective); 0 if orthographic
     vec2 jitter;        // offset of the sample from the pixel centre, pixels in [-0.5, 0.5)
-    float pixelWidth;   // width of a pixel's cone at the camera, metres; 0 for perspective
+    float pixelWidth;   // width of that cone at the camera, metres; 0 for perspective
+    float sampleLodBias;  // of levels that derivatives of the screen choose: log2 of that cone's share of the pixel
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
     uint effects;  // bits of the package's effects that are on

@@ -22,7 +22,7 @@ void main() {
             // The draw has one material, so the indices are uniform.
 #if GLINT_TEXTURE_LOD_CONES
             alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
-                             texCoord)
+                             texCoord, GLINT_FRAME.sampleLodBias)
                          .a;
 #else
             alpha *= textureLod(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),

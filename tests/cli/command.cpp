@@ -116,6 +116,16 @@ void writeText(const fs::path& path, const std::string& text) {
     ASSERT_TRUE(file.good()) << path;
 }
 
+void expectFitsTerminal(const std::string& text) {
+    constexpr std::ptrdiff_t kMost = 100;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const auto characters = std::ranges::count_if(
+            line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+        EXPECT_LE(characters, kMost) << line;
+    }
+}
+
 bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }

@@ -55,7 +55,9 @@ private:
 std::string commandPath();
 std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
-// Returns whether `text` contains `part`.
+// Fails the test for each line of `text` with more characters than a table may have.
+void expectFitsTerminal(const std::string& text);
+// Whether `part` stands in `text`.
 bool has(const std::string& text, const std::string& part);
 
 }  // namespace glint::testing

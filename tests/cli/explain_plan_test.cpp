@@ -92,8 +92,9 @@ TEST_F(ExplainPlan, TextSaysWhatEachCaseCostsAndWhy) {
     EXPECT_NE(apart.out.find("scene.gltf: 2 keys in 2 cases, --merge none; hits expected from areas"),
               std::string::npos)
         << apart.out;
+    expectFitsTerminal(apart.out);
     EXPECT_NE(apart.out.find("what merging with the nearest case would cost"), std::string::npos);
-    const Outcome shared = explain({"--merge", "auto", "--max-shaders", "1"});
+    const Outcome shared = explain({"--merge", "auto", "--max-shaders", "1", "--verbose"});
     EXPECT_NE(shared.out.find("why          budget: more cases than --max-shaders allows would be better"),
               std::string::npos)
         << shared.out;

@@ -1,5 +1,10 @@
 #include "cli/render_command.h"
+#include "cli/tiny_scene.h"
+#include "image/image_file.h"
+#include "image/tone.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -37,11 +42,14 @@ protected:
             GTEST_SKIP() << "the gallery is not built: " << gallery;
         }
         ASSERT_EQ(run({"compile", gallery, "-o", "package", "--hit-lobes", options}).exit, 0);
-        ASSERT_EQ(run({"inspect", "package", "--json"}).exit, 0);
+        const Outcome inspected = run({"inspect", "package"});
+        ASSERT_EQ(inspected.exit, 0) << inspected.err;
+        expectFitsTerminal(inspected.out);
         for (const char* strategy : {"uber", "visibility"}) {
             const Outcome outcome = run({"render", gallery, "-o", std::string(strategy) + ".exr", "--size",
                                          "64x36", "--package", "package", "--strategy", strategy});
             ASSERT_EQ(outcome.exit, 0) << outcome.err;
+            expectFitsTerminal(outcome.out);
         }
         const Outcome same = run({"compare", "uber.exr", "visibility.exr", "--max-error", "1e-4"});
         EXPECT_EQ(same.exit, 0) << same.out << same.err;
@@ -114,6 +122,97 @@ TEST_F(RenderCommand, SamplesThatAreNoNumberAreWarnedOf) {
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     EXPECT_GT(outcome.json().at("counters").at("nonFinite").get<int>(), 0);
     EXPECT_NE(outcome.err.find("were NaN or infinite and count as black"), std::string::npos) << outcome.err;
+}
+
+// The tiny scene with both surfaces lit, by a lamp above it.
+class LampScene : public RenderCommand {
+protected:
+    void hangLamp(double candela) {
+        nlohmann::json gltf = nlohmann::json::parse(readText(scene_));
+        gltf["meshes"][1]["primitives"][0]["material"] = 0;
+        if (!gltf["extensions"].contains("KHR_lights_punctual")) {
+            gltf["extensionsUsed"].push_back("KHR_lights_punctual");
+            gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size());
+            gltf["nodes"].push_back({{"translation", {0.5, 3.0, 1.0}},
+                                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        }
+        gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", candela}}};
+        writeText(scene_, gltf.dump());
+    }
+    // How bright 1, 5 and 9 of 10 pixels of a picture are at most: 0, black, to 1, white.
+    std::array<double, 3> quantiles(const std::string& picture) const {
+        const Result<LinearImage> image = readImage(path(picture));
+        EXPECT_TRUE(image) << picture;
+        std::vector<double> values;
+        for (const std::array<float, 4>& pixel :
+             image ? image->pixels : std::vector<std::array<float, 4>>(10)) {
+            values.push_back(luminance({pixel[0], pixel[1], pixel[2]}));
+        }
+        std::ranges::sort(values);
+        return {values[values.size() / 10], values[values.size() / 2], values[9 * values.size() / 10]};
+    }
+};
+
+TEST_F(LampScene, PicturesOfAnyLightAreNeitherWhiteNorBlack) {
+    for (const double candela : {0.001, 40000.0, 1e9}) {
+        SCOPED_TRACE(candela);
+        hangLamp(candela);
+        const Outcome outcome = render("a.png", {"--json"});
+        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        const std::array<double, 3> q = quantiles("a.png");
+        EXPECT_GT(q[0], 0.03);
+        EXPECT_GT(q[1], 0.08);
+        EXPECT_LT(q[1], 0.6);
+        EXPECT_LT(q[2], 0.9);
+        const nlohmann::json report = outcome.json();
+        EXPECT_TRUE(report.at("sky").at("automatic").get<bool>());
+        EXPECT_TRUE(report.at("exposureAutomatic").get<bool>());
+        // The sky's mean illuminance is that of the lamp.
+        EXPECT_NEAR(report.at("sky").at("luminance").get<double>() * 3.14159265 /
+                        report.at("sky").at("lightIlluminance").get<double>(),
+                    1.0, 1e-4);
+        // A few metres from the lamp.
+        EXPECT_NEAR(report.at("sky").at("lightIlluminance").get<double>() / candela, 0.06, 0.04);
+    }
+}
+
+TEST_F(LampScene, TheSkyAndTheExposureThatAreAskedForWin) {
+    hangLamp(40000.0);
+    const Outcome outcome = render("a.png", {"--sky", "1", "--exposure", "0", "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_EQ(outcome.json().at("sky").at("scale"), 1.0);
+    EXPECT_FALSE(outcome.json().at("sky").at("automatic").get<bool>());
+    EXPECT_EQ(outcome.json().at("exposure"), 0.0);
+    EXPECT_GT(quantiles("a.png")[1], 0.9) << "white, as asked for";
+    EXPECT_TRUE(has(render("a.png", {"--sky", "1"}).out, "(--sky)"));
+    EXPECT_EQ(render("b.png", {"--sky", "-1"}).exit, 2);
+    EXPECT_EQ(render("b.png", {"--sky", "bright"}).exit, 2);
+    EXPECT_EQ(render("b.png", {"--sky", "1", "--environment", "sky.hdr"}).exit, 2);
+}
+
+TEST_F(LampScene, WithoutLightTheSkyIsTheDefaultOne) {
+    hangLamp(0.0);
+    const Outcome black = render("a.png", {"--json"});
+    ASSERT_EQ(black.exit, 0) << black.err;
+    EXPECT_EQ(black.json().at("sky").at("scale"), 1.0);
+    EXPECT_TRUE(black.json().at("sky").at("lightIlluminance").is_null());
+}
+
+// The lamp nears the wall with the animation; sky and exposure are those of the first picture.
+TEST_F(LampScene, ASequenceDoesNotFlicker) {
+    scene_ = writeTinyScene(path(""), {.animated = true}).string();
+    hangLamp(500.0);
+    nlohmann::json gltf = nlohmann::json::parse(readText(scene_));
+    gltf["animations"][0]["channels"][0]["target"]["node"] = gltf["nodes"].size() - 1;
+    writeText(scene_, gltf.dump());
+    const std::vector<std::string> frames{"--frames", "0:1", "--fps", "1", "--json"};
+    const Outcome outcome = render("a.exr", frames);
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Result<LinearImage> first = readImage(path("a.0000.exr"));
+    const Result<LinearImage> second = readImage(path("a.0001.exr"));
+    ASSERT_TRUE(first && second);
+    EXPECT_NE(first->pixels, second->pixels) << "the lamp moves";
+    EXPECT_EQ(first->pixels[0], second->pixels[0]) << "the sky stays";
 }
 
 TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace glint {
 namespace {
 
@@ -18,6 +22,62 @@ TEST(Table, FieldsAlignLeftAndCountCharactersNotBytes) {
               "ä   1\n"
               "ab  22\n"
               "c\n");
+}
+
+std::size_t widestLine(const std::string& text) {
+    std::size_t widest = 0;
+    for (std::size_t begin = 0; begin < text.size(); begin = text.find('\n', begin) + 1) {
+        widest = std::max(widest, text.find('\n', begin) - begin);
+    }
+    return widest;
+}
+
+TEST(Table, LongNamesAreCutUnlessAllIsAskedFor) {
+    const std::string name = "N" + std::string(119, 'n');
+    const std::vector<std::vector<std::string>> rows{{"shader", "ms", "file"},
+                                                     {"12 " + name, "1.5", "a/" + name}};
+    const std::string cut = formatTable(rows);
+    EXPECT_LE(widestLine(cut), kTableWidth + 4) << cut;  // "…" has three bytes
+    EXPECT_NE(cut.find("\n12 Nn"), std::string::npos) << cut;
+    EXPECT_NE(cut.find("n…"), std::string::npos) << cut;
+    EXPECT_NE(cut.find("…n"), std::string::npos) << "the end of a path stays\n" << cut;
+    const std::string whole = formatTable(rows, Detail::Whole);
+    EXPECT_NE(whole.find("12 " + name + "  1.5  a/" + name + "\n"), std::string::npos) << whole;
+}
+
+TEST(Table, NumbersAreNeverCut) {
+    const std::string digits(90, '1');
+    const std::string text = formatTable({{"a", "b"}, {digits, digits}});
+    EXPECT_NE(text.find("\n" + digits + "  " + digits + "\n"), std::string::npos) << text;
+}
+
+TEST(Table, FieldsWrapBelowTheirValue) {
+    std::string words;
+    for (int i = 0; i < 30; ++i) {
+        words += (i > 0 ? " word" : "word") + std::to_string(i);
+    }
+    const std::string text = formatFields({{"label", words}});
+    EXPECT_LE(widestLine(text), kTableWidth) << text;
+    EXPECT_NE(text.find("\n       word"), std::string::npos) << text;
+    EXPECT_EQ(formatFields({{"label", words}}, Detail::Whole), "label  " + words + "\n");
+    EXPECT_LE(widestLine(wrapped(words + "\n")), kTableWidth);
+    EXPECT_EQ(wrapped("a\n\nb c\n"), "a\n\nb c\n");
+}
+
+// They begin with a digit, and are names all the same.
+TEST(Table, ShadersAlignLeft) {
+    EXPECT_EQ(formatTable({{"shader", "ms"}, {"1 Pbr", "0.5 (0.4 to 0.6)"}, {"12 Unlit", "3"}}),
+              "shader                  ms\n"
+              "1 Pbr     0.5 (0.4 to 0.6)\n"
+              "12 Unlit                 3\n");
+}
+
+TEST(Table, ShadersAreNamedByTheirIdAndFirstWords) {
+    EXPECT_EQ(shaderTitle(3, "PbrFamily", Detail::Short), "3 PbrFamily");
+    const std::string name = "Clearcoat_BaseTex_MetalRoughTex_NormalTex_Uv0_Normals";
+    EXPECT_EQ(shaderTitle(12, name, Detail::Short), "12 Clearcoat_BaseTex…");
+    EXPECT_EQ(shaderTitle(12, name, Detail::Whole), "12 " + name);
+    EXPECT_EQ(shaderTitle(0, std::string(40, 'x'), Detail::Short), "0 " + std::string(28, 'x') + "…");
 }
 
 TEST(Table, BytesHaveUnits) {

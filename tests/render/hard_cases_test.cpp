@@ -293,9 +293,9 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
     }
 }
 
-// A fine checkerboard is far away: cones blend it to grey, while mip 0, read at level 0, keeps black and
-// white.
-TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
+// A quad of 8 x 8 pixels that shows this texture, 8 x 8 texels a pixel, unlit; whole squares of a
+// checkerboard.
+Scene checkeredScene(bool masked) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material material = unlitMaterial({1, 1, 1});
@@ -303,13 +303,24 @@ TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
             const std::uint8_t level = (x + y) % 2 == 0 ? 255 : 0;
-            texels.insert(texels.end(), {level, level, level, 255});
+            const std::uint8_t color = masked ? 255 : level;
+            texels.insert(texels.end(), {color, color, color, masked ? level : std::uint8_t{255}});
         }
+    }
+    if (masked) {
+        material.alphaMode = AlphaMode::Mask;
+        material.alphaCutoff = 0.6F;
     }
     material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 64, 64, texels);
     scene.samplers.back().mipmapped = true;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    return scene;
+}
+
+// A fine checkerboard far off: cones blend it to grey; mip 0, read at level 0, keeps black and white.
+TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
+    const Scene scene = checkeredScene(false);
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = 8;
     for (const TextureLod lod : {TextureLod::Cones, TextureLod::Mip0}) {
@@ -327,6 +338,51 @@ TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
             }
         }
     }
+}
+
+// A picture that averages 1024 samples has cones a quarter of a texel wide here: each sample reads the finest
+// level, and the mean of samples is the grey that one wide cone reads.
+TEST_P(HardCases, ConesShrinkWithTheSamplesThatAPixelAverages) {
+    const Scene scene = checkeredScene(false);
+    RenderSetup setup = squareSetup(scene);
+    setup.width = setup.height = 8;
+    const LoadedScene loaded(scene, CompileSettings{});
+    ASSERT_TRUE(loaded.ok());
+    for (const Pixel& pixel : loaded.render(GetParam(), setup).pixels) {
+        EXPECT_NEAR(pixel[0], 0.5F, 0.01F) << "one sample, as wide as the pixel";
+    }
+    setup.frame.averagedSamples = 1024;
+    for (const Pixel& pixel : loaded.render(GetParam(), setup).pixels) {
+        EXPECT_TRUE(pixel[0] < 0.01F || pixel[0] > 0.99F) << "one of many samples: " << pixel[0];
+    }
+    setup.samples = 64;
+    setup.frame.averagedSamples = 64;
+    const LinearImage asked = loaded.render(GetParam(), setup);
+    for (const Pixel& pixel : asked.pixels) {
+        EXPECT_NEAR(pixel[0], 0.5F, 0.15F) << "their mean";
+    }
+    setup.frame.averagedSamples = 0;
+    EXPECT_EQ(loaded.render(GetParam(), setup).pixels, asked.pixels) << "render() takes its own count";
+}
+
+// The alpha test of the raster pass chooses its level by derivatives of the screen, with the same bias.
+TEST_P(HardCases, MasksShrinkWithTheSamplesThatAPixelAverages) {
+    const Scene scene = checkeredScene(true);
+    RenderSetup setup = squareSetup(scene);
+    setup.width = setup.height = 8;
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const LoadedScene loaded(scene, CompileSettings{});
+    ASSERT_TRUE(loaded.ok());
+    const auto mean = [](const LinearImage& image) {
+        float sum = 0.0F;
+        for (const Pixel& pixel : image.pixels) {
+            sum += pixel[0] / static_cast<float>(image.pixels.size());
+        }
+        return sum;
+    };
+    EXPECT_EQ(mean(loaded.render(GetParam(), setup)), 0.0F) << "half of the texels is less than the cutoff";
+    setup.samples = 64;
+    EXPECT_NEAR(mean(loaded.render(GetParam(), setup)), 0.5F, 0.1F) << "half of the samples meet a texel";
 }
 
 }  // namespace

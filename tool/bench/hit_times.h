@@ -1,24 +1,33 @@
 // Splits the time of a frame's hits by the passes in which strategies differ.
 #pragma once
 
+#include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace glint::bench {
 
+// What a pass counts for.
+enum class HitPart : std::uint8_t {
+    None,      // of primary surfaces or of the picture, or a check
+    Dispatch,  // indirect arguments of the list of rays
+    Trace,     // rays to hit records, where a pass of its own does that
+    Order,     // those records by bucket
+    Shade,     // hits; of uber and hit-shaders with their tracing
+    Shadow,    // deferred shadow rays, with their dispatch
+};
+
 struct PassTime {
-    std::string name;  // as in architecture.md, "Passes of a frame"
+    HitPart part = HitPart::None;
     double milliseconds = 0.0;
 };
 
-// Milliseconds, from the list of rays to their shaded hits.
+// Milliseconds, from the list of rays to their shaded hits; the members as HitPart says.
 struct HitTimes {
-    double dispatch = 0.0;  // for the indirect arguments of the list
-    double trace = 0.0;     // to hit records, if that is a pass of its own
-    double order = 0.0;     // to order those records by bucket: all passes that are none of the others
-    double shade = 0.0;     // for uber and hit-shaders this includes their tracing
-    double shadow = 0.0;    // for deferred shadow rays, including their dispatch
+    double dispatch = 0.0;
+    double trace = 0.0;
+    double order = 0.0;
+    double shade = 0.0;
+    double shadow = 0.0;
 
     double sum() const {
         return dispatch + trace + order + shade + shadow;
@@ -27,8 +36,7 @@ struct HitTimes {
     HitTimes& operator/=(double count);
 };
 
-// Adds up the passes of a sample, given in their order; each round of effects starts with its "ray dispatch".
-// The check of the order is not counted, because nobody who measures asks for it.
+// Of all passes of a sample.
 HitTimes hitTimesOf(std::span<const PassTime> passes);
 
 }  // namespace glint::bench

@@ -25,8 +25,8 @@ constexpr const char* kQuickSize = "80x45";
 bool isView(const CLI::Option& option) {
     constexpr std::string_view kViews[] = {"--size",
                                            "--camera",
-
                                            "--sun",
+                                           "--sky",
                                            "--environment",
                                            "--environment-rotation",
                                            "--environment-intensity",

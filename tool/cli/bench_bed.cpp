@@ -63,18 +63,41 @@ std::string decided(const RenderArguments& arguments, const Decides& decides) {
     return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
 }
 
-// The passes of all cases count together.
-std::string nameOfPass(const std::string& name) {
-    const bool isCase = name.starts_with("shade ") && name != "shade miss";
-    return isCase ? std::string(kShadeCases) : name;
+// A pass of a case counts with those of the others.
+std::string nameOfPass(const PassTiming& pass) {
+    return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
+}
+
+bench::HitPart partOf(Pass pass) {
+    switch (pass) {
+        case Pass::RayDispatch:
+            return bench::HitPart::Dispatch;
+        case Pass::Trace:
+            return bench::HitPart::Trace;
+        case Pass::Count:
+        case Pass::Offset:
+        case Pass::Copy:
+            return bench::HitPart::Order;
+        case Pass::Uber:
+        case Pass::SortedUber:
+        case Pass::HitShaders:
+        case Pass::ShadeMiss:
+        case Pass::ShadeCase:
+            return bench::HitPart::Shade;
+        case Pass::ShadowDispatch:
+        case Pass::Shadow:
+            return bench::HitPart::Shadow;
+        default:
+            return bench::HitPart::None;
+    }
 }
 
 }  // namespace
 
-double stretchMs(std::span<const PassTiming> stretches, std::string_view name) {
+double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
     double sum = 0.0;
     for (const PassTiming& stretch : stretches) {
-        sum += stretch.name == name ? stretch.milliseconds : 0.0;
+        sum += stretch.pass == pass ? stretch.milliseconds : 0.0;
     }
     return sum;
 }
@@ -82,7 +105,7 @@ double stretchMs(std::span<const PassTiming> stretches, std::string_view name) {
 bench::HitTimes hitTimesOf(std::span<const PassTiming> passes) {
     std::vector<bench::PassTime> times;
     for (const PassTiming& pass : passes) {
-        times.push_back({pass.name, pass.milliseconds});
+        times.push_back({partOf(pass.pass), pass.milliseconds});
     }
     return bench::hitTimesOf(times);
 }
@@ -96,8 +119,8 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
         if (!stretches) {
             return stretches.error();
         }
-        exposure.milliseconds += stretchMs(*stretches, "frame");
-        exposure.hitMs += stretchMs(*stretches, "hits");
+        exposure.milliseconds += stretchMs(*stretches, Pass::Frame);
+        exposure.hitMs += stretchMs(*stretches, Pass::Hits);
         return okStatus();
     };
     Result<LinearImage> image = renderer_->render(frame, samples_, add);
@@ -130,7 +153,7 @@ Status Mount::addSplit(FrameOptions frame, Exposure& exposure) const {
     exposure.hits = hitTimesOf(*passes);
     exposure.hits /= 1.0 / samples_;
     for (const PassTiming& pass : *passes) {
-        exposure.passes[nameOfPass(pass.name)] += pass.milliseconds * samples_;
+        exposure.passes[nameOfPass(pass)] += pass.milliseconds * samples_;
     }
     return okStatus();
 }
@@ -155,6 +178,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     }
     bed->camera_ = camera->view;
     bed->cameraName_ = camera->name;
+    bed->sky_ = chooseSky(base, scene, data);
     bed->size_ = sizeOf(data);
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
     Result<std::unique_ptr<Context>> context = openDevice(base, bed->features_);
@@ -268,7 +292,7 @@ Result<Mount> BenchBed::mount(const bench::Configuration& configuration, const s
     Mount mount;
     mount.package_ = std::move(shared);
     mount.renderer_ = std::move(renderer);
-    mount.frame_ = frameOptions(arguments, camera_, environment_.get());
+    mount.frame_ = frameOptions(arguments, camera_, sky_, environment_.get());
     mount.samples_ = static_cast<std::uint32_t>(arguments.samples);
     mount.ordersHits_ = (strategyOf(arguments) & package::kOrderedStrategies) != 0;
     return mount;

@@ -7,6 +7,7 @@
 #include "cli/compile_cache.h"
 #include "cli/render_arguments.h"
 #include "cli/scene_view.h"
+#include "cli/sky_choice.h"
 #include "gltf/scene.h"
 
 #include <glint/context.h>
@@ -36,9 +37,9 @@ struct Exposure {
     FrameCounters counters;                // of the last sample
 };
 
-// Returns the time of the stretches with that name in one sample (Timing::Frame).
-double stretchMs(std::span<const PassTiming> stretches, std::string_view name);
-// Returns the passes of one sample (Timing::Passes) in which strategies differ.
+// Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.
+double stretchMs(std::span<const PassTiming> stretches, Pass pass);
+// Of the passes of one sample (Timing::Passes) those that strategies differ in.
 bench::HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // A package, and the scene on the device in the form that the package needs.
@@ -54,6 +55,10 @@ public:
     Result<Exposure> expose(std::uint32_t seed) const;
     // Renders with other samples and without measuring times.
     Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
+    // Which pixels of the last picture see a surface, as Renderer::readSurfaces() says.
+    Result<std::vector<std::uint8_t>> surfaces() const {
+        return renderer_->readSurfaces();
+    }
 
     const Renderer& renderer() const {
         return *renderer_;
@@ -118,6 +123,9 @@ public:
     const SceneSize& sceneSize() const {
         return size_;
     }
+    const SkyChoice& sky() const {
+        return sky_;
+    }
     std::uint32_t lights() const {
         return lights_;
     }
@@ -139,6 +147,7 @@ private:
     std::unique_ptr<Environment> environment_;
     CameraView camera_;
     std::string cameraName_;
+    SkyChoice sky_;
     DeviceOptions features_;
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;

@@ -43,6 +43,7 @@ Result<std::string> keyOf(BenchBed& bed, const bench::Configuration& configurati
         .add(std::string_view(base.size))
         .add(std::string_view(bed.cameraName()))
         .add(std::string_view(base.sun))
+        .add(std::string_view(base.sky))
         .add(std::string_view(base.tracing.tracers.front()))
         .add(std::string_view(bed.context().deviceName()))
         .add(std::string_view(bed.context().driverName()))
@@ -77,8 +78,14 @@ std::optional<LinearImage> unpack(std::optional<std::string_view> bytes, std::ui
     return image;
 }
 
-std::optional<MeanImage> findKept(CacheStore* store, const std::string& key, std::uint32_t width,
-                                  std::uint32_t height) {
+// What a cache keeps of a reference.
+struct Kept {
+    MeanImage mean;
+    std::vector<std::uint8_t> surfaces;
+};
+
+std::optional<Kept> findKept(CacheStore* store, const std::string& key, std::uint32_t width,
+                             std::uint32_t height) {
     const std::optional<std::string> bytes = store == nullptr ? std::nullopt : store->find(kKind, key);
     if (!bytes) {
         return std::nullopt;
@@ -87,17 +94,21 @@ std::optional<MeanImage> findKept(CacheStore* store, const std::string& key, std
     const std::optional<std::uint64_t> blocks = unpacker.number();
     const std::optional<LinearImage> mean = unpack(unpacker.text(), width, height);
     const std::optional<LinearImage> error = unpack(unpacker.text(), width, height);
-    if (!blocks || !mean || !error || !unpacker.atEnd() || *blocks < 2 || *blocks > 0xFFFFFFU) {
+    const std::optional<std::string_view> surfaces = unpacker.text();
+    if (!blocks || !mean || !error || !surfaces || surfaces->size() != mean->pixels.size() ||
+        !unpacker.atEnd() || *blocks < 2 || *blocks > 0xFFFFFFU) {
         return std::nullopt;
     }
-    return MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks));
+    return Kept{MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks)),
+                {surfaces->begin(), surfaces->end()}};
 }
 
-// Fills in the picture and its uncertainty.
-void judge(const MeanImage& sum, const ReferenceOptions& options, Reference& reference) {
+// Fills in the picture and how certain it is.
+void judge(const MeanImage& sum, std::span<const std::uint8_t> surfaces, const ReferenceOptions& options,
+           Reference& reference) {
     reference.image = sum.mean();
     reference.samples = sum.blocks() * kBlock;
-    reference.exposure = automaticExposure(reference.image);
+    reference.exposure = automaticExposure(reference.image, surfaces);
     reference.noise = noiseOf(reference.image, sum.standardError(), reference.exposure);
     reference.relativeError = std::sqrt(reference.noise.trimmed);
     reference.target = options.target;
@@ -118,14 +129,15 @@ Result<Reference> makeReference(const Console& console, BenchBed& bed, const ben
     if (!key) {
         return key.error();
     }
-    std::optional<MeanImage> kept = findKept(store, *key, width, height);
+    std::optional<Kept> kept = findKept(store, *key, width, height);
     reference.cached = kept.has_value();
-    MeanImage sum = kept ? std::move(*kept) : MeanImage(width, height);
+    MeanImage sum = kept ? std::move(kept->mean) : MeanImage(width, height);
+    std::vector<std::uint8_t> surfaces = kept ? std::move(kept->surfaces) : std::vector<std::uint8_t>();
     const std::uint32_t before = sum.blocks();
     std::optional<Mount> mount;
     while (true) {
         if (sum.blocks() > 0 && sum.blocks() % kFewestBlocks == 0) {
-            judge(sum, options, reference);
+            judge(sum, surfaces, options, reference);
             console.progress(fmt::format("reference: {} samples, within {:.2g} % (target {:.2g} %)",
                                          reference.samples, 100.0 * reference.relativeError,
                                          100.0 * options.target));
@@ -146,12 +158,20 @@ Result<Reference> makeReference(const Console& console, BenchBed& bed, const ben
             return block.error();
         }
         sum.add(*block);
+        if (surfaces.empty()) {
+            Result<std::vector<std::uint8_t>> seen = mount->surfaces();
+            if (!seen) {
+                return seen.error();
+            }
+            surfaces = std::move(*seen);
+        }
     }
     if (store != nullptr && sum.blocks() > before) {
         Packer packer;
         packer.add(std::uint64_t{sum.blocks()})
             .add(std::string_view(pack(sum.mean())))
-            .add(std::string_view(pack(sum.standardError())));
+            .add(std::string_view(pack(sum.standardError())))
+            .add(std::string_view(std::string(surfaces.begin(), surfaces.end())));
         store->put(kKind, *key, packer.take());
     }
     reference.seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -67,7 +67,7 @@ public:
                   const BenchArguments& arguments, const PointOptions& options)
         : context_(context), group_(group), scene_(scene), arguments_(arguments), options_(options) {
         sizeFor(options.rays, entry_.width, entry_.height);
-        frame_ = frameOptions(arguments.render, scene.camera, nullptr);
+        frame_ = frameOptions(arguments.render, scene.camera, SkyChoice{}, nullptr);
         frame_.effects = scene.effect;
     }
 
@@ -116,7 +116,7 @@ private:
         if (!timings) {
             return timings.error();
         }
-        return stretchMs(*timings, "hits");
+        return stretchMs(*timings, Pass::Hits);
     }
 
     Status makeRunners() {

@@ -80,6 +80,10 @@ Console::Console(ConsoleOptions options) : state_(std::make_unique<State>()) {
 
 Console::~Console() = default;
 
+bool Console::isVerbose() const {
+    return state_->options.verbose;
+}
+
 bool Console::isJson() const {
     return state_->options.json;
 }

@@ -44,6 +44,7 @@ public:
     Console& operator=(const Console&) = delete;
 
     bool isJson() const;
+    bool isVerbose() const;
     const DiagnosticPolicy& policy() const;
 
     // Prints a result as text, which must contain its own line breaks. Silent with --quiet.

@@ -32,7 +32,7 @@ int diff(const Console& console, const DiffArguments& arguments) {
     if (console.isJson()) {
         console.result(diffJson(difference, sides));
     } else {
-        console.print(diffText(difference, sides));
+        console.print(diffText(difference, sides, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     return arguments.exitCode && !difference.isEmpty() ? kExitFailed : kExitDone;
 }

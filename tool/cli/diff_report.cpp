@@ -36,9 +36,11 @@ std::string tracerOf(const package::ModuleKey& key) {
                            : std::string();
 }
 
-// Returns "1 Pbr", or an empty text beyond the end of the list.
-std::string shaderAt(const std::vector<int>& ids, std::size_t place, const DiffPackage& package) {
-    return place < ids.size() ? fmt::format("{} {}", ids[place], package.cases.at(ids[place]).name)
+// "1 Pbr"; empty beyond the end of the list.
+std::string shaderAt(const std::vector<int>& ids, std::size_t place, const DiffPackage& package,
+                     Detail detail) {
+    return place < ids.size() ? shaderTitle(static_cast<std::uint64_t>(ids[place]),
+                                            package.cases.at(ids[place]).name, detail)
                               : std::string();
 }
 
@@ -87,18 +89,19 @@ std::string settingTable(const PackageDiff& diff, const DiffSides& sides) {
     return rows.size() > 1 ? formatTable(rows) + "\n" : std::string();
 }
 
-std::string shaderTable(const PackageDiff& diff, const DiffSides& sides) {
+std::string shaderTable(const PackageDiff& diff, const DiffSides& sides, Detail detail) {
     Rows rows{{"shaders", "before", "after", "keys"}};
     for (const ShaderChange& change : diff.shaders) {
         const std::size_t count = std::max(change.before.size(), change.after.size());
         for (std::size_t i = 0; i < count; ++i) {
             rows.push_back({i == 0 ? std::string(nameOf(change.kind)) : "",
-                            shaderAt(change.before, i, sides.before), shaderAt(change.after, i, sides.after),
+                            shaderAt(change.before, i, sides.before, detail),
+                            shaderAt(change.after, i, sides.after, detail),
                             i == 0 ? keyChanges(change) : ""});
         }
     }
-    // It is not formatted as a table of numbers, although cells begin with IDs.
-    return rows.size() > 1 ? formatFields(rows) + "\n" : std::string();
+    // Not as a table of numbers, though cells begin with IDs.
+    return rows.size() > 1 ? formatFields(rows, detail) + "\n" : std::string();
 }
 
 std::string moduleTable(const PackageDiff& diff) {
@@ -202,8 +205,8 @@ Json materialsToJson(const PackageDiff& diff) {
 
 }  // namespace
 
-std::string diffText(const PackageDiff& diff, const DiffSides& sides) {
-    std::string text = settingTable(diff, sides) + shaderTable(diff, sides) + moduleTable(diff) +
+std::string diffText(const PackageDiff& diff, const DiffSides& sides, Detail detail) {
+    std::string text = settingTable(diff, sides) + shaderTable(diff, sides, detail) + moduleTable(diff) +
                        materialTable(diff) + totalTable(diff);
     if (diff.tablesDiffer) {
         text += "tables.bin differs\n";

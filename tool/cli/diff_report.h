@@ -3,6 +3,7 @@
 
 #include "cli/diff_compare.h"
 #include "cli/report.h"
+#include "cli/table.h"
 
 #include <string>
 
@@ -16,8 +17,8 @@ struct DiffSides {
     const DiffPackage& after;
 };
 
-// Returns tables of the differences, and a line that counts what is equal.
-std::string diffText(const PackageDiff& diff, const DiffSides& sides);
+// Tables of what differs, and a line that counts what does not.
+std::string diffText(const PackageDiff& diff, const DiffSides& sides, Detail detail);
 Json diffJson(const PackageDiff& diff, const DiffSides& sides);
 
 }  // namespace glint

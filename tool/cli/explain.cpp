@@ -149,7 +149,7 @@ std::string sharesText(const Planned& planned, const Key& key, const Case& shade
                        counted ? "counted by the profile" : "expected from areas");
 }
 
-std::string toText(const Planned& planned, int material) {
+std::string toText(const Planned& planned, int material, Detail detail) {
     std::string text = fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
     const std::vector<const Key*> keys = keysOf(planned, material);
     if (keys.empty()) {
@@ -168,7 +168,8 @@ std::string toText(const Planned& planned, int material) {
                 rows.push_back({"    primary only", featureList(mask & ~key->mask)});
             }
         }
-        rows.push_back({"    case", fmt::format("{} {}", shader.shaderId, shader.name)});
+        rows.push_back(
+            {"    case", shaderTitle(static_cast<std::uint64_t>(shader.shaderId), shader.name, detail)});
         rows.push_back({"    why", whyText(shader)});
         rows.push_back({"    hits", sharesText(planned, *key, shader)});
         rows.push_back({"    branches on", featureList(shader.sometimes)});
@@ -177,7 +178,7 @@ std::string toText(const Planned& planned, int material) {
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
-    return text + formatFields(rows);
+    return text + formatFields(rows, detail);
 }
 
 // Returns an empty text if the scene has no variants.
@@ -263,9 +264,10 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(makeWarning("max-shaders", scene->path, *excess));
     }
 
+    const Detail detail = console.isVerbose() ? Detail::Whole : Detail::Short;
     const PlannedScenes whole{scenes, planned.options, planned.plan};
     if (arguments.wholePlan && !console.isJson()) {
-        console.print(planText(whole));
+        console.print(planText(whole, detail));
         return kExitDone;
     }
     const EffectPlan effects = automaticEffects(scenes);
@@ -302,7 +304,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(motionText(*scene));
     }
     for (const int material : *materials) {
-        console.print(toText(planned, material));
+        console.print(toText(planned, material, detail));
     }
     if (materials->empty()) {
         console.print("no materials\n");

@@ -18,6 +18,10 @@ const Case& caseOf(const PlannedScenes& planned, int shaderId) {
     return planned.plan.cases[static_cast<std::size_t>(shaderId)];
 }
 
+std::string titleOf(const PlannedScenes& planned, int shaderId, Detail detail) {
+    return shaderTitle(static_cast<std::uint64_t>(shaderId), caseOf(planned, shaderId).name, detail);
+}
+
 std::string percent(double share) {
     return fmt::format("{:.2f} %", 100.0 * share);
 }
@@ -58,31 +62,44 @@ std::string headText(const PlannedScenes& planned) {
         countsHits(planned.options) ? "counted by the profile" : "expected from areas", kCaseCost);
 }
 
-std::string overviewText(const PlannedScenes& planned, const PlanCost& cost) {
-    Rows rows{{"case", "name", "keys", "hits", "instructions", "apart", "fetches", "branches", "in vain",
-               "spared", "why"}};
+// Without the columns that other tables have, too, where a line has to fit a terminal.
+std::string fitting(Rows rows, Detail detail) {
+    constexpr std::size_t kColumns[] = {9, 6};  // why, branches; the last first
+    for (const std::size_t column : kColumns) {
+        for (std::vector<std::string>& row : rows) {
+            if (detail == Detail::Short) {
+                row.erase(row.begin() + static_cast<std::ptrdiff_t>(column));
+            }
+        }
+    }
+    return formatTable(rows, detail);
+}
+
+std::string overviewText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+    Rows rows{
+        {"case", "keys", "hits", "instructions", "apart", "fetches", "branches", "in vain", "spared", "why"}};
     double saved = 0.0;
     for (const CaseCost& entry : cost.cases) {
         const Case& shaderCase = caseOf(planned, entry.shaderId);
         saved += entry.saved;
-        rows.push_back(
-            {std::to_string(entry.shaderId), shaderCase.name, std::to_string(shaderCase.keys.size()),
-             percent(shaderCase.share), fmt::format("{:.0f}", entry.code.instructions),
-             fmt::format("{:.0f}", entry.ownInstructions), fmt::format("{:.0f}", entry.code.fetches),
-             std::to_string(entry.branches.size()), fmt::format("{:.2f}", entry.inVain),
-             fmt::format("{:.0f}", entry.saved), std::string(toString(shaderCase.reason))});
+        rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(shaderCase.keys.size()),
+                        percent(shaderCase.share), fmt::format("{:.0f}", entry.code.instructions),
+                        fmt::format("{:.0f}", entry.ownInstructions),
+                        fmt::format("{:.0f}", entry.code.fetches), std::to_string(entry.branches.size()),
+                        fmt::format("{:.2f}", entry.inVain), fmt::format("{:.0f}", entry.saved),
+                        std::string(toString(shaderCase.reason))});
     }
-    rows.push_back({"-", "all", std::to_string(planned.plan.keys.size()), "", "", "", "", "",
+    rows.push_back({"all", std::to_string(planned.plan.keys.size()), "", "", "", "", "",
                     fmt::format("{:.2f}", cost.inVain), fmt::format("{:.0f}", saved), ""});
-    for (std::size_t column = 3; column < 8; ++column) {
+    for (std::size_t column = 2; column < 7; ++column) {
         rows.back()[column] = "-";
     }
-    return formatTable(rows);
+    return fitting(std::move(rows), detail);
 }
 
-std::string nearestText(const PlannedScenes& planned, const NearestCase& nearest) {
-    return fmt::format("with case {} {}, the nearest: {:.2f} more in vain, {:.0f} spared", nearest.shaderId,
-                       caseOf(planned, nearest.shaderId).name, nearest.adds, kCaseCost);
+std::string nearestText(const PlannedScenes& planned, const NearestCase& nearest, Detail detail) {
+    return fmt::format("with case {}, the nearest: {:.2f} more in vain, {:.0f} spared",
+                       titleOf(planned, nearest.shaderId, detail), nearest.adds, kCaseCost);
 }
 
 std::string fetchesText(const CodeEstimate& code) {
@@ -94,8 +111,8 @@ std::string leavingText(const KeyCost& cost) {
                                   : fmt::format("apart it would cost {:.2f} more", cost.leavingAdds);
 }
 
-// Describes a case that has several keys.
-std::string mergedText(const PlannedScenes& planned, const CaseCost& entry) {
+// Of a case of several keys.
+std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Detail detail) {
     const Case& shaderCase = caseOf(planned, entry.shaderId);
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
               {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
@@ -118,26 +135,25 @@ std::string mergedText(const PlannedScenes& planned, const CaseCost& entry) {
         label.clear();
     }
     if (entry.nearest) {
-        rows.push_back({"  no further", nearestText(planned, *entry.nearest)});
+        rows.push_back({"  no further", nearestText(planned, *entry.nearest, detail)});
     }
-    return fmt::format("case {} {}\n{}", entry.shaderId, shaderCase.name, formatFields(rows));
+    return fmt::format("case {}\n{}", titleOf(planned, entry.shaderId, detail), formatFields(rows, detail));
 }
 
-// Describes the cases with one key, and why each does not share a case.
-std::string singlesText(const PlannedScenes& planned, const PlanCost& cost) {
-    Rows rows{{"case", "name", "nearest", "in vain", "spared", "materials"}};
+// Cases of one key: what keeps each from sharing one.
+std::string singlesText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+    Rows rows{{"case", "nearest", "in vain", "spared", "materials"}};
     for (const CaseCost& entry : cost.cases) {
         const Case& shaderCase = caseOf(planned, entry.shaderId);
         if (shaderCase.keys.size() == 1 && entry.nearest) {
-            rows.push_back({std::to_string(entry.shaderId), shaderCase.name,
-                            std::to_string(entry.nearest->shaderId),
+            rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(entry.nearest->shaderId),
                             fmt::format("{:.2f}", std::max(0.0, entry.nearest->adds)),
                             fmt::format("{:.0f}", kCaseCost), materialsText(planned, shaderCase.materials)});
         }
     }
     return rows.size() == 1 ? std::string()
                             : "\nCases of one key, and what merging with the nearest case would cost\n\n" +
-                                  formatTable(rows);
+                                  formatTable(rows, detail);
 }
 
 std::string policiesText(const PlannedScenes& planned, const PlanCost& cost) {
@@ -207,18 +223,18 @@ Json caseToJson(const PlannedScenes& planned, const CaseCost& cost) {
 
 }  // namespace
 
-std::string planText(const PlannedScenes& planned) {
+std::string planText(const PlannedScenes& planned, Detail detail) {
     if (planned.plan.keys.empty()) {
         return "no primitives: no keys, no cases\n";
     }
     const PlanCost cost = costPlan(planned.plan, planned.options);
-    std::string text = headText(planned) + "\n" + overviewText(planned, cost);
+    std::string text = headText(planned) + "\n" + overviewText(planned, cost, detail);
     for (const CaseCost& entry : cost.cases) {
         if (entry.keys.size() > 1) {
-            text += "\n" + mergedText(planned, entry);
+            text += "\n" + mergedText(planned, entry, detail);
         }
     }
-    return text + singlesText(planned, cost) + policiesText(planned, cost);
+    return text + singlesText(planned, cost, detail) + policiesText(planned, cost);
 }
 
 Json planToJson(const PlannedScenes& planned) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/report.h"
+#include "cli/table.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
@@ -16,7 +17,7 @@ struct PlannedScenes {
     const Plan& plan;
 };
 
-std::string planText(const PlannedScenes& planned);
+std::string planText(const PlannedScenes& planned, Detail detail);
 
 // Returns the members that `explain --plan --json` adds to the plan's options: docs/cli.md lists them.
 Json planToJson(const PlannedScenes& planned);

@@ -40,7 +40,7 @@ std::string strategiesText(const StrategyAdvice& advice) {
         }
         text += formatTable(rows) + "\n";
     }
-    return text + fmt::format("--strategy {}: {}\n\n", advice.choice.strategy, advice.choice.why);
+    return text + wrapped(fmt::format("--strategy {}: {}\n\n", advice.choice.strategy, advice.choice.why));
 }
 
 }  // namespace glint

@@ -19,12 +19,20 @@ int fail(const Console& console, const Diagnostic& error) {
     return kExitFailed;
 }
 
-template <typename... Values>
-int tell(const Console& console, const Values&... values) {
+int tell(const Console& console, const InspectedPackage& inspected) {
     if (console.isJson()) {
-        console.result(toJson(values...));
+        console.result(toJson(inspected));
     } else {
-        console.print(toText(values...));
+        console.print(toText(inspected, console.isVerbose() ? Detail::Whole : Detail::Short));
+    }
+    return kExitDone;
+}
+
+int tell(const Console& console, const InspectedPackage& inspected, const std::vector<Disassembly>& list) {
+    if (console.isJson()) {
+        console.result(toJson(inspected, list));
+    } else {
+        console.print(toText(inspected, list));
     }
     return kExitDone;
 }

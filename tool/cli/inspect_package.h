@@ -3,6 +3,7 @@
 
 #include "cli/manifest.h"
 #include "cli/report.h"
+#include "cli/table.h"
 #include "spirv/statistics.h"
 
 #include <glint/package.h>
@@ -51,7 +52,7 @@ struct InspectedPackage {
 Result<InspectedPackage> inspectPackage(const Package& package, const Manifest& manifest, std::string folder);
 
 Json toJson(const InspectedPackage& inspected);
-std::string toText(const InspectedPackage& inspected);
+std::string toText(const InspectedPackage& inspected, Detail detail);
 
 // A module as assembly.
 struct Disassembly {

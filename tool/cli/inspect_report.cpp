@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 namespace glint {
 
 namespace {
@@ -112,16 +114,21 @@ std::string materialsText(const InspectedPackage& inspected, std::uint32_t shade
     return join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
 }
 
-std::string shaderTable(const InspectedPackage& inspected) {
-    std::vector<std::vector<std::string>> rows{{"id", "shader", "keys", "always", "sometimes", "materials"}};
+// Features that a shader has; their names where there is room for them.
+std::string featuresText(FeatureMask mask, Detail detail) {
+    return detail == Detail::Whole ? featureList(mask) : fmt::format("{}", std::popcount(mask));
+}
+
+std::string shaderTable(const InspectedPackage& inspected, Detail detail) {
+    std::vector<std::vector<std::string>> rows{{"shader", "keys", "always", "sometimes", "materials"}};
     std::uint32_t id = 0;
     for (const package::CaseEntry& shader : inspected.package.cases()) {
-        rows.push_back({fmt::format("{}", id), std::string(inspected.package.string(shader.name)),
-                        fmt::format("{}", shader.keyCount), featureList(shader.always),
-                        featureList(shader.sometimes), materialsText(inspected, id)});
+        rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
+                        fmt::format("{}", shader.keyCount), featuresText(shader.always, detail),
+                        featuresText(shader.sometimes, detail), materialsText(inspected, id)});
         ++id;
     }
-    return formatTable(rows);
+    return formatTable(rows, detail);
 }
 
 // Returns the shader's ID or the ordering, if a role has several modules.
@@ -135,7 +142,7 @@ std::string titleOf(const InspectedModule& module) {
     return std::string(package::roleName(module.entry->role)) + whichText(module);
 }
 
-std::string moduleTable(const InspectedPackage& inspected) {
+std::string moduleTable(const InspectedPackage& inspected, Detail detail) {
     std::vector<std::vector<std::string>> rows{
         {"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
     for (const InspectedModule& module : inspected.modules) {
@@ -146,7 +153,7 @@ std::string moduleTable(const InspectedPackage& inspected) {
                         fmt::format("{}", it.textureFetches), fmt::format("{}", it.rayQueries),
                         fmt::format("{}", it.branches)});
     }
-    return formatTable(rows);
+    return formatTable(rows, detail);
 }
 
 std::string hitLobesText(const Manifest& manifest) {
@@ -185,7 +192,7 @@ Json toJson(const InspectedPackage& inspected) {
             {"modules", modulesToJson(inspected)}};
 }
 
-std::string toText(const InspectedPackage& inspected) {
+std::string toText(const InspectedPackage& inspected, Detail detail) {
     const Package& package = inspected.package;
     const Manifest& manifest = inspected.manifest;
     const std::string summary = formatFields(
@@ -206,8 +213,8 @@ std::string toText(const InspectedPackage& inspected) {
          {"cases", fmt::format("{}", inspected.caseCount())},
          {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),
                                 inspected.uniqueFiles(), formatBytes(inspected.spirvBytes()))}});
-    return summary + "\n" + sceneTable(inspected) + "\n" + shaderTable(inspected) + "\n" +
-           moduleTable(inspected);
+    return summary + "\n" + sceneTable(inspected) + "\n" + shaderTable(inspected, detail) + "\n" +
+           moduleTable(inspected, detail);
 }
 
 Json toJson(const InspectedPackage& inspected, const std::vector<Disassembly>& list) {

@@ -163,7 +163,7 @@ std::string tableOf(std::span<const PipelineStatistics> pipelines) {
             rows.push_back(std::move(row));
         }
     }
-    return formatTable(rows);
+    return formatTable(rows, Detail::Whole);
 }
 
 }  // namespace glint

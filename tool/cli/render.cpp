@@ -211,6 +211,9 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
     data.packageScene = sceneIn(*package, scene).value_or(0);
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
+    for (const package::CaseEntry& entry : package->cases()) {
+        report.caseNames.emplace_back(package->string(entry.name));
+    }
     console.progress("rendering " + arguments.scene);
     RendererOptions options = rendererOptions(arguments);
     options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
@@ -308,7 +311,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     if (console.isJson()) {
         console.result(toJson(report));
     } else {
-        console.print(toText(report));
+        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     return kExitDone;
 }

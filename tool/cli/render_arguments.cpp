@@ -30,14 +30,27 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             "(default: the first of the scene, else auto)")
         .group(group);
     addText(command, "--exposure", arguments.exposure, "auto|EV",
-            "exposure of PNG files in stops, -32 to 32; auto: brings\n"
-            "the log-average luminance to 18 % grey (default: auto)")
+            "stops, -32 to 32, of PNG files; auto: log-average luminance\nof surfaces to 18 % grey (default: "
+            "auto)")
         .check(CLI::Validator(
             [](const std::string& text) {
                 double stops = 0.0;
                 return text == "auto" || parseReal(text, -kMaxExposure, kMaxExposure, stops)
                            ? std::string()
                            : "\"" + text + "\" is neither auto nor a number from -32 to 32";
+            },
+            ""))
+        ->group(group);
+    addText(command, "--sky", arguments.sky, "auto|FACTOR",
+            "times the radiance of the default sky, 0 to 1e9; auto: as\nmuch light as the scene's lights "
+            "bring, 1 if it has none\n"
+            "(default: auto; excludes --environment)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                double factor = 0.0;
+                return text == "auto" || parseReal(text, 0.0, kMaxSky, factor)
+                           ? std::string()
+                           : "\"" + text + "\" is neither auto nor a number from 0 to 1e9";
             },
             ""))
         ->group(group);
@@ -122,6 +135,10 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& ar
 
 void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments) {
     checkEnvironmentOptions(command);
+    if (command.count("--sky") > 0 && !arguments.environment.file.empty()) {
+        throw CLI::ValidationError("--sky",
+                                   "is of the sky that --environment replaces; leave out one of them");
+    }
     checkTracingChoice(arguments.tracing);
     checkEffects(arguments.effects);
     checkEffectFrame(arguments.effectFrame);

@@ -18,6 +18,7 @@
 namespace glint {
 
 constexpr double kMaxExposure = 32.0;  // stops, either way
+constexpr double kMaxSky = 1e9;        // times the default sky
 
 struct RenderArguments {
     std::string scene;
@@ -39,6 +40,7 @@ struct RenderArguments {
     std::string camera;
     std::string exposure = "auto";
     std::string sun = "auto";
+    std::string sky = "auto";  // or a factor of the radiance of the default sky
     bool validate = false;
     std::string stats;
     bool pipelineStatistics = false;

@@ -38,6 +38,11 @@ public:
             }
             data_.moves = setup_.movement->moments.size() > 1;
         }
+        // Once for all pictures: a sequence would flicker otherwise.
+        sky_ = chooseSky(setup_.arguments, scene_, data_);
+        if (setup_.environment == nullptr) {
+            report_.sky = sky_;
+        }
         const Clock::time_point begin = Clock::now();
         Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
         if (!uploaded) {
@@ -98,7 +103,7 @@ public:
     }
 
     Result<LinearImage> render(FrameReport& frame) {
-        FrameOptions options = frameOptions(setup_.arguments, camera_, setup_.environment);
+        FrameOptions options = frameOptions(setup_.arguments, camera_, sky_, setup_.environment);
         options.timing = Timing::Passes;
         // Counting takes time that would be added to that of the passes, so it is on only if the counts are
         // asked for.
@@ -122,6 +127,12 @@ public:
             return measured.error();
         }
         return image;
+    }
+
+    // Of the last picture: exposes its surfaces.
+    Result<double> exposureOf(const LinearImage& image) {
+        const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
+        return surfaces ? Result<double>(automaticExposure(image, *surfaces)) : surfaces.error();
     }
 
 private:
@@ -180,6 +191,7 @@ private:
     SceneViewData& data_;
     RenderReport& report_;
     CameraView camera_;
+    SkyChoice sky_;
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
     bool begun_ = false;  // a sample is complete
@@ -216,8 +228,13 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
         }
         // A sequence keeps the exposure of its first picture, because it would flicker otherwise.
         if (i == 0) {
-            report.exposure = automaticExposure(*image);
-            if (setup.arguments.exposure != "auto") {
+            const Result<double> exposure = loop.exposureOf(*image);
+            if (!exposure) {
+                return exposure.error();
+            }
+            report.exposure = *exposure;
+            report.exposureAutomatic = setup.arguments.exposure == "auto";
+            if (!report.exposureAutomatic) {
                 parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace glint {
 
@@ -24,6 +25,16 @@ Json toJson(const std::optional<EnvironmentReport>& environment) {
     return {{"file", environment->file},         {"width", statistics.width},
             {"height", statistics.height},       {"levels", statistics.levels},
             {"halfFloat", statistics.halfFloat}, {"filterMs", statistics.filterMs}};
+}
+
+Json toJson(const std::optional<SkyChoice>& sky) {
+    if (!sky) {
+        return nullptr;
+    }
+    return {{"scale", sky->scale},
+            {"automatic", sky->automatic},
+            {"luminance", meanIlluminance(sky->sky()) / std::numbers::pi},
+            {"lightIlluminance", orNull(sky->lights)}};
 }
 
 constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
@@ -59,16 +70,15 @@ Json toJson(const std::vector<FrameReport>& frames) {
 }
 
 std::string tableOf(const std::vector<FrameReport>& frames) {
-    std::vector<std::vector<std::string>> rows{{"frame", "seconds", "BLASes", "TLAS", "pose ms", "deform ms",
-                                                "BLAS ms", "TLAS ms", "render ms", "passes ms"}};
+    std::vector<std::vector<std::string>> rows{{"frame", "seconds", "refitted", "rebuilt", "TLAS", "pose ms",
+                                                "deform", "BLAS", "TLAS", "render", "passes"}};
     const auto number = [](double value) { return fmt::format("{:.3f}", value); };
     for (const FrameReport& frame : frames) {
         const MotionStatistics& motion = frame.motion;
-        rows.push_back({std::to_string(frame.frame), number(frame.seconds),
-                        fmt::format("{} refitted, {} rebuilt", motion.refits, motion.rebuilds),
-                        std::string(nameOf(motion.topLevel)), number(frame.poseMs), number(motion.deformMs),
-                        number(motion.blasMs), number(motion.tlasMs), number(frame.renderMs),
-                        number(frame.deviceMs)});
+        rows.push_back({std::to_string(frame.frame), number(frame.seconds), std::to_string(motion.refits),
+                        std::to_string(motion.rebuilds), std::string(nameOf(motion.topLevel)),
+                        number(frame.poseMs), number(motion.deformMs), number(motion.blasMs),
+                        number(motion.tlasMs), number(frame.renderMs), number(frame.deviceMs)});
     }
     return formatTable(rows);
 }
@@ -141,6 +151,12 @@ std::string effectText(const EffectCounters& effect) {
     return gates.empty() ? text : fmt::format("{} (no ray: {})", text, gates);
 }
 
+std::string titleOf(const PassTiming& pass, const RenderReport& report, Detail detail) {
+    return pass.pass == Pass::ShadeCase
+               ? "shade " + shaderTitle(pass.shaderId, report.caseNames.at(pass.shaderId), detail)
+               : pass.name;
+}
+
 }  // namespace
 
 void RenderReport::addHits(const FrameCounters& sample) {
@@ -167,7 +183,10 @@ Json toJson(const RenderReport& report) {
     const FrameCounters& counters = report.counters;
     Json passes = Json::array();
     for (const PassTiming& pass : report.passes) {
-        passes.push_back(Json{{"name", pass.name}, {"milliseconds", pass.milliseconds}});
+        passes.push_back(
+            Json{{"name", pass.name},
+                 {"shaderId", pass.pass == Pass::ShadeCase ? Json(pass.shaderId) : Json(nullptr)},
+                 {"milliseconds", pass.milliseconds}});
     }
     return {{"scene", report.scene},
             {"image", report.image},
@@ -186,6 +205,8 @@ Json toJson(const RenderReport& report) {
             {"seed", report.seed},
             {"camera", report.camera},
             {"exposure", report.exposure},
+            {"exposureAutomatic", report.exposureAutomatic},
+            {"sky", toJson(report.sky)},
             {"cases", report.cases},
             {"compileMs", orNull(report.compileMs)},
             {"environment", toJson(report.environment)},
@@ -223,7 +244,7 @@ Json toJson(const RenderReport& report) {
             {"memory", toJson(report.memory)}};
 }
 
-std::string toText(const RenderReport& report) {
+std::string toText(const RenderReport& report, Detail detail) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
     const FrameCounters& counters = report.counters;
     std::vector<std::vector<std::string>> rows{
@@ -234,9 +255,13 @@ std::string toText(const RenderReport& report) {
          fmt::format("{}{}, {}, {} case{}", report.strategy, report.strategyChoice ? " (auto)" : "",
                      report.tracer, report.cases, report.cases == 1 ? "" : "s")},
         {"camera", report.camera},
-        {"exposure", fmt::format("{:+.2f} EV", report.exposure)},
+        {"exposure", fmt::format("{:+.2f} EV, {}", report.exposure,
+                                 report.exposureAutomatic ? "brings surfaces to mid-grey" : "as asked for")},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
         {"BLAS", fmt::format("{} in {}", formatBytes(scene.blasBytes), milliseconds(scene.blasBuildMs))}};
+    if (report.sky) {
+        rows.insert(rows.end() - 3, {"sky", toText(*report.sky)});
+    }
     if (report.environment) {
         const Environment::Statistics& map = report.environment->statistics;
         rows.push_back(
@@ -271,10 +296,10 @@ std::string toText(const RenderReport& report) {
     }
     std::vector<std::vector<std::string>> passes{{"pass of the last sample", "ms"}};
     for (const PassTiming& pass : report.passes) {
-        passes.push_back({pass.name, fmt::format("{:.3f}", pass.milliseconds)});
+        passes.push_back({titleOf(pass, report, detail), fmt::format("{:.3f}", pass.milliseconds)});
     }
     const std::string frames = report.frames.empty() ? "" : tableOf(report.frames) + "\n";
-    std::string text = formatFields(rows) + "\n" + frames + formatTable(passes);
+    std::string text = formatFields(rows, detail) + "\n" + frames + formatTable(passes, detail);
     if (report.hasDetails) {
         text += '\n';
         text += toText(report.memory);

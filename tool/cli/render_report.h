@@ -4,6 +4,8 @@
 #include "cli/memory_table.h"
 #include "cli/pipeline_report.h"
 #include "cli/report.h"
+#include "cli/sky_choice.h"
+#include "cli/table.h"
 #include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
@@ -51,8 +53,11 @@ struct RenderReport {
     std::uint32_t seed = 0;
     std::string camera;
     double exposure = 0.0;            // stops
+    bool exposureAutomatic = false;   // chosen by the first picture
+    std::optional<SkyChoice> sky;     // absent: an environment map lights the scene
     std::optional<double> compileMs;  // absent: a package was given
     std::uint32_t cases = 0;
+    std::vector<std::string> caseNames;  // by shader ID
     std::optional<EnvironmentReport> environment;
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
@@ -76,6 +81,6 @@ struct RenderReport {
 Status checkOrder(const RenderReport& report);
 
 Json toJson(const RenderReport& report);
-std::string toText(const RenderReport& report);
+std::string toText(const RenderReport& report, Detail detail);
 
 }  // namespace glint

@@ -35,10 +35,25 @@ RendererOptions rendererOptions(const RenderArguments& arguments) {
     return options;
 }
 
-FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera,
+SkyChoice chooseSky(const RenderArguments& arguments, const Scene& scene, const SceneViewData& view) {
+    SkyChoice choice;
+    choice.automatic = arguments.sky == "auto";
+    if (!choice.automatic) {
+        parseReal(arguments.sky, 0.0, kMaxSky, choice.scale);
+        return choice;
+    }
+    if (scene.lights.empty() || !arguments.environment.file.empty()) {
+        return choice;
+    }
+    return skyForLights(litPatches(scene, view, view.lights));
+}
+
+FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera, const SkyChoice& sky,
                           const Environment* environment) {
     FrameOptions options;
     options.camera = camera;
+    options.sky = sky.sky();
+    options.averagedSamples = static_cast<std::uint32_t>(arguments.samples);
     arguments.frame.apply(options);
     arguments.effectFrame.apply(options);
     options.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);

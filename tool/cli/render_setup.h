@@ -3,6 +3,7 @@
 
 #include "cli/render_arguments.h"
 #include "cli/scene_view.h"
+#include "cli/sky_choice.h"
 #include "emit/compile.h"
 
 #include <glint/renderer.h>
@@ -20,8 +21,12 @@ CompileSettings compileSettings(const RenderArguments& arguments, const PlanOpti
 
 RendererOptions rendererOptions(const RenderArguments& arguments);
 
+// The sky that --sky asks for; with `auto`, that of the lights at the pose of `scene`, from which `view` was
+// made. A scene without lights of its own keeps the default sky, whose sun belongs to it.
+SkyChoice chooseSky(const RenderArguments& arguments, const Scene& scene, const SceneViewData& view);
+
 // `environment` may be null.
-FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera,
+FrameOptions frameOptions(const RenderArguments& arguments, const CameraView& camera, const SkyChoice& sky,
                           const Environment* environment);
 
 }  // namespace glint

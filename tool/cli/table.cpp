@@ -1,6 +1,7 @@
 #include "cli/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -17,12 +18,50 @@ std::size_t displayWidth(const std::string& text) {
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+// "12 Clearcoat…", as shaderTitle() makes it.
+bool isTitle(const std::string& cell) {
+    const std::size_t end = cell.find_first_not_of("0123456789");
+    return end != std::string::npos && cell[end] == ' ' && end + 1 < cell.size() &&
+           std::isupper(static_cast<unsigned char>(cell[end + 1])) != 0;
+}
+
 bool looksNumeric(const std::string& cell) {
+    if (isTitle(cell)) {
+        return false;
+    }
     return cell == "-" || (!cell.empty() && std::isdigit(static_cast<unsigned char>(cell[0])) != 0);
+}
+
+constexpr std::string_view kEllipsis = "…";
+
+// Its first or last characters, so many; whole code points, so that UTF-8 stays UTF-8.
+std::string firstCharacters(const std::string& text, std::size_t count) {
+    std::size_t end = 0;
+    for (std::size_t seen = 0; end < text.size(); ++end) {
+        if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && ++seen > count) {
+            break;
+        }
+    }
+    return text.substr(0, end);
+}
+
+std::string lastCharacters(const std::string& text, std::size_t count) {
+    return text.substr(firstCharacters(text, displayWidth(text) - count).size());
+}
+
+// A path's end says which file it is, other texts' beginning what they are.
+std::string cut(const std::string& text, std::size_t width) {
+    if (displayWidth(text) <= width) {
+        return text;
+    }
+    const std::string ellipsis(kEllipsis);
+    return text.find('/') == std::string::npos ? firstCharacters(text, width - 1) + ellipsis
+                                               : ellipsis + lastCharacters(text, width - 1);
 }
 
 struct Column {
     std::size_t width = 0;
+    std::size_t head = 0;  // width of the first row's cell
     bool numeric = true;
 };
 
@@ -32,36 +71,140 @@ std::vector<Column> measure(const Rows& rows, bool alignNumbers) {
         columns.resize(std::max(columns.size(), rows[r].size()));
         for (std::size_t c = 0; c < rows[r].size(); ++c) {
             columns[c].width = std::max(columns[c].width, displayWidth(rows[r][c]));
+            columns[c].head = r == 0 ? columns[c].width : columns[c].head;
             columns[c].numeric = columns[c].numeric && alignNumbers && (r == 0 || looksNumeric(rows[r][c]));
         }
     }
     return columns;
 }
 
-std::string format(const Rows& rows, bool alignNumbers) {
-    const std::vector<Column> columns = measure(rows, alignNumbers);
-    std::string text;
-    for (const std::vector<std::string>& row : rows) {
-        std::string line;
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            const std::string padding(columns[c].width - displayWidth(row[c]), ' ');
-            line += c == 0 ? "" : "  ";
-            line += columns[c].numeric ? padding + row[c] : row[c] + padding;
-        }
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + "\n";
+constexpr std::size_t kGap = 2;
+
+std::size_t widthOf(const std::vector<Column>& columns) {
+    std::size_t width = columns.empty() ? 0 : kGap * (columns.size() - 1);
+    for (const Column& column : columns) {
+        width += column.width;
     }
-    return text;
+    return width;
+}
+
+// Narrows the widest columns of text until the table has this width, or each has `least` or its head.
+void narrow(std::vector<Column>& columns, std::size_t width, std::size_t least) {
+    while (widthOf(columns) > width) {
+        Column* widest = nullptr;
+        for (Column& column : columns) {
+            const bool canShrink = !column.numeric && column.width > std::max(least, column.head);
+            if (canShrink && (widest == nullptr || column.width > widest->width)) {
+                widest = &column;
+            }
+        }
+        if (widest == nullptr) {
+            return;
+        }
+        --widest->width;
+    }
+}
+
+std::string lineOf(const std::vector<std::string>& row, const std::vector<Column>& columns) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+        const std::string cell = cut(row[c], columns[c].width);
+        const std::string padding(columns[c].width - displayWidth(cell), ' ');
+        line += c == 0 ? "" : std::string(kGap, ' ');
+        line += columns[c].numeric ? padding + cell : cell + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+}
+
+// Lines of at most `width` characters, broken at spaces; a longer word has a line of its own.
+std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
+    std::vector<std::string> lines{""};
+    std::size_t begin = 0;
+    while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        const std::string word = text.substr(begin, end - begin);
+        if (begin > 0 && displayWidth(lines.back()) + 1 + displayWidth(word) > width) {
+            lines.push_back(word);
+        } else {
+            lines.back() += (begin > 0 ? " " : "") + word;
+        }
+        begin = end + 1;
+    }
+    return lines;
 }
 
 }  // namespace
 
-std::string formatTable(const Rows& rows) {
-    return format(rows, true);
+std::string formatTable(const Rows& rows, Detail detail) {
+    std::vector<Column> columns = measure(rows, true);
+    if (detail == Detail::Short) {
+        // Names that are told apart by less are rare; below that a table may be wider.
+        constexpr std::size_t kReadable = 28;
+        constexpr std::size_t kLeast = 12;
+        narrow(columns, kTableWidth, kReadable);
+        narrow(columns, kMostTableWidth, kLeast);
+    }
+    std::string text;
+    for (const std::vector<std::string>& row : rows) {
+        text += lineOf(row, columns);
+    }
+    return text;
 }
 
-std::string formatFields(const Rows& rows) {
-    return format(rows, false);
+std::string formatFields(const Rows& rows, Detail detail) {
+    // A value wraps no narrower than this, however wide the labels are.
+    constexpr std::size_t kLeast = 20;
+    const std::vector<Column> columns = measure(rows, false);
+    std::string text;
+    for (const std::vector<std::string>& row : rows) {
+        std::size_t begin = 0;
+        for (std::size_t c = 0; c + 1 < row.size(); ++c) {
+            begin += columns[c].width + kGap;
+        }
+        const bool wraps = detail == Detail::Short && row.size() > 1;
+        const std::size_t room = std::max(kTableWidth - std::min(begin, kTableWidth), kLeast);
+        const std::vector<std::string> lines =
+            wraps ? linesOf(row.back(), room) : std::vector<std::string>{row.empty() ? "" : row.back()};
+        std::vector<std::string> cells = row;
+        for (const std::string& line : lines) {
+            std::string start;
+            for (std::size_t c = 0; c + 1 < cells.size(); ++c) {
+                start += cells[c] + std::string(columns[c].width - displayWidth(cells[c]) + kGap, ' ');
+                cells[c].clear();
+            }
+            start += line;
+            start.erase(start.find_last_not_of(' ') + 1);
+            text += start + "\n";
+        }
+    }
+    return text;
+}
+
+std::string wrapped(const std::string& text) {
+    std::string result;
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        const bool isSet = line.starts_with(' ');
+        result += isSet ? line : fmt::format("{}", fmt::join(linesOf(line, kTableWidth), "\n"));
+        result += end < text.size() ? "\n" : "";
+        begin = end + 1;
+    }
+    return result;
+}
+
+std::string shaderTitle(std::uint64_t id, std::string_view name, Detail detail) {
+    constexpr std::size_t kMostName = 28;
+    if (detail == Detail::Whole || name.size() <= kMostName) {
+        return fmt::format("{} {}", id, name);
+    }
+    const std::string_view start = name.substr(0, kMostName);
+    const std::size_t word = start.rfind('_');
+    return fmt::format("{} {}{}", id,
+                       word == std::string_view::npos || word == 0 ? start : start.substr(0, word),
+                       kEllipsis);
 }
 
 std::string formatBytes(std::uint64_t bytes) {

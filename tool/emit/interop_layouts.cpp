@@ -133,6 +133,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, pixelSpread),
     GLINT_MEMBER(FrameConstants, jitter),
     GLINT_MEMBER(FrameConstants, pixelWidth),
+    GLINT_MEMBER(FrameConstants, sampleLodBias),
     GLINT_MEMBER(FrameConstants, sampleIndex),
     GLINT_MEMBER(FrameConstants, seed),
     GLINT_MEMBER(FrameConstants, effects),

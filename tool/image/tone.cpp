@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace glint {
 
 namespace {
 
 constexpr double kMiddleGrey = 0.18;
-constexpr double kMaxStops = 16.0;
-// A pixel below this is black in any sensible light. It bounds the logarithm at about -14.
-constexpr double kLitLuminance = 1e-6;
+// Sunlight of 100,000 lux takes 17; --exposure has as many.
+constexpr double kMaxStops = 32.0;
+// A pixel with a smaller share of the median luminance is black: what is 20 stops below the others would move
+// the log-average by what no display shows.
+constexpr double kBlackShare = 1e-6;
 
 // These are F90, Ks and Kd of the specification.
 constexpr float kFresnel = 0.04F;
@@ -61,20 +64,31 @@ Rgb toneMapNeutral(const Rgb& color) {
     return mapped;
 }
 
-double automaticExposure(const LinearImage& image) {
-    double sum = 0.0;
-    std::size_t lit = 0;
-    for (const std::array<float, 4>& pixel : image.pixels) {
+double automaticExposure(const LinearImage& image, std::span<const std::uint8_t> surfaces) {
+    const bool hasSurface = std::ranges::any_of(surfaces, [](std::uint8_t surface) { return surface != 0; });
+    std::vector<double> lit;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const std::array<float, 4>& pixel = image.pixels[i];
         const double value = luminance({pixel[0], pixel[1], pixel[2]});
-        if (std::isfinite(value) && value > kLitLuminance) {
-            sum += std::log2(value);
-            ++lit;
+        if ((!hasSurface || surfaces[i] != 0) && std::isfinite(value) && value > 0.0) {
+            lit.push_back(value);
         }
     }
-    if (lit == 0) {
+    if (lit.empty()) {
         return 0.0;
     }
-    return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(lit), -kMaxStops, kMaxStops);
+    const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
+    std::ranges::nth_element(lit, middle);
+    const double black = kBlackShare * *middle;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const double value : lit) {
+        if (value >= black) {
+            sum += std::log2(value);
+            ++count;
+        }
+    }
+    return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(count), -kMaxStops, kMaxStops);
 }
 
 Rgb displayed(const Rgb& color, double exposure) {

@@ -4,6 +4,8 @@
 #include <glint/renderer.h>
 
 #include <array>
+#include <cstdint>
+#include <span>
 
 namespace glint {
 
@@ -21,10 +23,12 @@ float srgbToLinear(float value);
 // Specification"). It keeps base colours up to 0.8 and compresses highlights; the result is within [0, 1].
 Rgb toneMapNeutral(const Rgb& color);
 
-// Returns the exposure in stops that brings the log-average luminance of the lit pixels to a mid-grey of 0.18
-// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to
-// ±16 stops. A pixel is lit if its luminance is finite and above 1e-6. Returns 0 if no pixel is lit.
-double automaticExposure(const LinearImage& image);
+// Exposure in stops that brings the log-average luminance of surfaces to a mid-grey of 0.18 (Reinhard et al.
+// 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to ±32 stops.
+// `surfaces`, a byte a pixel: those that are not 0 see a surface. All pixels count where it is empty or has
+// no such pixel, as in a picture of the sky alone. Left out are pixels that are not finite, or black: below a
+// millionth of the median of those above 0. 0 stops if nothing is left.
+double automaticExposure(const LinearImage& image, std::span<const std::uint8_t> surfaces = {});
 
 // Returns what a display shows for a linear colour, in linear light within [0, 1]: the colour times
 // 2^exposure, tone mapped. NaN and infinity become magenta, so that they are visible.

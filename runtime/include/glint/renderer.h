@@ -177,13 +177,44 @@ struct FrameOptions {
     // Effect bits: of the package's effects with rays, and of ambient occlusion, those that are on.
     std::uint32_t effects = package::kAllEffects;
     std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
+    // Samples of a pixel that the picture will average. Each stands for that share of the pixel's area, so
+    // that the cones by which textures are filtered are 1 / sqrt(averagedSamples) as wide. A program that
+    // accumulates until something moves gives the number that it usually reaches. 0: render() and
+    // renderSamples() take their count of samples, record() takes 1.
+    std::uint32_t averagedSamples = 0;
     std::uint32_t seed = 0;
     Timing timing = Timing::Frame;
 };
 
+// What a stretch of a frame's time is spent on; docs/architecture.md, "Passes of a frame".
+enum class Pass : std::uint32_t {
+    Frame,  // everything, with Timing::Frame
+    Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
+    Gbuffer,
+    Lighting,
+    RefractionWalk,
+    EffectRays,
+    RayDispatch,
+    Uber,
+    Trace,
+    Count,
+    Offset,
+    Copy,
+    CheckOrder,
+    ShadeMiss,
+    ShadeCase,
+    SortedUber,
+    HitShaders,
+    ShadowDispatch,
+    Shadow,
+    Compose,
+};
+
 struct PassTiming {
-    std::string name;  // of a pass: also its debug label
+    std::string name;  // for people: also the debug label of the pass
     double milliseconds = 0.0;
+    Pass pass = Pass::Frame;
+    std::uint32_t shaderId = 0;  // of Pass::ShadeCase
 };
 
 // Of one effect in one sample.
@@ -277,6 +308,9 @@ public:
     // Of each pixel and an effect that sends rays, row by row from the top. Waits for the device. Error
     // "effect-missing" where the package lacks it.
     Result<std::vector<PixelPath>> readCoverage(package::Effect effect = package::kEffectReflection);
+    // Which pixels see a surface in the last sample: 1, or 0 for the sky; row by row from the top. Waits for
+    // the device.
+    Result<std::vector<std::uint8_t>> readSurfaces();
 
     // What it runs, where RendererOptions left the choice.
     package::Tracer tracer() const;

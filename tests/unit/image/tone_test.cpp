@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -63,9 +65,36 @@ TEST(Tone, ExposureOfBlackIsZeroAndOfExtremesIsClamped) {
     LinearImage image{1, 1, {{0.0F, 0.0F, 0.0F, 1.0F}}};
     EXPECT_EQ(automaticExposure(image), 0.0);
     image.pixels[0] = {1e30F, 1e30F, 1e30F, 1.0F};
-    EXPECT_EQ(automaticExposure(image), -16.0);
-    image.pixels[0] = {1.5e-6F, 1.5e-6F, 1.5e-6F, 1.0F};
-    EXPECT_EQ(automaticExposure(image), 16.0);
+    EXPECT_EQ(automaticExposure(image), -32.0);
+    image.pixels[0] = {1e-20F, 1e-20F, 1e-20F, 1.0F};
+    EXPECT_EQ(automaticExposure(image), 32.0);
+    // A white wall in sunlight of 100,000 lux.
+    image.pixels[0] = {31831.0F, 31831.0F, 31831.0F, 1.0F};
+    EXPECT_NEAR(automaticExposure(image), std::log2(0.18 / 31831.0), 1e-5);
+}
+
+TEST(Tone, ExposureLooksAtSurfaces) {
+    LinearImage image{2, 2, {}};
+    image.pixels.assign(4, {100.0F, 100.0F, 100.0F, 1.0F});
+    image.pixels[2] = {0.72F, 0.72F, 0.72F, 1.0F};
+    const std::vector<std::uint8_t> surfaces{0, 0, 1, 0};
+    EXPECT_NEAR(automaticExposure(image, surfaces), -2.0, 1e-6);
+    // Where nothing is a surface, the sky is what there is to see.
+    const std::vector<std::uint8_t> none(4, 0);
+    EXPECT_EQ(automaticExposure(image, none), automaticExposure(image));
+}
+
+// What is nearly black, next to the others, is not looked at, whatever the units.
+TEST(Tone, ExposureIgnoresWhatIsNearlyBlack) {
+    for (const float unit : {1e-6F, 1.0F, 1e6F}) {
+        LinearImage image{3, 1, {}};
+        const float grey = 0.72F * unit;
+        image.pixels.assign(3, {grey, grey, grey, 1.0F});
+        const double expected = automaticExposure(image);
+        image.pixels[1] = {1e-8F * grey, 1e-8F * grey, 1e-8F * grey, 1.0F};
+        EXPECT_NEAR(automaticExposure(image), expected, 1e-6) << unit;
+        EXPECT_NEAR(expected, -2.0 - std::log2(unit), 1e-5) << unit;
+    }
 }
 
 TEST(Tone, DisplayShowsWhatIsNotFinite) {

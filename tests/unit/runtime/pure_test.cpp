@@ -80,6 +80,10 @@ TEST(CameraTest, FiniteFarPlaneIsDepthZero) {
 }
 
 TEST(CameraTest, JitterStartsAtTheCentreAndFillsThePixel) {
+    EXPECT_EQ(sampleConeScale(0), 1.0F);
+    EXPECT_EQ(sampleConeScale(1), 1.0F);
+    EXPECT_EQ(sampleConeScale(4), 0.5F);
+    EXPECT_EQ(sampleConeScale(64), 0.125F);
     EXPECT_EQ(sampleJitter(0).x, 0.0F);
     EXPECT_EQ(sampleJitter(0).y, 0.0F);
     std::set<int> cells;
