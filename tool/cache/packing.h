@@ -1,6 +1,7 @@
 // Numbers and texts in one string of bytes, and back with every length checked.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,9 +27,9 @@ public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     std::optional<std::uint64_t> number();
-    // A number that does not exceed what is left of the bytes, as a count of things that take at least one
-    // each.
-    std::optional<std::uint64_t> count();
+    // A number of things that take at least `leastBytes` each, so that what is left of the bytes can hold
+    // them.
+    std::optional<std::uint64_t> count(std::size_t leastBytes);
     // Valid as long as the bytes.
     std::optional<std::string_view> text();
     bool atEnd() const {
