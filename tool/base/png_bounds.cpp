@@ -21,13 +21,22 @@ std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t widt
     constexpr std::size_t kSignatureBytes = 8;
     constexpr std::size_t kHeaderBytes = 8;  // length and type; a checksum follows the data
     constexpr std::size_t kChecksumBytes = 4;
+    bool hasData = false;
     for (std::size_t at = kSignatureBytes; at + kHeaderBytes <= bytes.size();) {
         std::size_t length = 0;
         for (std::size_t i = 0; i < 4; ++i) {
             length = length << 8U | bytes[at + i];
         }
-        if (std::string_view(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4) == "IEND") {
+        const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4);
+        if (type == "IEND") {
             break;
+        }
+        if (type == "IDAT") {
+            // stb_image would copy it to a null pointer. PNG allows it, but no encoder begins with it.
+            if (length == 0 && !hasData) {
+                return "its first chunk of data is empty";
+            }
+            hasData = true;
         }
         at += kHeaderBytes;
         if (length + kChecksumBytes > bytes.size() - at) {

@@ -144,7 +144,7 @@ public:
             raise(lines_, linesOfBlock(value));
         } else if (name == "tiles" && type == "tiledesc") {
             const auto side = [&](std::size_t index) {
-                return double{static_cast<std::uint32_t>(wordAt(value, index))};
+                return static_cast<double>(static_cast<std::uint32_t>(wordAt(value, index)));
             };
             raise(tilePixels_, side(0) * side(1));
         }

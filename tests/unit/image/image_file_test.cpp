@@ -157,6 +157,8 @@ TEST(PngBounds, ChunksLieInTheFile) {
     // The header of a chunk of 651 MB, with which the file ends, and a part of its data.
     EXPECT_NE(excessOf("\x26\xD0\x04\x49IDAT").find("651166793 bytes"), std::string::npos);
     EXPECT_NE(excessOf("\x26\xD0\x04\x49IDATx").find("651166793 bytes"), std::string::npos);
+    EXPECT_NE(excessOf(std::string("\0\0\0\0IDAT\0\0\0\0", 12)), "");
+    EXPECT_EQ(excessOf(std::string("\0\0\0\1IDATx\0\0\0\0\0\0\0\0IDAT\0\0\0\0", 25)), "");
     // Its checksum is a part of a chunk, but that of the last chunk is never read.
     EXPECT_NE(excessOf(std::string("\0\0\0\1IDATx\0\0\0", 12)), "");
     EXPECT_EQ(excessOf(std::string("\0\0\0\1IDATx\0\0\0\0\0\0\0\0IEND", 21)), "");
