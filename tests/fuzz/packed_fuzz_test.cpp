@@ -1,5 +1,6 @@
 // Damage to compressed geometry and images: the decoders see bytes that their encoders never wrote.
 #include "fuzz/mutations.h"
+#include "support/models.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMutationsPerScene = 1500;
 constexpr int kMutationsPerModel = 150;
-const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models" / "features";
+const fs::path kModels = modelsFolder() / "features";
 
 GltfBuilder widePngScene() {
     GltfBuilder builder;
@@ -92,7 +93,7 @@ TEST(PackedFuzz, EveryTruncationOfPackedDataReturns) {
 // The models are damaged in the file that holds the compressed data, beside copies of the others.
 TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
     if (!fs::exists(kModels)) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     const std::vector<std::array<const char*, 3>> models{
         {"Avocado-draco", "Avocado.gltf", "Avocado.bin"},
