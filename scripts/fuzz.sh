@@ -1,63 +1,107 @@
 #!/usr/bin/env bash
-# Builds the fuzz targets with Clang and runs each, two at a time.
+# Builds the fuzz targets with Clang and runs them for a time or for a number of executions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
 usage: scripts/fuzz.sh [SECONDS] [TARGET…]
+       scripts/fuzz.sh --executions N [--seconds SECONDS] [TARGET…]
+       scripts/fuzz.sh --report [TARGET…]
 
-Runs the libFuzzer targets of tests/fuzz for SECONDS each (60), all of them or those named, and prints a Markdown
-table: executions, coverage (edges, and libFuzzer's features), time, findings. Inputs that are new stay in
-build/fuzz/corpus, findings in build/fuzz/findings; exit 1 if there is any. Needs Clang:
-scripts/setup.sh --sanitize.
+Runs the libFuzzer targets of tests/fuzz, all of them or those named, and prints a Markdown table: executions,
+coverage (edges, and libFuzzer's features), time, findings. Inputs that are new stay in build/fuzz/corpus, findings
+in build/fuzz/findings; exit 1 if there is any. Needs Clang: scripts/setup.sh --sanitize.
+
+  SECONDS         run each target that long (60), two at a time
+  --executions N  run one target after the other until each has had N executions since its last finding. They are
+                  counted over all runs, in build/fuzz/state: a run that was stopped goes on where it ended
+  --seconds S     with --executions: no longer than that for a target
+  --report        run nothing; print what the runs so far have counted
 TEXT
 }
 
-if [[ ${1:-} == -h || ${1:-} == --help ]]; then
-    usage
-    exit 0
-fi
-seconds=${1:-60}
-if ! [[ $seconds =~ ^[1-9][0-9]*$ ]]; then
-    usage >&2
-    exit 2
-fi
-shift || true
-targets=("$@")
-if [[ ${#targets[@]} -eq 0 ]]; then
-    targets=(gltf_json gltf_glb ktx2 package manifest lock lint profile cache image)
-fi
+all=(lock package image lint profile manifest cache gltf_json gltf_glb)
+executions=0
+seconds=
+report=false
+targets=()
+while [[ $# -gt 0 ]]; do
+    case $1 in
+        -h | --help)
+            usage
+            exit 0
+            ;;
+        --executions | --seconds)
+            if ! [[ ${2:-} =~ ^[1-9][0-9]*$ ]]; then
+                usage >&2
+                exit 2
+            fi
+            [[ $1 == --executions ]] && executions=$2 || seconds=$2
+            shift
+            ;;
+        --report) report=true ;;
+        *)
+            if [[ $1 =~ ^[1-9][0-9]*$ && -z $seconds && ${#targets[@]} -eq 0 ]]; then
+                seconds=$1
+            elif [[ " ${all[*]} " == *" $1 "* ]]; then
+                targets+=("$1")
+            else
+                printf 'fuzz: %s is no number of seconds and no target; targets: %s\n' "$1" "${all[*]}" >&2
+                exit 2
+            fi
+            ;;
+    esac
+    shift
+done
+[[ ${#targets[@]} -gt 0 ]] || targets=("${all[@]}")
 
 # Bounds for inputs of a few KB: what asks for more is a finding.
 kRssMb=1024
 kMallocMb=300
 kTimeout=20
-kMaxLength=16384
+# A run of --executions ends after that many seconds, to be counted; the next goes on.
+kSlice=300
 
 build=${GLINT_FUZZ_BUILD:-build/fuzz}
-if [[ -z ${GLINT_FUZZ_BUILD:-} ]]; then
+if [[ -z ${GLINT_FUZZ_BUILD:-} && $report == false ]]; then
     cmake --preset fuzz >/dev/null
     cmake --build --preset fuzz >&2
 fi
-mkdir -p "$build/findings" "$build/logs"
+state=$build/state
+mkdir -p "$build/findings" "$build/logs" "$state"
 
 # Inputs are files, thousands a second: in memory where there is such a folder.
 scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/glint-fuzz-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 
-# run_target NAME: never fails; what it found lies in the log and in findings/.
+# The longest input that a target makes. What a longer one could show lies in the bounds of the readers, which the
+# corpora and the tests reach; shorter ones run several times as fast.
+longest() {
+    case $1 in
+        lock) echo 1024 ;;
+        image | profile | cache) echo 4096 ;;
+        manifest | gltf_*) echo 8192 ;;
+        *) echo 16384 ;;
+    esac
+}
+
+# run_target NAME FLAG…: never fails; what it found lies in the log and in findings/.
 run_target() {
-    local name=$1 dictionary=()
+    local name=$1 flags=("${@:2}")
     local words=tests/fuzz/dictionaries/$name.dict
     [[ $name == gltf_* ]] && words=tests/fuzz/dictionaries/gltf.dict
-    [[ -f $words ]] && dictionary=("-dict=$words")
+    [[ -f $words ]] && flags+=("-dict=$words")
     mkdir -p "$build/corpus/$name" "$scratch/$name"
-    # Crashes of libraries are findings, too: go on after none of them.
-    TMPDIR=$scratch/$name ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0 UBSAN_OPTIONS=print_stacktrace=1 \
-        nice -n 19 "$build/tests/fuzz_$name" "${dictionary[@]}" "-max_total_time=$seconds" \
-        "-rss_limit_mb=$kRssMb" "-malloc_limit_mb=$kMallocMb" "-timeout=$kTimeout" "-max_len=$kMaxLength" \
-        -print_final_stats=1 "-artifact_prefix=$build/findings/$name-" \
+    # To weigh inputs by their rare features takes longer than importing them.
+    [[ $name == gltf_* ]] && flags+=(-entropic=0)
+    # Allocations don't record who asked for them: run a finding again without these options to see that. The
+    # quarantine of freed memory holds that of many inputs. Crashes of libraries are findings, too.
+    TMPDIR=$scratch/$name UBSAN_OPTIONS=print_stacktrace=1 \
+        ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0:malloc_context_size=0:quarantine_size_mb=16 \
+        nice -n "${GLINT_FUZZ_NICE:-19}" "$build/tests/fuzz_$name" "${flags[@]}" \
+        "-rss_limit_mb=$kRssMb" "-malloc_limit_mb=$kMallocMb" "-timeout=$kTimeout" "-max_len=$(longest "$name")" \
+        -print_final_stats=1 -entropic_scale_per_exec_time=1 "-artifact_prefix=$build/findings/$name-" \
         "$build/corpus/$name" "tests/fuzz/corpus/$name" >"$build/logs/$name.log" 2>&1 || true
 }
 
@@ -66,31 +110,110 @@ last() {
     grep -oE "$2: [0-9]+" "$1" | tail -n 1 | grep -oE '[0-9]+' || echo 0
 }
 
+executions_of() {
+    local count
+    count=$(grep -oE 'stat::number_of_executed_units: [0-9]+' "$1" | grep -oE '[0-9]+$' || true)
+    # A run that was killed has no statistics; its last line of progress begins with the number.
+    echo "${count:-$(grep -oE '^#[0-9]+' "$1" | tail -n 1 | tr -d '#' || true)}"
+}
+
+found() {
+    grep -qE '^SUMMARY: ' "$1"
+}
+
+# counted NAME FILE: a number of the state; 0 where there is none yet.
+counted() {
+    cat "$state/$1.$2" 2>/dev/null || echo 0
+}
+
+# count_run NAME SECONDS: adds the run of the log to the state, which a finding sets back to 0.
+count_run() {
+    local name=$1 log=$build/logs/$1.log ran
+    ran=$(executions_of "$log")
+    if found "$log"; then
+        echo 0 >"$state/$name.executions"
+        echo 0 >"$state/$name.seconds"
+    else
+        echo $(($(counted "$name" executions) + ${ran:-0})) >"$state/$name.executions"
+        echo $(($(counted "$name" seconds) + $2)) >"$state/$name.seconds"
+    fi
+}
+
+# run_until NAME: runs until the target has its executions, has a finding, or has had its time.
+run_until() {
+    local name=$1 spent=0 left slice began
+    while left=$((executions - $(counted "$name" executions))) && [[ $left -gt 0 ]]; do
+        slice=$kSlice
+        if [[ -n $seconds ]]; then
+            slice=$((seconds - spent < kSlice ? seconds - spent : kSlice))
+            [[ $slice -gt 0 ]] || return 0
+        fi
+        began=$SECONDS
+        run_target "$name" "-runs=$left" "-max_total_time=$slice"
+        count_run "$name" $((SECONDS - began))
+        spent=$((spent + SECONDS - began))
+        printf 'fuzz: %s: %s executions since the last finding\n' "$name" "$(counted "$name" executions)" >&2
+        found "$build/logs/$name.log" && return 0
+        # A target that does not start must not start for ever.
+        [[ $(executions_of "$build/logs/$name.log") -gt 0 ]] || return 0
+    done
+}
+
+print_counts() {
+    local name count time
+    printf '| target | executions since the last finding | a second |\n|---|---|---|\n'
+    for name in "${targets[@]}"; do
+        count=$(counted "$name" executions)
+        time=$(counted "$name" seconds)
+        printf "| \`%s\` | %s | %s |\n" "$name" "$count" $((count / (time > 0 ? time : 1)))
+    done
+}
+
 # table_row NAME: prints its row.
 table_row() {
-    local log=$build/logs/$1.log executions elapsed findings
-    executions=$(grep -oE 'stat::number_of_executed_units: [0-9]+' "$log" | grep -oE '[0-9]+$' || echo 0)
+    local log=$build/logs/$1.log elapsed findings
     elapsed=$(grep -oE 'in [0-9]+ second' "$log" | tail -n 1 | grep -oE '[0-9]+' || echo '?')
     findings=$(grep -oE 'SUMMARY: .*' "$log" | head -n 1 || true)
-    printf '| %s | %s | %s | %s | %s | %s |\n' "$1" "$executions" "$(last "$log" cov)" "$(last "$log" ft)" \
+    printf '| %s | %s | %s | %s | %s | %s |\n' "$1" "$(executions_of "$log")" "$(last "$log" cov)" "$(last "$log" ft)" \
         "$elapsed" "${findings:-none}"
 }
 
-for name in "${targets[@]}"; do
-    while [[ $(jobs -rp | wc -l) -ge 2 ]]; do
-        wait -n
-    done
-    printf 'fuzz: %s\n' "$name" >&2
-    run_target "$name" &
-done
-wait
-
-found=0
-printf '| target | executions | edges | features | seconds | finding |\n|---|---|---|---|---|---|\n'
-for name in "${targets[@]}"; do
-    table_row "$name"
-    if grep -q '^SUMMARY: ' "$build/logs/$name.log"; then
-        found=1
+# All of the file is read before anything runs, so that it may change under a run of hours.
+main() {
+    local name began
+    if [[ $report == true ]]; then
+        print_counts
+        exit 0
     fi
-done
-exit "$found"
+    if [[ $executions -gt 0 ]]; then
+        for name in "${targets[@]}"; do
+            run_until "$name"
+        done
+        print_counts
+    else
+        for name in "${targets[@]}"; do
+            while [[ $(jobs -rp | wc -l) -ge 2 ]]; do
+                wait -n
+            done
+            printf 'fuzz: %s\n' "$name" >&2
+            {
+                began=$SECONDS
+                run_target "$name" "-max_total_time=${seconds:-60}"
+                count_run "$name" $((SECONDS - began))
+            } &
+        done
+        wait
+        printf '| target | executions | edges | features | seconds | finding |\n|---|---|---|---|---|---|\n'
+        for name in "${targets[@]}"; do
+            table_row "$name"
+        done
+    fi
+    for name in "${targets[@]}"; do
+        if [[ -f $build/logs/$name.log ]] && found "$build/logs/$name.log"; then
+            exit 1
+        fi
+    done
+}
+
+main
+exit

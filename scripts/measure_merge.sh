@@ -3,7 +3,7 @@
 # creation, render time. The scenes are the gallery, a synthetic one of 48 keys, and all below FOLDERs. Policies of a
 # scene are interleaved, so that a busy machine slows all alike. Prints Markdown. Needs python3-xxhash.
 #
-#   scripts/measure_merge.sh [RUNS [FOLDER…]]     default 2, ../shared/models/features and large where they are
+#   scripts/measure_merge.sh [RUNS [FOLDER…]]     default 2, those of scripts/models.sh that are there
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
@@ -17,7 +17,8 @@ runs=${1:-2}
 shift || true
 folders=("$@")
 if [[ ${#folders[@]} -eq 0 ]]; then
-    for folder in ../shared/models/features ../shared/models/large; do
+    models=${GLINT_MODELS:-../shared/models}
+    for folder in "$models/features" "$models/large"; do
         if [[ -d $folder ]]; then
             folders+=("$folder")
         fi

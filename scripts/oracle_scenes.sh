@@ -2,14 +2,14 @@
 # Renders real scenes on the device and in double precision on the CPU (glint_oracle), compares the two, and writes the
 # tables of docs/accuracy.md. Build first. Models that are not there are left out, with a message.
 #
-#   scripts/oracle_scenes.sh [MODELS [SAMPLES]]   a folder with the models, default ../shared/models; samples a pixel of
-#                                                 the converged pictures, default 256
+#   scripts/oracle_scenes.sh [MODELS [SAMPLES]]   the folder of scripts/models.sh; samples a pixel of the converged
+#                                                 pictures, default 256
 #
 # Environment: GLINT_BIN, the folder of the programs (build/release/bin); SIZE, pixels (96x54).
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-models=${1:-../shared/models}
+models=${1:-${GLINT_MODELS:-../shared/models}}
 samples=${2:-256}
 bin=${GLINT_BIN:-build/release/bin}
 size=${SIZE:-96x54}

@@ -10,7 +10,7 @@ usage: scripts/sanitize.sh
 Builds the command and the replays of tests/fuzz with both sanitizers (preset sanitize, which needs Clang:
 scripts/setup.sh --sanitize) and runs
   - every file of tests/fuzz/corpus through the reader that it was made for, and through the command;
-  - every command over the example scenes, and over those of ../shared/models where they are; render with each
+  - every command over the example scenes, and over those of scripts/models.sh where they are; render with each
     strategy.
 Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
 with a diagnostic.
@@ -27,7 +27,7 @@ build=build/sanitize
 # Not an exit code of the command: a report shows whatever the command was about to return.
 export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=exitcode=99
 export NO_COLOR=1
-models=../shared/models
+models=${GLINT_MODELS:-../shared/models}
 # Bounds what a hang costs; the longest command takes two minutes.
 export kTimeout=900
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test. Ends with CTest's summary and its exit code.
+# Sets up, builds and runs every test. Ends with CTest's summary, how many tests lacked models, and CTest's exit code.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -39,4 +39,11 @@ if [[ $sanitize == true ]]; then
 fi
 cmake --preset release -DGLINT_WARNINGS_AS_ERRORS=ON
 cmake --build --preset release
-exec ctest --preset release -j2 --output-on-failure --no-tests=error
+status=0
+ctest --preset release -j2 --output-on-failure --no-tests=error || status=$?
+# Tests say in these words why they are skipped (tests/support/models.cpp).
+skipped=$(grep -c '^no models: ' build/release/Testing/Temporary/LastTest.log || true)
+if [[ $skipped -gt 0 ]]; then
+    printf '%s tests were skipped because their models are not there: scripts/models.sh --help\n' "$skipped"
+fi
+exit "$status"

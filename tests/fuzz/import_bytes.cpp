@@ -1,7 +1,7 @@
 #include "fuzz/import_bytes.h"
 
-#include "base/files.h"
 #include "fuzz/fuzz_target.h"
+#include "fuzz/scratch_file.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "motion/deform.h"
@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint::fuzz {
@@ -119,23 +120,23 @@ void checkPlan(const SceneList& scenes, MergePolicy merge) {
 
 void importBytes(std::span<const std::uint8_t> bytes, std::string_view name) {
     static const test::TemporaryFolder folder;
-    const std::filesystem::path path = folder.path() / name;
-    if (!writeFile(path, bytes).ok()) {
-        require(false, "the temporary folder can be written");
-    }
-    // Large images are slow to decode, and smaller ones find the same errors.
+    static ScratchFile file(folder.path() / name);
+    const std::filesystem::path& path = file.hold(bytes);
+    // Large images are slow to decode and show nothing that smaller ones do not.
     const ImportOptions options{.decodeImages = true, .maxImageSize = 1024};
-    const Result<Scene> scene = importScene(path, options);
+    Result<Scene> scene = importScene(path, options);
     if (!scene) {
         checkError(scene.error(), path);
         return;
     }
     checkScene(*scene);
-    checkMotion(*scene);
-    const SceneList scenes(std::span(&*scene, 1));
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
-        checkPlan(scenes, merge);
+    {
+        const SceneList scenes(std::span(&*scene, 1));
+        for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
+            checkPlan(scenes, merge);
+        }
     }
+    checkMotion(std::move(*scene));
 }
 
 }  // namespace glint::fuzz

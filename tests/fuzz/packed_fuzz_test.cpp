@@ -1,5 +1,6 @@
 // Damages compressed geometry and images, so that decoders see bytes that their encoders never wrote.
 #include "fuzz/mutations.h"
+#include "support/models.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMutationsPerScene = 1500;
 constexpr int kMutationsPerModel = 150;
-const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models" / "features";
+const fs::path kModels = modelsFolder() / "features";
 
 GltfBuilder widePngScene() {
     GltfBuilder builder;
@@ -93,7 +94,7 @@ TEST(PackedFuzz, EveryTruncationOfPackedDataReturns) {
 // The file with the compressed data is damaged; the model's other files are copied unchanged.
 TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
     if (!fs::exists(kModels)) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     const std::vector<std::array<const char*, 3>> models{
         {"Avocado-draco", "Avocado.gltf", "Avocado.bin"},

@@ -1,7 +1,7 @@
-// Fuzzes a profile of counted hits.
-#include "base/files.h"
+// A profile of counted hits.
 #include "cli/profile.h"
 #include "fuzz/fuzz_target.h"
+#include "fuzz/scratch_file.h"
 #include "support/temporary_folder.h"
 
 #include <string>
@@ -10,9 +10,8 @@ namespace {
 
 glint::Result<glint::Profile> read(std::span<const std::uint8_t> bytes) {
     static const glint::test::TemporaryFolder folder;
-    const std::filesystem::path path = folder.path() / "profile.json";
-    glint::fuzz::require(glint::writeFile(path, bytes).ok(), "the temporary folder can be written");
-    return glint::readProfile(path);
+    static glint::fuzz::ScratchFile file(folder.path() / "profile.json");
+    return glint::readProfile(file.hold(bytes));
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // Compares the fitted albedos with a quadrature that shares no code with the shaders or with the script that
 // fits them.
 #include "shaders_double.h"
+#include "support/models.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numbers>
@@ -177,9 +179,11 @@ TEST(GgxAlbedo, TellsTooMuchRatherThanTooLittle) {
 }
 
 TEST(GgxAlbedo, AgreesWithTheTable) {
-    std::ifstream table(GLINT_SOURCE_DIR "/../shared/reference/ggx_directional_albedo.csv");
+    const std::filesystem::path path =
+        glint::test::modelsFolder().parent_path() / "reference/ggx_directional_albedo.csv";
+    std::ifstream table(path);
     if (!table) {
-        GTEST_SKIP() << "no table of reference values beside the repository";
+        GTEST_SKIP() << glint::test::noModels(path);
     }
     // The columns are roughness, alpha, then E_mu<cosine> each, then the mean.
     std::string line;

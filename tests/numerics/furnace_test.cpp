@@ -1,11 +1,13 @@
 // Tests energy and reciprocity of the BSDF in double precision, against analytic values and a quadrature that
 // shares no code with the shaders.
 #include "materials.h"
+#include "support/models.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -57,9 +59,11 @@ TEST(Ggx, SingleScatterAlbedoHasTheAnalyticValueAtAlphaOne) {
 }
 
 TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
-    std::ifstream table(GLINT_SOURCE_DIR "/../shared/reference/ggx_directional_albedo.csv");
+    const std::filesystem::path path =
+        test::modelsFolder().parent_path() / "reference/ggx_directional_albedo.csv";
+    std::ifstream table(path);
     if (!table) {
-        GTEST_SKIP() << "no table of reference values beside the repository";
+        GTEST_SKIP() << test::noModels(path);
     }
     // The columns are roughness, alpha, then E_mu<cosine> each, then the mean.
     std::string header;

@@ -1,6 +1,7 @@
 // Every strategy gives the same linear image under every merge policy, on every available scene.
 #include "gltf/import.h"
 #include "render/harness.h"
+#include "support/models.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ protected:
     std::optional<Scene> load() {
         const fs::path path = GetParam();
         if (!fs::exists(path)) {
-            skip("no " + path.filename().string() + " beside the repository");
+            skip(test::noModels(path));
             return std::nullopt;
         }
         ImportOptions options;
@@ -98,7 +99,7 @@ TEST_P(StrategiesAgreeTested, WithAlphaMasks) {
 
 std::vector<std::string> scenePaths() {
     std::vector<std::string> paths{GLINT_GALLERY_SCENE};
-    const std::string models = GLINT_SOURCE_DIR "/../shared/models/";
+    const fs::path models = test::modelsFolder();
     for (const char* name : {"features/AlphaBlendModeTest/AlphaBlendModeTest.gltf",
                              "features/AnisotropyBarnLamp-ktx2/AnisotropyBarnLamp.gltf",
                              "features/AnisotropyStrengthTest/AnisotropyStrengthTest.gltf",
@@ -127,14 +128,14 @@ std::vector<std::string> scenePaths() {
                              "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb",
                              "large/ReciprocatingSaw/ReciprocatingSaw.glb",
                              "large/VC/VC.glb"}) {
-        paths.push_back(models + name);
+        paths.push_back((models / name).string());
     }
     return paths;
 }
 
 std::vector<std::string> maskedPaths() {
     return {GLINT_GALLERY_SCENE,
-            GLINT_SOURCE_DIR "/../shared/models/features/AlphaBlendModeTest/AlphaBlendModeTest.gltf"};
+            (test::modelsFolder() / "features/AlphaBlendModeTest/AlphaBlendModeTest.gltf").string()};
 }
 
 std::string testName(const ::testing::TestParamInfo<std::string>& path) {

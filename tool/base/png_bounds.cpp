@@ -19,19 +19,30 @@ std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t widt
                " pixels, but has only " + std::to_string(bytes.size()) + " bytes";
     }
     constexpr std::size_t kSignatureBytes = 8;
-    constexpr std::size_t kFrameBytes = 12;  // length, type, checksum
-    for (std::size_t at = kSignatureBytes; at + kFrameBytes <= bytes.size();) {
-        if (std::string_view(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4) == "IEND") {
-            break;
-        }
+    constexpr std::size_t kHeaderBytes = 8;  // length and type; a checksum follows the data
+    constexpr std::size_t kChecksumBytes = 4;
+    bool hasData = false;
+    for (std::size_t at = kSignatureBytes; at + kHeaderBytes <= bytes.size();) {
         std::size_t length = 0;
         for (std::size_t i = 0; i < 4; ++i) {
             length = length << 8U | bytes[at + i];
         }
-        if (length > bytes.size() - at - kFrameBytes) {
+        const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4);
+        if (type == "IEND") {
+            break;
+        }
+        if (type == "IDAT") {
+            // stb_image would copy it to a null pointer. PNG allows it, but no encoder begins with it.
+            if (length == 0 && !hasData) {
+                return "its first chunk of data is empty";
+            }
+            hasData = true;
+        }
+        at += kHeaderBytes;
+        if (length + kChecksumBytes > bytes.size() - at) {
             return "a chunk of " + std::to_string(length) + " bytes goes beyond its end";
         }
-        at += kFrameBytes + length;
+        at += length + kChecksumBytes;
     }
     return {};
 }

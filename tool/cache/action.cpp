@@ -32,12 +32,17 @@ void pack(Packer& packer, const std::vector<FileState>& files) {
     }
 }
 
+// Texts begin with their length, which is a number. What is unpacked takes several times as much memory.
+constexpr std::size_t kNumberBytes = sizeof(std::uint64_t);
+constexpr std::size_t kFileBytes = 4 * kNumberBytes;
+constexpr std::size_t kDiagnosticBytes = 5 * kNumberBytes;
+
 std::string textOf(Unpacker& unpacker) {
     return std::string(unpacker.text().value_or(""));
 }
 
 std::vector<FileState> unpackFiles(Unpacker& unpacker) {
-    std::vector<FileState> files(unpacker.count().value_or(0));
+    std::vector<FileState> files(unpacker.count(kFileBytes).value_or(0));
     for (FileState& file : files) {
         file.path = textOf(unpacker);
         file.bytes = unpacker.number().value_or(0);
@@ -88,7 +93,7 @@ std::optional<ActionRecord> unpackAction(std::string_view bytes) {
     ActionRecord record;
     record.inputs = unpackFiles(unpacker);
     record.outputs = unpackFiles(unpacker);
-    record.diagnostics.resize(unpacker.count().value_or(0));
+    record.diagnostics.resize(unpacker.count(kDiagnosticBytes).value_or(0));
     for (Diagnostic& diagnostic : record.diagnostics) {
         const std::uint64_t severity = unpacker.number().value_or(0);
         diagnostic.severity = severity == 0 ? Severity::Note : Severity::Warning;

@@ -28,14 +28,14 @@ std::optional<std::uint64_t> Unpacker::number() {
     return number;
 }
 
-std::optional<std::uint64_t> Unpacker::count() {
+std::optional<std::uint64_t> Unpacker::count(std::size_t leastBytes) {
     const std::optional<std::uint64_t> value = number();
-    failed_ = failed_ || *value > rest_.size();
+    failed_ = failed_ || *value > rest_.size() / leastBytes;
     return failed_ ? std::nullopt : value;
 }
 
 std::optional<std::string_view> Unpacker::text() {
-    const std::optional<std::uint64_t> size = count();
+    const std::optional<std::uint64_t> size = count(1);
     if (!size) {
         return std::nullopt;
     }

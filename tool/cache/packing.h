@@ -1,6 +1,7 @@
 // Packs numbers and texts into one string of bytes, and unpacks them with every length checked.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,10 +27,10 @@ public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     std::optional<std::uint64_t> number();
-    // Reads a count of things that take at least one byte each, so it can't exceed the number of remaining
-    // bytes.
-    std::optional<std::uint64_t> count();
-    // The view is valid as long as the bytes are.
+    // A number of things that take at least `leastBytes` each, so that what is left of the bytes can hold
+    // them.
+    std::optional<std::uint64_t> count(std::size_t leastBytes);
+    // Valid as long as the bytes.
     std::optional<std::string_view> text();
     bool atEnd() const {
         return !failed_ && rest_.empty();

@@ -62,7 +62,8 @@ std::string pack(const CompileSummary& summary) {
 std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson) {
     Unpacker unpacker(bytes);
     CompileSummary summary;
-    summary.fields.resize(unpacker.count().value_or(0));
+    // A field is two texts, each with its length.
+    summary.fields.resize(unpacker.count(2 * sizeof(std::uint64_t)).value_or(0));
     for (std::vector<std::string>& field : summary.fields) {
         field = {std::string(unpacker.text().value_or("")), std::string(unpacker.text().value_or(""))};
     }

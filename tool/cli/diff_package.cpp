@@ -1,6 +1,7 @@
 #include "cli/diff_package.h"
 
 #include "base/files.h"
+#include "base/json_depth.h"
 #include "cli/report.h"
 #include "cli/table.h"
 
@@ -104,6 +105,13 @@ Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
     if (!bytes) {
         return bytes.error();
     }
+    const auto unreadable = [&](const std::string& why) {
+        return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
+                         "compile the package again");
+    };
+    if (nestsTooDeep(*bytes)) {
+        return unreadable("nests too deep");
+    }
     try {
         const Json manifest = Json::parse(bytes->begin(), bytes->end());
         DiffPackage package;
@@ -113,9 +121,7 @@ Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
         readTotals(manifest, package);
         return package;
     } catch (const std::exception& error) {
-        return makeError("manifest-format", path.string(),
-                         std::string("is no manifest that can be read: ") + error.what(),
-                         "compile the package again");
+        return unreadable(error.what());
     }
 }
 

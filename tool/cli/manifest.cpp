@@ -1,6 +1,7 @@
 #include "cli/manifest.h"
 
 #include "base/files.h"
+#include "base/json_depth.h"
 
 #include <glint/package_format.h>
 
@@ -15,6 +16,13 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
     const Result<Bytes> bytes = readFile(path);
     if (!bytes) {
         return bytes.error();
+    }
+    const auto unreadable = [&](const std::string& why) {
+        return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
+                         "compile the package again");
+    };
+    if (nestsTooDeep(*bytes)) {
+        return unreadable("nests too deep");
     }
     try {
         const auto json = nlohmann::json::parse(bytes->begin(), bytes->end());
@@ -40,9 +48,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         }
         return manifest;
     } catch (const std::exception& error) {
-        return makeError("manifest-format", path.string(),
-                         std::string("is no manifest that can be read: ") + error.what(),
-                         "compile the package again");
+        return unreadable(error.what());
     }
 }
 

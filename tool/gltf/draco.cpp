@@ -4,8 +4,9 @@
 
 #include <array>
 #include <cstring>
-#include <draco/compression/decode.h>
-#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/compression/config/decoder_options.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
 #include <draco/metadata/metadata_decoder.h>
@@ -21,10 +22,15 @@ constexpr const char* kExport = "export the scene again, or without Draco compre
 // Regular connectivity with values that are predicted without a residue comes near a hundredth of a bit a
 // face; nothing sensible comes near this.
 constexpr std::uint64_t kMaxFacesPerByte = 1ULL << 11;
+// What attributes may take for a byte of the file: 64 bytes for each of half as many points.
+constexpr std::uint64_t kMaxAttributeRatio = 1ULL << 16;
 
 struct Claim {
     std::uint64_t faces = 0;
     std::uint64_t points = 0;  // at least
+    // Sets of attributes that have seams of their own, each with a table of all corners.
+    std::uint64_t seamTables = 0;
+    bool isSequential = false;
 };
 
 draco::DecoderBuffer bufferOf(ByteView bytes) {
@@ -41,7 +47,7 @@ std::optional<Claim> readClaim(ByteView bytes) {
     draco::DracoHeader header{};
     if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok() ||
         header.encoder_type != draco::TRIANGULAR_MESH || header.version_major != 2 ||
-        header.version_minor != 2) {
+        header.version_minor != 2 || header.encoder_method > draco::MESH_EDGEBREAKER_ENCODING) {
         return std::nullopt;
     }
     buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
@@ -54,29 +60,89 @@ std::optional<Claim> readClaim(ByteView bytes) {
     std::uint32_t first = 0;
     std::uint32_t second = 0;
     std::uint8_t traversal = 0;
+    std::uint8_t seamTables = 0;
     const bool isSequential = header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING;
     if ((!isSequential && !buffer.Decode(&traversal)) || !draco::DecodeVarint(&first, &buffer) ||
-        !draco::DecodeVarint(&second, &buffer)) {
+        !draco::DecodeVarint(&second, &buffer) || (!isSequential && !buffer.Decode(&seamTables))) {
         return std::nullopt;
     }
-    return isSequential ? Claim{first, second} : Claim{second, first};
+    return isSequential ? Claim{first, second, 0, true} : Claim{second, first, seamTables, false};
 }
 
-Status checkClaim(Document& document, ByteView bytes, const std::string& pointer) {
-    const std::optional<Claim> claim = readClaim(bytes);
-    if (!claim) {
+// Room that the decoder makes for attributes of a mesh of `packed` bytes before it reads their values.
+Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t packed,
+                        const std::string& pointer) {
+    if (needed / kMaxAttributeRatio > packed) {
         return document.error(
-            "draco-decode", pointer,
-            "its buffer view holds no Draco mesh of bitstream version 2.2, which glTF asks for", kExport);
+            "draco-size", pointer,
+            fmt::format("its {} bytes say they hold {} bytes of attributes", packed, needed), kExport);
     }
+    if (!document.chargeUnpackedBytes(needed)) {
+        return document.error("draco-size", pointer, "the scene's compressed meshes unpack to too much",
+                              "split the scene, or raise ImportOptions::maxFileBytes");
+    }
+    return okStatus();
+}
+
+Status checkClaim(Document& document, const Claim& claim, std::size_t packed, const std::string& pointer) {
     // Each point is a corner of a face.
-    if (claim->faces / kMaxFacesPerByte > bytes.size() || claim->points > 3 * claim->faces) {
+    if (claim.faces / kMaxFacesPerByte > packed || claim.points > 3 * claim.faces) {
         return document.error("draco-size", pointer,
-                              fmt::format("its {} bytes say they hold {} triangles and {} points",
-                                          bytes.size(), claim->faces, claim->points),
+                              fmt::format("its {} bytes say they hold {} triangles and {} points", packed,
+                                          claim.faces, claim.points),
                               kExport);
     }
-    return document.chargeVertices(3 * claim->faces, pointer);
+    // A table has a number for each corner.
+    const std::uint64_t tables = claim.seamTables * claim.faces * 3 * sizeof(std::uint32_t);
+    if (Status status = chargeAttributes(document, tables, packed, pointer); !status) {
+        return status;
+    }
+    return document.chargeVertices(3 * claim.faces, pointer);
+}
+
+// One of the library's two decoders. Between the descriptions of the attributes and their values it looks at
+// how much memory the values take: the number and the size of the attributes are bounded by nothing else.
+template <typename Decoder>
+class BoundedDecoder : public Decoder {
+public:
+    BoundedDecoder(Document& document, std::size_t packed, const std::string& pointer)
+        : document_(document), packed_(packed), pointer_(pointer) {}
+
+    const Status& status() const {
+        return status_;
+    }
+
+protected:
+    bool DecodeAllAttributes() override {
+        const draco::PointCloud& mesh = *Decoder::point_cloud();
+        std::uint64_t bytesOfPoint = 0;
+        for (std::int32_t i = 0; i < mesh.num_attributes(); ++i) {
+            const draco::PointAttribute& attribute = *mesh.attribute(i);
+            bytesOfPoint += std::uint64_t{attribute.num_components()} *
+                            static_cast<std::uint64_t>(draco::DataTypeLength(attribute.data_type()));
+        }
+        status_ = chargeAttributes(document_, bytesOfPoint * mesh.num_points(), packed_, pointer_);
+        return status_.ok() && Decoder::DecodeAllAttributes();
+    }
+
+private:
+    Document& document_;
+    std::size_t packed_;
+    const std::string& pointer_;
+    Status status_ = okStatus();
+};
+
+// Fills `mesh`; `error` is what the library says where it fails.
+template <typename Decoder>
+Status decodeMesh(Document& document, ByteView bytes, const std::string& pointer, draco::Mesh& mesh,
+                  std::string& error) {
+    draco::DecoderBuffer buffer = bufferOf(bytes);
+    BoundedDecoder<Decoder> decoder(document, bytes.size(), pointer);
+    const draco::Status decoded = decoder.Decode(draco::DecoderOptions(), &buffer, &mesh);
+    if (decoder.status().ok() && !decoded.ok()) {
+        error = decoded.error_msg_string();
+    }
+    return decoder.status();
 }
 
 // Whether the attribute has a type that glTF gives to vertices. Others are damage; of a boolean, bytes above
@@ -133,19 +199,27 @@ Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, c
     if (!bytes) {
         return bytes.error();
     }
-    if (Status status = checkClaim(document, *bytes, pointer); !status) {
+    const std::optional<Claim> claim = readClaim(*bytes);
+    if (!claim) {
+        return document.error(
+            "draco-decode", pointer,
+            "its buffer view holds no Draco mesh of bitstream version 2.2, which glTF asks for", kExport);
+    }
+    if (Status status = checkClaim(document, *claim, bytes->size(), pointer); !status) {
         return status.error();
     }
-    draco::DecoderBuffer buffer = bufferOf(*bytes);
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) {
-        return document.error("draco-decode", pointer,
-                              fmt::format("/bufferViews/{} can't be decoded: Draco says \"{}\"", view,
-                                          decoded.status().error_msg_string()),
-                              kExport);
+    DracoMesh mesh(std::make_unique<draco::Mesh>());
+    std::string problem;
+    const auto decodeFrom = claim->isSequential ? decodeMesh<draco::MeshSequentialDecoder>
+                                                : decodeMesh<draco::MeshEdgebreakerDecoder>;
+    if (Status status = decodeFrom(document, *bytes, pointer, *mesh.mesh_, problem); !status) {
+        return status.error();
     }
-    DracoMesh mesh(std::move(decoded).value());
+    if (!problem.empty()) {
+        return document.error(
+            "draco-decode", pointer,
+            fmt::format("/bufferViews/{} can't be decoded: Draco says \"{}\"", view, problem), kExport);
+    }
     const std::uint32_t points = mesh.mesh_->num_points();
     mesh.indices_.reserve(std::size_t{3} * mesh.mesh_->num_faces());
     for (std::uint32_t i = 0; i < mesh.mesh_->num_faces(); ++i) {

@@ -45,7 +45,9 @@ Status fillScene(Document& document, Scene& scene) {
     if (const Result<bool> imported = importMeshes(document, placed, scene); !imported) {
         return imported.error();
     }
-    importMorphWeights(document, scene);
+    if (Status status = importMorphWeights(document, scene); !status) {
+        return status;
+    }
     if (Status status = importSkins(document, scene); !status) {
         return status;
     }

@@ -12,6 +12,8 @@ constexpr std::uint8_t kTables = 0xC4;
 constexpr std::uint8_t kScan = 0xDA;
 constexpr std::uint8_t kEnd = 0xD9;
 constexpr std::size_t kLengthBytes = 2;
+// Encoders make about ten, and those that try for the smallest file make less than a hundred.
+constexpr int kMaxScans = 256;
 
 // `rest` begins with the length of a segment; 0 where there is none.
 std::size_t segmentLength(std::span<const std::uint8_t> rest) {
@@ -42,10 +44,10 @@ bool isSoundSegment(std::span<const std::uint8_t> rest) {
 
 }  // namespace
 
-bool hasSoundTables(std::span<const std::uint8_t> bytes) {
+std::string findJpegExcess(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t kStartBytes = 2;
-    // Behind the first scan any marker counts: where one scan ends is known to who decodes it only.
-    bool isBehindScan = false;
+    // Behind the first scan any marker counts: only a decoder knows where a scan ends.
+    int scans = 0;
     for (std::size_t at = kStartBytes; at + 1 < bytes.size();) {
         if (bytes[at] != kMarker || bytes[at + 1] == kMarker) {
             ++at;
@@ -57,12 +59,15 @@ bool hasSoundTables(std::span<const std::uint8_t> bytes) {
             break;
         }
         if (marker == kTables && !isSoundSegment(bytes.subspan(at))) {
-            return false;
+            return "a Huffman table is damaged";
         }
-        isBehindScan = isBehindScan || marker == kScan;
-        at += isBehindScan ? 0 : segmentLength(bytes.subspan(at));
+        scans += marker == kScan ? 1 : 0;
+        if (scans > kMaxScans) {
+            return "it has more than " + std::to_string(kMaxScans) + " scans";
+        }
+        at += scans > 0 ? 0 : segmentLength(bytes.subspan(at));
     }
-    return true;
+    return {};
 }
 
 }  // namespace glint::gltf

@@ -13,6 +13,8 @@ namespace glint::gltf {
 namespace {
 
 constexpr const char* kExport = "export the mesh again";
+// Of all nodes of a scene together: a thousand figures with a thousand targets each have a quarter of it.
+constexpr std::uint64_t kMaxWeights = 1ULL << 22;
 
 // One attribute of a target, where it has that.
 Status readDifferences(const PrimitiveSource& source, const Json& target, const std::string& pointer,
@@ -100,7 +102,7 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
     return okStatus();
 }
 
-void importMorphWeights(Document& document, Scene& scene) {
+Status importMorphWeights(Document& document, Scene& scene) {
     const Json& meshes = arrayMember(document.json(), "meshes");
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         Mesh& mesh = scene.meshes[i];
@@ -111,11 +113,20 @@ void importMorphWeights(Document& document, Scene& scene) {
             mesh.weights = readWeights(document, *weights, targets, fmt::format("/meshes/{}/weights", i));
         }
     }
+    std::uint64_t total = 0;
     for (Node& node : scene.nodes) {
         if (node.mesh < 0) {
             continue;
         }
         const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+        total += mesh.weights.size();
+        if (total > kMaxWeights) {
+            return document.error(
+                "morph-limit", fmt::format("/nodes/{}", node.source),
+                fmt::format("with its {} morph targets the nodes of the scene pass the limit of {} weights",
+                            mesh.weights.size(), kMaxWeights),
+                "leave out targets, or split the scene");
+        }
         node.restWeights = mesh.weights;
         const Json* weights =
             find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "weights");
@@ -125,6 +136,7 @@ void importMorphWeights(Document& document, Scene& scene) {
         }
         node.weights = node.restWeights;
     }
+    return okStatus();
 }
 
 }  // namespace glint::gltf

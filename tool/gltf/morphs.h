@@ -14,7 +14,8 @@ namespace glint::gltf {
 Status readTargets(const PrimitiveSource& source, Primitive& primitive);
 
 // Fills Mesh::weights and Node::weights, after nodes and meshes; warns "morph-weights" where their number is
-// not that of the mesh's targets.
-void importMorphWeights(Document& document, Scene& scene);
+// not that of the mesh's targets. Error "morph-limit": each node has weights of its own, so that a small file
+// can ask for the product of its nodes and its targets.
+Status importMorphWeights(Document& document, Scene& scene);
 
 }  // namespace glint::gltf

@@ -58,8 +58,8 @@ bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
 
 bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
     // The header comes after tables.
-    if (!hasSoundTables(bytes)) {
-        problem = "a Huffman table is damaged";
+    problem = findJpegExcess(bytes);
+    if (!problem.empty()) {
         return false;
     }
     if (!readHeader(bytes, image, problem)) {

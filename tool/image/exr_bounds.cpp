@@ -13,6 +13,9 @@ namespace {
 // The layout is described in "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
 constexpr std::size_t kHeaderStart = 8;
 constexpr std::uint32_t kMultipart = 0x1000;
+// The library has room for a whole block of pixels before it reads one. The largest block of four 32-bit
+// channels and 16384 columns has half of this, in 256 lines.
+constexpr double kMaxBlockBytes = 1ULL << 27;
 
 class Reader {
 public:
@@ -101,7 +104,67 @@ bool isPreview(std::string_view value) {
     return value.size() >= kSizeBytes && width * height == (value.size() - kSizeBytes) / 4;
 }
 
-// Returns whether the library reads the whole value and nothing beyond it.
+std::int32_t wordAt(std::string_view value, std::size_t index) {
+    std::int32_t word = 0;
+    std::memcpy(&word, value.data() + index * sizeof word, sizeof word);
+    return word;
+}
+
+// Of all channels, for a pixel. `value` passed isChannelList().
+double bytesPerPixel(std::string_view value) {
+    constexpr std::int32_t kHalf = 1;
+    constexpr std::size_t kChannelWords = 4;  // the type first
+    double bytes = 0.0;
+    Reader reader(value, 0);
+    for (std::optional<std::string_view> name = reader.text(); name && !name->empty(); name = reader.text()) {
+        bytes += wordAt(reader.rest(), 0) == kHalf ? 2.0 : 4.0;
+        reader.skip(kChannelWords * sizeof(std::uint32_t));
+    }
+    return bytes;
+}
+
+double linesOfBlock(std::string_view value) {
+    // By number of the compression, from none to DWAB.
+    constexpr std::array kLines{1.0, 1.0, 1.0, 16.0, 32.0, 16.0, 32.0, 32.0, 32.0, 256.0};
+    const auto compression = static_cast<unsigned char>(value[0]);
+    return compression < kLines.size() ? kLines[compression] : kLines.back();
+}
+
+// How much one block of pixels takes, by the attributes of a header. Where an attribute stands twice, the
+// larger value counts.
+class BlockSize {
+public:
+    // `value` has the size that its type asks for.
+    void add(std::string_view name, std::string_view type, std::string_view value) {
+        if (name == "dataWindow" && type == "box2i") {
+            raise(width_, double{1} + wordAt(value, 2) - wordAt(value, 0));
+        } else if (name == "channels" && type == "chlist") {
+            raise(pixelBytes_, bytesPerPixel(value));
+        } else if (name == "compression" && type == "compression") {
+            raise(lines_, linesOfBlock(value));
+        } else if (name == "tiles" && type == "tiledesc") {
+            const auto side = [&](std::size_t index) {
+                return static_cast<double>(static_cast<std::uint32_t>(wordAt(value, index)));
+            };
+            raise(tilePixels_, side(0) * side(1));
+        }
+    }
+    double bytes() const {
+        return pixelBytes_ * std::max(width_ * lines_, tilePixels_);
+    }
+
+private:
+    static void raise(double& largest, double value) {
+        largest = std::max(largest, value);
+    }
+
+    double width_ = 0.0;
+    double lines_ = 0.0;
+    double pixelBytes_ = 0.0;
+    double tilePixels_ = 0.0;
+};
+
+// Whether the library reads all of the value, and no more.
 bool fits(std::string_view type, std::string_view value) {
     const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
     if (fixed != kFixedTypes.end()) {
@@ -121,6 +184,7 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
     const std::optional<std::uint32_t> version = Reader(text, sizeof(std::uint32_t)).word();
     Reader reader(text, kHeaderStart);
     bool isEmpty = true;
+    BlockSize block;
     while (version) {
         const std::optional<std::string_view> name = reader.text();
         if (!name) {
@@ -132,6 +196,7 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
                 break;
             }
             isEmpty = true;
+            block = {};
             continue;
         }
         isEmpty = false;
@@ -140,6 +205,10 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
         const std::string_view rest = reader.rest();
         if (!size || !reader.skip(*size) || !fits(*type, rest.substr(0, *size))) {
             return "the size of its attribute " + std::string(*name) + " is wrong";
+        }
+        block.add(*name, *type, rest.substr(0, *size));
+        if (block.bytes() > kMaxBlockBytes) {
+            return "one block of its pixels would take more than 128 MiB";
         }
     }
     return {};

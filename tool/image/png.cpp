@@ -45,16 +45,21 @@ void append(void* target, void* data, int size) {
     bytes->insert(bytes->end(), begin, begin + size);
 }
 
-// Converts samples of T with four channels. They have 256 or 65536 levels, so a table can hold the transfer
-// function.
+// Linear values of all levels of T.
+template <typename T>
+std::vector<float> makeLinearLevels() {
+    std::vector<float> linear(std::size_t{std::numeric_limits<T>::max()} + 1);
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+        linear[i] = srgbToLinear(static_cast<float>(i) / static_cast<float>(linear.size() - 1));
+    }
+    return linear;
+}
+
+// Samples of T with four channels; 256 or 65536 levels, so that a table does for the transfer function.
 template <typename T>
 void linearize(const T* samples, LinearImage& image) {
-    constexpr std::size_t kLevels = std::size_t{std::numeric_limits<T>::max()} + 1;
-    constexpr auto kLargest = static_cast<float>(kLevels - 1);
-    std::vector<float> linear(kLevels);
-    for (std::size_t i = 0; i < kLevels; ++i) {
-        linear[i] = srgbToLinear(static_cast<float>(i) / kLargest);
-    }
+    static const std::vector<float> linear = makeLinearLevels<T>();
+    constexpr auto kLargest = static_cast<float>(std::numeric_limits<T>::max());
     for (std::array<float, 4>& pixel : image.pixels) {
         pixel = {linear[samples[0]], linear[samples[1]], linear[samples[2]],
                  static_cast<float>(samples[3]) / kLargest};

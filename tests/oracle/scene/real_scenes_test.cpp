@@ -6,6 +6,7 @@
 #include "oracle/scene/report.h"
 #include "oracle/scene/texels.h"
 #include "render/harness.h"
+#include "support/models.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -41,7 +42,7 @@ struct RealScene {
 };
 
 fs::path model(const std::string& name) {
-    return fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models" / name;
+    return test::modelsFolder() / name;
 }
 
 class Device {
@@ -115,7 +116,7 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
     ASSERT_EQ(kFiltersInFloats, 0);
     const RealScene& subject = GetParam();
     if (!fs::exists(subject.path)) {
-        GTEST_SKIP() << "no " << subject.path.filename() << " beside the repository";
+        GTEST_SKIP() << test::noModels(subject.path);
     }
     const Result<OracleInput> input = readOracleInput({subject.path, "", ""}, kWidth, kHeight);
     ASSERT_TRUE(input.ok()) << toString(input.error());

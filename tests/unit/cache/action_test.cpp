@@ -80,9 +80,15 @@ TEST(ActionRecord, AnInputThatALinkNowLeadsToIsAChange) {
 
 TEST(Unpacker, RefusesCountsAboveItsBytes) {
     const std::string bytes = Packer().add(std::uint64_t{1} << 60).take();
-    EXPECT_FALSE(Unpacker(bytes).count());
+    EXPECT_FALSE(Unpacker(bytes).count(1));
     EXPECT_FALSE(Unpacker(bytes).text());
     EXPECT_TRUE(Unpacker(bytes).number());
+}
+
+TEST(Unpacker, RefusesCountsOfMoreThanItsBytesHold) {
+    const std::string bytes = Packer().add(3).add(0).add(0).add(0).take();
+    EXPECT_EQ(Unpacker(bytes).count(8), 3U);
+    EXPECT_FALSE(Unpacker(bytes).count(9));
 }
 
 TEST(ProgramIdentity, IsThatOfEveryObject) {

@@ -1,6 +1,7 @@
 #include "emit/compile.h"
 #include "emit/modules.h"
 #include "gltf/import.h"
+#include "support/models.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
@@ -217,11 +218,10 @@ TEST(Manifest, TakesNamesThatAreNotUtf8) {
 
 // Imports and compiles scenes made by others.
 TEST(CompilePackage, CompilesScenesByOthers) {
-    const std::filesystem::path models =
-        std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/models/features";
-    const std::filesystem::path path = models / "TextureTransformMultiTest/TextureTransformMultiTest.glb";
+    const std::filesystem::path path =
+        test::modelsFolder() / "features/TextureTransformMultiTest/TextureTransformMultiTest.glb";
     if (!std::filesystem::exists(path)) {
-        GTEST_SKIP() << path << " is not there";
+        GTEST_SKIP() << test::noModels(path);
     }
     const auto scene = importScene(path);
     ASSERT_TRUE(scene) << toString(scene.error());

@@ -266,6 +266,23 @@ TEST(GltfImages, ExplainsWhatItCannotDecode) {
               "image-decode");
 }
 
+TEST(GltfImages, RefusesJpegsOfManyScans) {
+    // Each scan would cost a pass over the image.
+    const auto messageOf = [](std::size_t scans) {
+        Bytes bytes{0xFF, 0xD8};
+        for (std::size_t i = 0; i < scans; ++i) {
+            bytes.insert(bytes.end(), {0xFF, 0xDA});
+        }
+        GltfBuilder builder = texturedMaterial();
+        builder.root["images"][0] = {{"uri", "data:image/jpeg;base64," + base64(bytes)}};
+        const Result<Scene> scene = import(builder, {.decodeImages = true});
+        return scene ? "imported" : scene.error().id + ": " + scene.error().message;
+    };
+    EXPECT_TRUE(messageOf(257).starts_with("image-decode: ")) << messageOf(257);
+    EXPECT_NE(messageOf(257).find("more than 256 scans"), std::string::npos) << messageOf(257);
+    EXPECT_EQ(messageOf(256).find("scans"), std::string::npos) << messageOf(256);
+}
+
 TEST(GltfImages, DecodesFromBufferViews) {
     GltfBuilder builder = texturedMaterial();
     const std::string uri = pngUri(kPng8);

@@ -1,5 +1,6 @@
 // Scenes by others: each imports, or ends in a diagnostic that says why.
-#include "gltf/basisu.h"
+#include "support/models.h"
+
 #include "gltf/import.h"
 #include "plan/plan.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kModels = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "models";
+const fs::path kModels = modelsFolder();
 
 // Returns every .gltf and .glb below a folder, sorted.
 std::vector<fs::path> findModels(const fs::path& folder) {
@@ -82,7 +83,7 @@ TEST(GltfModels, AllImport) {
     const std::vector<fs::path> large = findModels(kModels / "large");
     models.insert(models.end(), large.begin(), large.end());
     if (models.empty()) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     for (const fs::path& path : models) {
         const Result<Scene> scene = importScene(path, {.decodeImages = true});
@@ -134,7 +135,7 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
 TEST(GltfModels, EveryMaterialExtensionIsShaded) {
     const std::vector<fs::path> models = findModels(kModels / "features");
     if (models.empty()) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     FeatureMask seen = 0;
     for (const fs::path& path : models) {
@@ -158,7 +159,7 @@ TEST(GltfModels, EveryMaterialExtensionIsShaded) {
 TEST(GltfModels, InvalidFilesAreExplained) {
     const std::vector<fs::path> models = findModels(kModels / "invalid");
     if (models.empty()) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     for (const fs::path& path : models) {
         for (const bool decodeImages : {false, true}) {
@@ -178,7 +179,7 @@ TEST(GltfModels, InvalidFilesAreExplained) {
 TEST(GltfModels, HaveTheirKnownContent) {
     const fs::path features = kModels / "features";
     if (!fs::exists(features)) {
-        GTEST_SKIP() << "no models in " << kModels;
+        GTEST_SKIP() << noModels(kModels);
     }
     const Result<Scene> multi =
         importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb");

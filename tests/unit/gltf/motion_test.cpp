@@ -319,5 +319,20 @@ TEST(GltfMorphs, AreChecked) {
     EXPECT_EQ(countWarnings(mustImport(builder), "morph-attribute"), 1U);
 }
 
+// Each node has weights of its own: a file of 60 KB could ask for gigabytes.
+TEST(GltfMorph, RefusesTheProductOfManyNodesAndManyTargets) {
+    constexpr std::size_t kTargets = 4096;
+    const auto sceneOf = [](std::size_t nodes) {
+        GltfBuilder builder;
+        builder.addTriangle();
+        builder.root["meshes"][0]["primitives"][0]["targets"] = Json(kTargets, Json::object());
+        builder.root["nodes"] = Json(nodes, {{"mesh", 0}});
+        builder.root["scenes"] = Json::array();
+        return builder;
+    };
+    EXPECT_EQ(errorId(sceneOf(1025)), "morph-limit");
+    EXPECT_EQ(errorId(sceneOf(2)), "imported");
+}
+
 }  // namespace
 }  // namespace glint::test

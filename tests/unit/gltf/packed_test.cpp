@@ -154,6 +154,32 @@ TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
                 "/meshes/0/primitives/0/attributes/NORMAL", "", {.maxVertices = 96 + 30});
 }
 
+TEST(GltfDraco, RefusesAttributesThatTakeTooMuch) {
+    constexpr std::uint8_t kFloat64 = 10;
+    const auto refuses = [](const Bytes& bytes) {
+        GltfBuilder builder = dracoScene(DracoMethod::Sequential);
+        dracoOf(builder)["bufferView"] = builder.addView(bytes.data(), bytes.size());
+        expectError(builder, "draco-size", kDracoPointer, "bytes of attributes");
+    };
+    // 200 triangles and 600 points, as varints, with plain indices of 16 bits; then 200 attributes of 255
+    // components each, which would take 245 MB.
+    Bytes sequential{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0, 0xC8, 1, 0xD8, 4, 1};
+    for (int corner = 0; corner < 600; ++corner) {
+        sequential.push_back(static_cast<std::uint8_t>(corner));
+        sequential.push_back(static_cast<std::uint8_t>(corner >> 8));
+    }
+    sequential.insert(sequential.end(), {1, 0xC8, 1});
+    for (int attribute = 0; attribute < 200; ++attribute) {
+        sequential.insert(sequential.end(), {4, kFloat64, 255, 0, 1});
+    }
+    sequential.resize(sequential.size() + 200);
+    refuses(sequential);
+    // Edgebreaker: 100 vertices, 16000 triangles, and 255 sets of attributes with seams of their own.
+    Bytes edgebreaker{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0, 0, 100, 0x80, 0x7D, 255};
+    edgebreaker.resize(200);
+    refuses(edgebreaker);
+}
+
 TEST(GltfMeshopt, RoundTrips) {
     const GltfBuilder builder = meshoptScene();
     for (const std::string& text : {builder.text(), builder.glb()}) {

@@ -1,11 +1,15 @@
 #include "image/image_file.h"
 
 #include "base/files.h"
+#include "base/png_bounds.h"
+#include "base/staged_file.h"
+#include "image/exr_bounds.h"
 #include "image/tone.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -137,6 +141,61 @@ TEST_F(ImageFile, SurvivesTruncation) {
         }
         EXPECT_GT(refused, 10) << name;
     }
+}
+
+std::string little(std::uint32_t word) {
+    std::string bytes(sizeof word, 0);
+    std::memcpy(bytes.data(), &word, sizeof word);
+    return bytes;
+}
+
+TEST(PngBounds, ChunksLieInTheFile) {
+    const auto excessOf = [](const std::string& chunks) {
+        const std::string header("\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\0\2\0\0\0\2\x08\6\0\0\0\0\0\0\0", 33);
+        return findPngExcess(asBytes(header + chunks), 2, 2);
+    };
+    // The header of a chunk of 651 MB, with which the file ends, and a part of its data.
+    EXPECT_NE(excessOf("\x26\xD0\x04\x49IDAT").find("651166793 bytes"), std::string::npos);
+    EXPECT_NE(excessOf("\x26\xD0\x04\x49IDATx").find("651166793 bytes"), std::string::npos);
+    EXPECT_NE(excessOf(std::string("\0\0\0\0IDAT\0\0\0\0", 12)), "");
+    EXPECT_EQ(excessOf(std::string("\0\0\0\1IDATx\0\0\0\0\0\0\0\0IDAT\0\0\0\0", 25)), "");
+    // Its checksum is a part of a chunk, but that of the last chunk is never read.
+    EXPECT_NE(excessOf(std::string("\0\0\0\1IDATx\0\0\0", 12)), "");
+    EXPECT_EQ(excessOf(std::string("\0\0\0\1IDATx\0\0\0\0\0\0\0\0IEND", 21)), "");
+}
+
+TEST(ExrBounds, BlocksOfPixelsAreSmall) {
+    const auto attribute = [](const std::string& name, const std::string& type, const std::string& value) {
+        return name + '\0' + type + '\0' + little(static_cast<std::uint32_t>(value.size())) + value;
+    };
+    const auto channels = [&](int count, std::uint32_t type) {
+        std::string list;
+        for (int i = 0; i < count; ++i) {
+            list += "c" + std::to_string(i) + '\0' + little(type) + little(0) + little(1) + little(1);
+        }
+        return attribute("channels", "chlist", list + '\0');
+    };
+    const auto excessOf = [&](const std::string& attributes) {
+        return findExrExcess(asBytes(little(20000630) + little(2) + attributes + '\0'));
+    };
+    const auto tiles = [&](std::uint32_t width, std::uint32_t height) {
+        return attribute("tiles", "tiledesc", little(width) + little(height) + '\0');
+    };
+    const auto window = [&](std::uint32_t width) {
+        return attribute("dataWindow", "box2i", little(0) + little(0) + little(width - 1) + little(0));
+    };
+    const auto compression = [&](char number) {
+        return attribute("compression", "compression", std::string(1, number));
+    };
+    constexpr std::uint32_t kHalf = 1;
+    constexpr std::uint32_t kFloat = 2;
+    constexpr char kDwab = 9;
+    EXPECT_EQ(excessOf(channels(4, kFloat) + compression(kDwab) + window(16384)), "");
+    EXPECT_NE(excessOf(channels(9, kFloat) + compression(kDwab) + window(16384)), "");
+    EXPECT_EQ(excessOf(channels(9, kFloat) + compression(0) + window(16384)), "");
+    EXPECT_EQ(excessOf(channels(4, kHalf) + window(1) + tiles(4096, 4096)), "");
+    EXPECT_NE(excessOf(channels(5, kHalf) + window(1) + tiles(4096, 4096)), "");
+    EXPECT_NE(excessOf(tiles(0xFFFFFFFF, 0xFFFFFFFF) + channels(1, kHalf)), "");
 }
 
 TEST(ImageSize, HasLimits) {
