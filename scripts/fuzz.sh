@@ -21,7 +21,7 @@ in build/fuzz/findings; exit 1 if there is any. Needs Clang: scripts/setup.sh --
 TEXT
 }
 
-all=(lock package image lint profile manifest cache gltf_json gltf_glb)
+all=(lock package image ktx2 lint profile manifest cache gltf_json gltf_glb)
 executions=0
 seconds=
 report=false
