@@ -18,12 +18,20 @@ if(GLINT_FUZZ)
   list(APPEND glint_link_options -fsanitize=fuzzer-no-link)
 endif()
 
+# glint_compiled_alone(TARGET FILE…): sources that can't share a translation unit with others, as they define the
+# implementation of a library or include text with names of its own.
+function(glint_compiled_alone target)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # glint_configure(TARGET): sets the project's warnings and sanitizers for its own sources only.
 function(glint_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${glint_compile_options})
   target_link_options(${target} PRIVATE ${glint_link_options})
   get_target_property(type ${target} TYPE)
+  # Headers of the standard library, JSON and CLI11 take longer to read than most sources take to compile.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   if(GLINT_PRECOMPILE AND type STREQUAL "STATIC_LIBRARY")
     target_precompile_headers(${target} PRIVATE "${PROJECT_SOURCE_DIR}/cmake/precompiled.h")
   endif()

@@ -19,6 +19,8 @@
 
 namespace gallery {
 
+inline constexpr double kQuarterTurn = 1.5707963267948966;
+
 using Json = nlohmann::ordered_json;
 
 // KHR_texture_transform. It is written whenever it is present, even if it is the identity.

@@ -6,8 +6,6 @@ namespace gallery {
 
 namespace {
 
-constexpr double kQuarterTurn = 1.5707963267948966;
-
 void addCoatedMaterials(GltfWriter& writer, MaterialSet& set) {
     const int weave = writer.addTexture("carbon_normal", carbonNormal());
     // The coat is smooth over the weave. It has no normal texture of its own, so it has the mesh's normals.

@@ -14,10 +14,6 @@ namespace gallery {
 
 namespace {
 
-glm::vec4 rgb(float r, float g, float b) {
-    return {r, g, b, 1.0F};
-}
-
 float fraction(float value) {
     return value - std::floor(value);
 }

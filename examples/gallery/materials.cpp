@@ -6,8 +6,6 @@ namespace gallery {
 
 namespace {
 
-constexpr double kQuarterTurn = 1.5707963267948966;
-
 TextureTransform tiled(double u, double v) {
     return {{0.0, 0.0}, 0.0, {u, v}};
 }

@@ -14,10 +14,6 @@ namespace gallery {
 
 namespace {
 
-glm::vec4 rgb(float r, float g, float b) {
-    return {r, g, b, 1.0F};
-}
-
 // Returns 1 inside a shape and 0 outside, from its signed distance (negative inside) over an edge that is
 // `blur` wide.
 float coverage(float distance, float blur) {

@@ -13,10 +13,6 @@ namespace gallery {
 
 namespace {
 
-glm::vec4 rgb(float r, float g, float b) {
-    return {r, g, b, 1.0F};
-}
-
 // Returns 1 along thin wandering lines and 0 elsewhere.
 float veins(const glm::vec2& uv, int period, std::uint32_t seed) {
     const float wander = fractalNoise(uv, glm::ivec2(period * 2), 4, seed + 10);

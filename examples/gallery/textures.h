@@ -6,6 +6,11 @@
 
 namespace gallery {
 
+// An opaque colour.
+inline glm::vec4 rgb(float r, float g, float b) {
+    return {r, g, b, 1.0F};
+}
+
 // Surfaces (surface_textures.cpp). All of them repeat.
 Image floorColor();  // four tiles a side, chequered
 Image floorMetallicRoughness();

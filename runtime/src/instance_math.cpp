@@ -29,10 +29,6 @@ double determinant(const Rows& rows) {
     return dot(row(rows, 0), cross(row(rows, 1), row(rows, 2)));
 }
 
-gpu::vec3 toVec3(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
 }  // namespace
 
 bool isInvertible(const Rows& objectToWorld) {

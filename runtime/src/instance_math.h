@@ -12,6 +12,10 @@ namespace glint {
 // Three rows of four.
 using Rows = std::array<float, 12>;
 
+inline gpu::vec3 toVec3(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
 // Whether the linear part has an inverse that floats can hold: finite, and not flattened.
 bool isInvertible(const Rows& objectToWorld);
 

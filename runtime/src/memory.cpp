@@ -42,10 +42,6 @@ std::optional<std::uint32_t> chooseType(const VkPhysicalDeviceMemoryProperties& 
     return std::nullopt;
 }
 
-VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 }  // namespace
 
 Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,

@@ -10,6 +10,10 @@
 
 namespace glint {
 
+inline VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
 // Where a resource lives. `mapped` is null for memory that the host can't see.
 struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;

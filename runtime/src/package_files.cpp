@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 constexpr std::size_t kSpirvHeaderBytes = 20;
-constexpr const char* kRecompile = "compile the package again with `glint compile`";
-
 // A relative path of plain components: nothing that leads out of the folder by name.
 bool staysInside(const std::filesystem::path& name) {
     if (name.empty() || name.is_absolute() || name.has_root_path()) {

@@ -18,6 +18,9 @@
 
 namespace glint {
 
+// The hint of errors that only another package mends.
+inline constexpr const char* kRecompile = "compile the package again with `glint compile`";
+
 struct Package::State {
     std::vector<std::uint8_t> tables;  // the file; the spans below point into it
     package::PackageHeader header{};

@@ -21,8 +21,6 @@ std::uint64_t contentHash(package::PackageHeader header, std::span<const std::ui
 
 static_assert(std::endian::native == std::endian::little, "packages are little endian and read in place");
 
-constexpr const char* kRecompile = "compile the package again with `glint compile`";
-
 Status readHeader(Package::State& state, const std::string& where) {
     const std::vector<std::uint8_t>& bytes = state.tables;
     constexpr std::size_t kMagicBytes = sizeof(package::kMagic);

@@ -1,5 +1,6 @@
 #include "ray_pipelines.h"
 
+#include "memory.h"
 #include "upload.h"
 #include "vulkan_error.h"
 
@@ -92,10 +93,6 @@ Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source
         return status.error();
     }
     return parts;
-}
-
-VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
-    return (value + alignment - 1) / alignment * alignment;
 }
 
 // Where the records of a table are, from its start.

@@ -12,7 +12,7 @@ namespace {
 constexpr VkDeviceSize kScratchBytes = VkDeviceSize{64} << 20;
 
 // Scratch is free again, and what was built may be read.
-constexpr MemoryDependency kBuildToBuild{
+constexpr MemoryDependency kBuildToRefit{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR,
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
@@ -61,7 +61,7 @@ void RefittedBlases::record(VkCommandBuffer commands, std::span<const BuildActio
             return;
         }
         if (!isFirst) {
-            recordDependency(*context_, commands, kBuildToBuild);
+            recordDependency(*context_, commands, kBuildToRefit);
         }
         context_->vk.CmdBuildAccelerationStructuresKHR(commands, static_cast<std::uint32_t>(infos.size()),
                                                        infos.data(), ranges.data());

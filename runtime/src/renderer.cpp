@@ -1,5 +1,6 @@
 // Renderer: creation, frame constants, results.
 #include "camera.h"
+#include "instance_math.h"
 #include "readback.h"
 #include "renderer_choice.h"
 #include "renderer_state.h"
@@ -18,10 +19,6 @@ constexpr float kFarDistance = 1e18F;
 // Rays a pixel and sample to one light, or for ambient occlusion.
 constexpr std::uint32_t kMaxSurfaceSamples = 4096;
 constexpr std::uint32_t kMaxInterfaces = 64;
-
-gpu::vec3 toVec3(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
 
 Status checkEnvironment(const Renderer::State& state, const FrameOptions& frame) {
     if (state.size.environmentMap && frame.environment == nullptr) {

@@ -25,7 +25,7 @@ struct Attribute {
     std::uint32_t input;
 };
 
-std::array<Attribute, 5> attributesOf(const PrimitiveView& view) {
+std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
     return {{{"normals", view.normals.size(), kInputNormals},
              {"tangents", view.tangents.size(), kInputTangents},
              {"texCoords0", view.texCoords0.size(), kInputTexCoord0},
@@ -35,7 +35,7 @@ std::array<Attribute, 5> attributesOf(const PrimitiveView& view) {
 
 Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry& entry,
                        const std::string& where) {
-    for (const Attribute& attribute : attributesOf(view)) {
+    for (const Attribute& attribute : namedAttributes(view)) {
         if (attribute.count != 0 && attribute.count != view.positions.size()) {
             return makeError("scene-attribute", where,
                              std::string(attribute.name) + " has " + std::to_string(attribute.count) +

@@ -11,8 +11,8 @@
 namespace glint::testing {
 namespace {
 
-const std::vector<std::string> kCommands{"compile", "explain", "inspect", "diff",      "lint",
-                                         "render",  "bench",   "compare", "completion"};
+const std::vector<std::string> kCompletionCommands{"compile", "explain", "inspect", "diff",      "lint",
+                                                   "render",  "bench",   "compare", "completion"};
 
 class Completion : public CommandTest {
 protected:
@@ -65,13 +65,13 @@ std::vector<std::string> optionsOf(const std::string& help) {
 TEST_F(Completion, BashOffersCommands) {
     EXPECT_EQ(bash({"comp"}), "compile compile-module compare completion");
     EXPECT_EQ(bash({"--v"}), "--version");
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kCompletionCommands) {
         EXPECT_TRUE(std::ranges::count(words(bash({""})), command) == 1) << command;
     }
 }
 
 TEST_F(Completion, BashOffersEveryOptionOfEveryCommand) {
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kCompletionCommands) {
         const std::vector<std::string> options = optionsOf(run({command, "--help"}).out);
         EXPECT_FALSE(options.empty()) << command;
         const std::vector<std::string> offered = words(bash({command, "--"}));

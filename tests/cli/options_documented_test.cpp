@@ -31,8 +31,9 @@ protected:
     }
 };
 
-const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect", "diff",
-                                         "lint",    "render",         "bench",   "compare", "completion"};
+const std::vector<std::string> kOptionsDocumentedCommands{"compile", "compile-module", "explain", "inspect",
+                                                          "diff",    "lint",           "render",  "bench",
+                                                          "compare", "completion"};
 
 // Returns the text below each heading of the second level.
 std::map<std::string, std::string> sectionsOf(const std::string& document) {
@@ -92,7 +93,7 @@ TEST_F(DocumentedOptions, AreThoseOfTheProgram) {
     const std::map<std::string, std::string> reporting = rowsOf(sections["What is reported"]);
     ASSERT_FALSE(shared.empty());
     ASSERT_FALSE(reporting.empty());
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kOptionsDocumentedCommands) {
         ASSERT_TRUE(sections.contains("glint " + command)) << command;
         std::set<std::string> documented;
         for (const auto& [option, what] : rowsOf(sections["glint " + command])) {
@@ -123,7 +124,8 @@ TEST_F(DocumentedOptions, CommandsAreThoseOfTheProgram) {
             commands.insert(line.substr(2, line.find(' ', 2) - 2));
         }
     }
-    EXPECT_EQ(commands, std::set<std::string>(kCommands.begin(), kCommands.end()));
+    EXPECT_EQ(commands,
+              std::set<std::string>(kOptionsDocumentedCommands.begin(), kOptionsDocumentedCommands.end()));
 }
 
 // Every document must be reachable through the list in README.md.

@@ -9,20 +9,20 @@ namespace {
 
 class Usage : public CommandTest {};
 
-const std::vector<std::string> kCommands{"compile", "compile-module", "explain", "inspect",
-                                         "diff",    "render",         "compare", "lint"};
+const std::vector<std::string> kUsageCommands{"compile", "compile-module", "explain", "inspect",
+                                              "diff",    "render",         "compare", "lint"};
 
 TEST_F(Usage, HelpNamesEveryCommand) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.exit, 0);
     EXPECT_TRUE(help.err.empty()) << help.err;
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kUsageCommands) {
         EXPECT_TRUE(has(help.out, "\n  " + command + " ")) << command;
     }
 }
 
 TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kUsageCommands) {
         const Outcome help = run({command, "--help"});
         EXPECT_EQ(help.exit, 0) << command;
         EXPECT_TRUE(has(help.out, "Example:\n  glint " + command + " ")) << help.out;
@@ -32,7 +32,7 @@ TEST_F(Usage, HelpOfEveryCommandHasAnExample) {
 // The example of each help must at least parse: it fails because its files are missing, not because of its
 // options.
 TEST_F(Usage, ExamplesOfTheHelpAreValidCommandLines) {
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : kUsageCommands) {
         const std::string help = run({command, "--help"}).out;
         std::size_t begin = help.find("Example:\n  glint ");
         ASSERT_NE(begin, std::string::npos);

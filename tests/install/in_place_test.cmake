@@ -14,7 +14,7 @@ if(GLINT_SOURCE)
        "cmake_minimum_required(VERSION 3.25)\nproject(game LANGUAGES CXX)\n"
        "add_subdirectory(\"${GLINT_SOURCE}\" glint)\nadd_subdirectory(example)\n")
   set(source "${WORK}/source")
-  set(glint -DGLINT_BUILD_COMPILER=OFF "-DGLINT_EXECUTABLE=${EXECUTABLE}")
+  set(glint -DGLINT_BUILD_COMPILER=OFF -DGLINT_UNITY=ON "-DGLINT_EXECUTABLE=${EXECUTABLE}")
   set(program "${build}/example/cubes")
 else()
   set(source "${WORK}/source/example")

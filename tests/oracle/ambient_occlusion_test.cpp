@@ -10,8 +10,8 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kWidth = 48;
-constexpr std::uint32_t kHeight = 27;
+constexpr std::uint32_t kAmbientOcclusionWidth = 48;
+constexpr std::uint32_t kAmbientOcclusionHeight = 27;
 constexpr Vec3 kCenter(0.0, 0.6, 0.0);
 constexpr double kRadius = 0.5;
 
@@ -29,7 +29,9 @@ Scene sphereOverFloor() {
 class AmbientOcclusion : public ::testing::Test {
 protected:
     AmbientOcclusion()
-        : scene_(sphereOverFloor()), world_(scene_), view_(scene_.cameras.at(0), kWidth, kHeight) {}
+        : scene_(sphereOverFloor()),
+          world_(scene_),
+          view_(scene_.cameras.at(0), kAmbientOcclusionWidth, kAmbientOcclusionHeight) {}
 
     LinearImage render(const OcclusionSettings& settings, std::uint32_t raysPerSample = 1) {
         EffectOptions options;
@@ -37,7 +39,8 @@ protected:
         options.occlusion = settings;
         options.occlusionRays = raysPerSample;
         return renderEffect(scene_, options,
-                            setupOf(scene_, kWidth, kHeight, kSamples / raysPerSample, kWhiteSky));
+                            setupOf(scene_, kAmbientOcclusionWidth, kAmbientOcclusionHeight,
+                                    kAmbientOcclusionSamples / raysPerSample, kWhiteSky));
     }
 
     std::vector<PixelTruth> truths(const OcclusionSettings& settings) {
@@ -49,7 +52,7 @@ protected:
             });
     }
 
-    static constexpr std::uint32_t kSamples = 512;
+    static constexpr std::uint32_t kAmbientOcclusionSamples = 512;
     static constexpr GradientSky kWhiteSky{Vec3(1.0), Vec3(1.0), Vec3(1.0)};
     Scene scene_;
     World world_;
@@ -64,7 +67,7 @@ TEST_F(AmbientOcclusion, IsThatOfTheOracle) {
     const LinearImage image = render({});
     expectAgrees(image, truths({}),
                  {"ambient-occlusion", "a sphere over a floor, no limit", "quadrature", 1,
-                  samplesOf(kSamples), 1.0, kFacets});
+                  samplesOf(kAmbientOcclusionSamples), 1.0, kFacets});
     // The closed form covers the floor alone.
     const auto closed = pixelTruths(
         view_, {8, 4}, [&](const Ray& ray) { return world_.meetsGround(ray); },
@@ -75,22 +78,24 @@ TEST_F(AmbientOcclusion, IsThatOfTheOracle) {
         });
     EXPECT_GT(closed.size(), 500U);
     expectAgrees(image, closed,
-                 {"ambient-occlusion", "its floor", "1 - r² h / d³", 1, samplesOf(kSamples), 1.0, kFacets});
+                 {"ambient-occlusion", "its floor", "1 - r² h / d³", 1, samplesOf(kAmbientOcclusionSamples),
+                  1.0, kFacets});
 }
 
 TEST_F(AmbientOcclusion, WithinARadiusIsThatOfTheOracle) {
     for (const bool linear : {false, true}) {
         const OcclusionSettings settings{0.7, linear};
         const std::string what = linear ? "radius 0.7 m, falloff linear" : "radius 0.7 m, falloff none";
-        expectAgrees(render(settings), truths(settings),
-                     {"ambient-occlusion", what, "quadrature", 1, samplesOf(kSamples), 1.0, kFacets});
+        expectAgrees(
+            render(settings), truths(settings),
+            {"ambient-occlusion", what, "quadrature", 1, samplesOf(kAmbientOcclusionSamples), 1.0, kFacets});
     }
 }
 
 TEST_F(AmbientOcclusion, ByFourRaysASampleIsTheSame) {
-    expectAgrees(
-        render({}, 4), truths({}),
-        {"ambient-occlusion", "four rays a sample", "quadrature", 1, samplesOf(kSamples), 1.0, kFacets});
+    expectAgrees(render({}, 4), truths({}),
+                 {"ambient-occlusion", "four rays a sample", "quadrature", 1,
+                  samplesOf(kAmbientOcclusionSamples), 1.0, kFacets});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 using namespace glint;
 using namespace glint::oracle;
 
-constexpr Vec3 kUp(0.0, 1.0, 0.0);
+constexpr Vec3 kClosedFormOcclusionUp(0.0, 1.0, 0.0);
 
 TEST(OracleOcclusion, OfASphereOverAPlane) {
     World world;
@@ -17,8 +17,9 @@ TEST(OracleOcclusion, OfASphereOverAPlane) {
     Random random(1);
     for (const double x : {-2.0, -0.5, 0.2, 0.7, 1.5}) {
         const Vec3 position(x, 0.0, 0.3);
-        const Estimate estimate = openness(world, position, kUp, {}, Faces::Culled, {128, 4}, random);
-        expectEstimate(estimate, opennessUnderSphere(position, kUp, center, 0.5), 5e-4);
+        const Estimate estimate =
+            openness(world, position, kClosedFormOcclusionUp, {}, Faces::Culled, {128, 4}, random);
+        expectEstimate(estimate, opennessUnderSphere(position, kClosedFormOcclusionUp, center, 0.5), 5e-4);
         // A ray is either free or not.
         EXPECT_NEAR(estimate.square.x, estimate.mean.x, 1e-12);
     }
@@ -30,8 +31,10 @@ TEST(OracleOcclusion, OfATouchingSphere) {
     Random random(2);
     for (const double x : {0.05, 0.2, 0.6}) {
         const Vec3 position(x, 0.0, 0.0);
-        const Estimate estimate = openness(world, position, kUp, {}, Faces::Culled, {128, 4}, random);
-        expectEstimate(estimate, opennessUnderSphere(position, kUp, {0, 0.5, 0}, 0.5), 5e-4);
+        const Estimate estimate =
+            openness(world, position, kClosedFormOcclusionUp, {}, Faces::Culled, {128, 4}, random);
+        expectEstimate(estimate, opennessUnderSphere(position, kClosedFormOcclusionUp, {0, 0.5, 0}, 0.5),
+                       5e-4);
     }
 }
 
@@ -46,15 +49,16 @@ TEST(OracleOcclusion, OfACeilingByRadiusAndFalloff) {
     Random random(3);
     for (const double radius : {0.4, 0.6, 1.0, 5.0}) {
         const double ratio = std::min(0.5 / radius, 1.0);
-        const Estimate binary =
-            openness(world, Vec3(0.0), kUp, {radius, false}, Faces::Culled, {128, 4}, random);
+        const Estimate binary = openness(world, Vec3(0.0), kClosedFormOcclusionUp, {radius, false},
+                                         Faces::Culled, {128, 4}, random);
         expectEstimate(binary, ratio * ratio, 5e-4);
-        const Estimate linear =
-            openness(world, Vec3(0.0), kUp, {radius, true}, Faces::Culled, {128, 4}, random);
+        const Estimate linear = openness(world, Vec3(0.0), kClosedFormOcclusionUp, {radius, true},
+                                         Faces::Culled, {128, 4}, random);
         expectEstimate(linear, ratio * ratio + 2.0 * ratio * (1.0 - ratio), 5e-4);
     }
     // Everything is occluded except what passes 50 m away: less than (0.5 / 50)².
-    expectEstimate(openness(world, Vec3(0.0), kUp, {}, Faces::Culled, {128, 4}, random), 0.0, 5e-4, 1e-4);
+    expectEstimate(openness(world, Vec3(0.0), kClosedFormOcclusionUp, {}, Faces::Culled, {128, 4}, random),
+                   0.0, 5e-4, 1e-4);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 using namespace glint;
 using namespace glint::oracle;
 
-constexpr Vec3 kUp(0.0, 1.0, 0.0);
+constexpr Vec3 kClosedFormShadowUp(0.0, 1.0, 0.0);
 constexpr double kSun = 0.2;  // half angle
 constexpr int kStrata = 96;
 
@@ -21,8 +21,8 @@ Light sun(const Vec3& towards) {
 }
 
 Estimate shareOfSun(const World& world, const Vec3& position, Random& random) {
-    const LightCap cap = lightCap(sun(kUp), {0.0, 2.0 * kSun}, position);
-    return visibleShare(world, cap, position, kUp, {kStrata, 4}, random);
+    const LightCap cap = lightCap(sun(kClosedFormShadowUp), {0.0, 2.0 * kSun}, position);
+    return visibleShare(world, cap, position, kClosedFormShadowUp, {kStrata, 4}, random);
 }
 
 // A half plane at height 1 covers x < 0. Seen from (x, 0, 0), its edge is atan(x) beside the zenith.
@@ -112,7 +112,8 @@ TEST(OracleShadow, OfADiskBeforeALamp) {
     EXPECT_NEAR(cap.halfAngle, std::asin(0.1), 1e-12);
     Random random(4);
     const double hidden = (1.0 - std::cos(std::atan(0.05))) / (1.0 - std::cos(cap.halfAngle));
-    expectEstimate(visibleShare(world, cap, Vec3(0.0), kUp, {kStrata, 4}, random), 1.0 - hidden, 1e-3, 1e-4);
+    expectEstimate(visibleShare(world, cap, Vec3(0.0), kClosedFormShadowUp, {kStrata, 4}, random),
+                   1.0 - hidden, 1e-3, 1e-4);
 }
 
 TEST(OracleShadow, ALampOnTheHorizonIsHiddenByHalf) {
@@ -122,7 +123,7 @@ TEST(OracleShadow, ALampOnTheHorizonIsHiddenByHalf) {
     lamp.position = {2.0F, 0.0F, 0.0F};
     const LightCap cap = lightCap(lamp, {0.3, 0.0}, Vec3(0.0));
     Random random(5);
-    expectEstimate(visibleShare(world, cap, Vec3(0.0), kUp, {kStrata, 4}, random), 0.5, 1e-3);
+    expectEstimate(visibleShare(world, cap, Vec3(0.0), kClosedFormShadowUp, {kStrata, 4}, random), 0.5, 1e-3);
 }
 
 TEST(OracleShadow, LightsFallOffAsTheirExtensionSays) {

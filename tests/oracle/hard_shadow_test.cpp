@@ -10,7 +10,7 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kSamples = 256;
+constexpr std::uint32_t kHardShadowSamples = 256;
 
 // Returns direct light of the scene's only light on diffuse surfaces with albedo 1.
 Estimate lightOf(const World& world, const Light& light, const Ray& ray) {
@@ -35,7 +35,7 @@ SceneFile blockOnFloor() {
 void compare(const Scene& scene, const std::string& what) {
     EffectOptions options;
     options.effects = package::kEffectShadow;
-    const LinearImage image = renderEffect(scene, options, setupOf(scene, 48, 27, kSamples, {}));
+    const LinearImage image = renderEffect(scene, options, setupOf(scene, 48, 27, kHardShadowSamples, {}));
     const World world(scene);
     const View view(scene.cameras[0], 48, 27);
     const auto truths = pixelTruths(
@@ -44,7 +44,7 @@ void compare(const Scene& scene, const std::string& what) {
     EXPECT_GT(truths.size(), 1000U);
     // The rasteriser sees an edge within 1/256 of a pixel, and the golden points of the pixel are not
     // independent.
-    expectAgrees(image, truths, {"shadow", what, "quadrature", 1, samplesOf(kSamples), 0.0, 1e-4});
+    expectAgrees(image, truths, {"shadow", what, "quadrature", 1, samplesOf(kHardShadowSamples), 0.0, 1e-4});
 }
 
 TEST(HardShadow, OfASun) {

@@ -11,9 +11,9 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kWidth = 48;
-constexpr std::uint32_t kHeight = 27;
-constexpr std::uint32_t kSamples = 256;
+constexpr std::uint32_t kIndirectDiffuseWidth = 48;
+constexpr std::uint32_t kIndirectDiffuseHeight = 27;
+constexpr std::uint32_t kIndirectDiffuseSamples = 256;
 constexpr Vec3 kLow(-1, 0, -1);
 constexpr Vec3 kHigh(1, 2, 1);
 
@@ -64,7 +64,7 @@ Selector meets(const World& world) {
 std::vector<PixelTruth> byQuadrature(const Scene& scene, const Room& room, double sky) {
     const World world(scene);
     return pixelTruths(
-        View(scene.cameras.at(0), kWidth, kHeight), {6, 4}, meets(world),
+        View(scene.cameras.at(0), kIndirectDiffuseWidth, kIndirectDiffuseHeight), {6, 4}, meets(world),
         [&](const Ray& ray, Random& random) {
             const Hit hit = *world.closest(ray, Faces::Culled);
             Estimate light = irradianceOverPi(
@@ -81,7 +81,8 @@ std::vector<PixelTruth> byQuadrature(const Scene& scene, const Room& room, doubl
 
 LinearImage render(const Scene& scene, const EffectOptions& options, double sky) {
     return renderEffect(scene, options,
-                        setupOf(scene, kWidth, kHeight, kSamples, {Vec3(sky), Vec3(sky), Vec3(sky)}));
+                        setupOf(scene, kIndirectDiffuseWidth, kIndirectDiffuseHeight, kIndirectDiffuseSamples,
+                                {Vec3(sky), Vec3(sky), Vec3(sky)}));
 }
 
 // Every ray finds a wall that shows the sky's light once: albedo² of it, without noise.
@@ -94,11 +95,12 @@ TEST(IndirectDiffuse, OfAClosedWhiteBoxUnderTheSkyIsExact) {
     file.addDarkness();
     const Scene scene = file.import();
     const World world(scene);
-    const auto truths = pixelTruths(View(scene.cameras.at(0), kWidth, kHeight), {1, 2}, meets(world),
-                                    [](const Ray&, Random&) {
+    const auto truths = pixelTruths(View(scene.cameras.at(0), kIndirectDiffuseWidth, kIndirectDiffuseHeight),
+                                    {1, 2}, meets(world), [](const Ray&, Random&) {
                                         return Estimate{Vec3(0.64), Vec3(0.0), Vec3(0.64 * 0.64)};
                                     });
-    RenderSetup setup = setupOf(scene, kWidth, kHeight, kSamples, {Vec3(1.0), Vec3(1.0), Vec3(1.0)});
+    RenderSetup setup = setupOf(scene, kIndirectDiffuseWidth, kIndirectDiffuseHeight, kIndirectDiffuseSamples,
+                                {Vec3(1.0), Vec3(1.0), Vec3(1.0)});
     // This number of samples is fixed: of about 10⁵ rays, one that starts where two walls meet leaves the
     // box.
     setup.samples = 16;
@@ -118,12 +120,12 @@ TEST(IndirectDiffuse, OfABrightCeilingIsItsFormFactor) {
     file.addDarkness();
     const Scene scene = file.import();
     const LinearImage image = render(scene, indirectDiffuse(), 0.0);
-    expectAgrees(
-        image, byQuadrature(scene, room, 0.0),
-        {"indirect-diffuse", "a box with a bright ceiling", "quadrature", 3, samplesOf(kSamples), 3.0, 0.0});
+    expectAgrees(image, byQuadrature(scene, room, 0.0),
+                 {"indirect-diffuse", "a box with a bright ceiling", "quadrature", 3,
+                  samplesOf(kIndirectDiffuseSamples), 3.0, 0.0});
     const World world(scene);
     const auto closed = pixelTruths(
-        View(scene.cameras.at(0), kWidth, kHeight), {8, 4},
+        View(scene.cameras.at(0), kIndirectDiffuseWidth, kIndirectDiffuseHeight), {8, 4},
         [&](const Ray& ray) { return world.meetsGround(ray); },
         [&](const Ray& ray, Random&) {
             const Hit hit = *world.closest(ray, Faces::Culled);
@@ -134,7 +136,8 @@ TEST(IndirectDiffuse, OfABrightCeilingIsItsFormFactor) {
         });
     EXPECT_GT(closed.size(), 150U);
     expectAgrees(image, closed,
-                 {"indirect-diffuse", "its floor", "Lambert's formula", 3, samplesOf(kSamples), 3.0, 0.0});
+                 {"indirect-diffuse", "its floor", "Lambert's formula", 3, samplesOf(kIndirectDiffuseSamples),
+                  3.0, 0.0});
 }
 
 // Walls lit by a lamp light each other. A block casts a shadow that the bounce sees.
@@ -150,8 +153,8 @@ TEST(IndirectDiffuse, OfARoomWithALamp) {
     file.addCamera({0.1, 1.1, 0.95}, {-0.1, 0.7, -1}, 75);
     const Scene scene = file.import();
     expectAgrees(render(scene, indirectDiffuse(package::kEffectShadow), 0.0), byQuadrature(scene, room, 0.0),
-                 {"indirect-diffuse", "a room with a lamp and a block", "quadrature", 3, samplesOf(kSamples),
-                  2.5, 2e-4});
+                 {"indirect-diffuse", "a room with a lamp and a block", "quadrature", 3,
+                  samplesOf(kIndirectDiffuseSamples), 2.5, 2e-4});
 }
 
 // Under a sky, rays that miss bring the sky, and hits show the sky's light without a second bounce.
@@ -166,8 +169,8 @@ TEST(IndirectDiffuse, OfABlockUnderTheSky) {
     file.addDarkness();
     const Scene scene = file.import();
     expectAgrees(render(scene, indirectDiffuse(), 1.0), byQuadrature(scene, room, 1.0),
-                 {"indirect-diffuse", "a red block under a sky of 1", "quadrature", 3, samplesOf(kSamples),
-                  0.8, 1e-4});
+                 {"indirect-diffuse", "a red block under a sky of 1", "quadrature", 3,
+                  samplesOf(kIndirectDiffuseSamples), 0.8, 1e-4});
 }
 
 }  // namespace

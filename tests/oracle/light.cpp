@@ -6,10 +6,6 @@
 namespace glint::oracle {
 namespace {
 
-Vec3 toVec(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-
 double clampedArcCosine(double cosine) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }

@@ -11,9 +11,9 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kWidth = 64;
-constexpr std::uint32_t kHeight = 36;
-constexpr std::uint32_t kSamples = 256;
+constexpr std::uint32_t kReferenceWidth = 64;
+constexpr std::uint32_t kReferenceHeight = 36;
+constexpr std::uint32_t kReferenceSamples = 256;
 // The error that single precision of positions and normals causes at highlights and silhouettes; at most 3e-4
 // was measured.
 constexpr double kSinglePrecision = 5e-4;
@@ -57,10 +57,10 @@ void compare(const Scene& scene, std::uint32_t effects, double mirrorRoughness, 
              const std::string& what) {
     EffectOptions options;
     options.effects = effects;
-    RenderSetup setup = setupOf(scene, kWidth, kHeight, kSamples, {});
+    RenderSetup setup = setupOf(scene, kReferenceWidth, kReferenceHeight, kReferenceSamples, {});
     const World world(scene);
     const Reference reference(scene, world);
-    const View view(scene.cameras.at(0), kWidth, kHeight);
+    const View view(scene.cameras.at(0), kReferenceWidth, kReferenceHeight);
     const auto truths = pixelTruths(
         view, {11, 4}, [](const Ray&) { return true; },
         [&](const Ray& ray, Random&) {
@@ -73,7 +73,7 @@ void compare(const Scene& scene, std::uint32_t effects, double mirrorRoughness, 
     setup.samples = 1;
     const auto centres =
         centreTruths(view, [&](const Ray& ray) { return reference.radiance(ray, mirrorRoughness); });
-    EXPECT_GT(centres.size(), std::size_t{kWidth} * kHeight * 9 / 10);
+    EXPECT_GT(centres.size(), std::size_t{kReferenceWidth} * kReferenceHeight * 9 / 10);
     expectAgrees(renderEffect(scene, options, setup), centres,
                  {effect, "the same, centres of pixels", "reference renderer", 3, 1, 1e-9, kSinglePrecision});
 }

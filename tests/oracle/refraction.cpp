@@ -62,10 +62,6 @@ private:
     int channel_;
 };
 
-double squared(double x) {
-    return x * x;
-}
-
 }  // namespace
 
 double reflectance(Fresnel fresnel, double from, double to, double cosine, double schlickIor) {

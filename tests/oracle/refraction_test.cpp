@@ -11,9 +11,9 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kWidth = 48;
-constexpr std::uint32_t kHeight = 27;
-constexpr std::uint32_t kSamples = 256;
+constexpr std::uint32_t kRefractionWidth = 48;
+constexpr std::uint32_t kRefractionHeight = 27;
+constexpr std::uint32_t kRefractionSamples = 256;
 
 // Adds an unlit floor of this half width whose colour is linear in x and z, so that it tells where a ray
 // arrives. The sky is black.
@@ -63,7 +63,8 @@ std::vector<PixelTruth> throughGlass(const View& view, const World& world, int g
 LinearImage render(const Scene& scene) {
     EffectOptions options;
     options.effects = package::kEffectRefraction;
-    return renderEffect(scene, options, setupOf(scene, kWidth, kHeight, kSamples, {}));
+    return renderEffect(scene, options,
+                        setupOf(scene, kRefractionWidth, kRefractionHeight, kRefractionSamples, {}));
 }
 
 // Tests Snell's displacement and Beer's path.
@@ -81,12 +82,12 @@ TEST(Refraction, OfASlab) {
         file.addDarkness();
         const Scene scene = file.import();
         const Dielectric dielectric{Vec3(1.5), clear ? Vec3(0.0) : absorptionOf({0.3, 0.6, 0.9}, 0.5)};
-        const auto truths =
-            throughGlass(View(scene.cameras.at(0), kWidth, kHeight), World(scene), material, dielectric);
+        const auto truths = throughGlass(View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight),
+                                         World(scene), material, dielectric);
         EXPECT_GT(truths.size(), 400U);
         expectAgrees(render(scene), truths,
                      {"refraction", clear ? "a slab of index 1.5" : "a slab that absorbs", "sum of paths", 3,
-                      samplesOf(kSamples), 1.0, 1e-4});
+                      samplesOf(kRefractionSamples), 1.0, 1e-4});
     }
 }
 
@@ -101,20 +102,21 @@ TEST(Refraction, OfASphere) {
     file.addDarkness();
     const Scene scene = file.import();
     const Dielectric dielectric{Vec3(1.5), absorptionOf({0.9, 0.7, 0.4}, 0.8)};
-    const View view(scene.cameras.at(0), kWidth, kHeight);
+    const View view(scene.cameras.at(0), kRefractionWidth, kRefractionHeight);
     const LinearImage image = render(scene);
     const auto facets = throughGlass(view, World(scene), material, dielectric);
     EXPECT_GT(facets.size(), 300U);
     expectAgrees(image, facets,
-                 {"refraction", "a sphere that absorbs, of facets", "sum of paths", 3, samplesOf(kSamples),
-                  1.0, 3e-4});
+                 {"refraction", "a sphere that absorbs, of facets", "sum of paths", 3,
+                  samplesOf(kRefractionSamples), 1.0, 3e-4});
     // The second sphere has no facets.
     SceneFile without;
     addFloor(without, 4.0);
     World world(without.import());
     world.addSphere(center, 0.8, material);
-    expectAgrees(image, throughGlass(view, world, material, dielectric),
-                 {"refraction", "the same", "sum of paths, no facets", 3, samplesOf(kSamples), 1.0, 2e-3});
+    expectAgrees(
+        image, throughGlass(view, world, material, dielectric),
+        {"refraction", "the same", "sum of paths, no facets", 3, samplesOf(kRefractionSamples), 1.0, 2e-3});
 }
 
 // KHR_materials_dispersion: red, green and blue have their own indices, and each wavelength its own way. The
@@ -132,12 +134,12 @@ TEST(Refraction, OfAPrism) {
     const Scene scene = file.import();
     const double half = (1.6 - 1.0) * 0.025 * 10.0;
     const Dielectric dielectric{Vec3(1.6 - half, 1.6, 1.6 + half), Vec3(0.0), 1.6};
-    const auto truths =
-        throughGlass(View(scene.cameras.at(0), kWidth, kHeight), World(scene), material, dielectric, 3.0);
+    const auto truths = throughGlass(View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight),
+                                     World(scene), material, dielectric, 3.0);
     EXPECT_GT(truths.size(), 1000U);
-    expectAgrees(
-        render(scene), truths,
-        {"refraction", "a prism of dispersion 10", "sum of paths", 3, samplesOf(kSamples), 3.0, 3e-4});
+    expectAgrees(render(scene), truths,
+                 {"refraction", "a prism of dispersion 10", "sum of paths", 3, samplesOf(kRefractionSamples),
+                  3.0, 3e-4});
 }
 
 // There is one rough interface: the surface of a pool whose ground is in the medium.
@@ -156,7 +158,7 @@ TEST(Refraction, OfARoughSurface) {
         const World world(scene);
         const Dielectric dielectric{Vec3(1.33), absorptionOf({0.4, 0.7, 0.8}, 1.0)};
         const auto truths = pixelTruths(
-            View(scene.cameras.at(0), kWidth, kHeight), {3, 4},
+            View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight), {3, 4},
             [&](const Ray& ray) { return isOf(world, ray, material); },
             [&](const Ray& ray, Random& random) {
                 return roughlyRefractedLight(world, ray, *world.closest(ray, Faces::Culled),
@@ -166,7 +168,7 @@ TEST(Refraction, OfARoughSurface) {
         EXPECT_GT(truths.size(), 400U);
         expectAgrees(render(scene), truths,
                      {"refraction", roughness < 0.5 ? "a pool of roughness 0.3" : "a pool of roughness 0.6",
-                      "visible normals", 3, samplesOf(kSamples), 1.0, 2e-4});
+                      "visible normals", 3, samplesOf(kRefractionSamples), 1.0, 2e-4});
     }
 }
 
@@ -185,7 +187,7 @@ TEST(Refraction, OfAThinWall) {
     const Scene scene = file.import();
     const World world(scene);
     const auto truths = pixelTruths(
-        View(scene.cameras.at(0), kWidth, kHeight), {6, 4},
+        View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight), {6, 4},
         [&](const Ray& ray) { return isOf(world, ray, material); },
         [&](const Ray& ray, Random&) {
             const Hit hit = *world.closest(ray, Faces::Culled);
@@ -197,8 +199,8 @@ TEST(Refraction, OfAThinWall) {
         });
     EXPECT_GT(truths.size(), 400U);
     expectAgrees(render(scene), truths,
-                 {"refraction", "a thin wall, tinted", "(1 - F) of what is behind", 3, samplesOf(kSamples),
-                  0.0, 1e-4});
+                 {"refraction", "a thin wall, tinted", "(1 - F) of what is behind", 3,
+                  samplesOf(kRefractionSamples), 0.0, 1e-4});
 }
 
 }  // namespace

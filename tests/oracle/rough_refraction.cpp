@@ -3,10 +3,6 @@
 namespace glint::oracle {
 namespace {
 
-double squared(double x) {
-    return x * x;
-}
-
 // Returns a visible normal for a uniform point: Heitz, "Sampling the GGX Distribution of Visible Normals"
 // (2018), listing 1. Requires view.z > 0.
 Vec3 visibleNormal(const Vec3& view, double alpha, Vec2 point) {

@@ -10,9 +10,9 @@ using namespace glint;
 using namespace glint::oracle;
 using namespace glint::testing;
 
-constexpr std::uint32_t kWidth = 48;
-constexpr std::uint32_t kHeight = 27;
-constexpr std::uint32_t kSamples = 512;
+constexpr std::uint32_t kSoftShadowWidth = 48;
+constexpr std::uint32_t kSoftShadowHeight = 27;
+constexpr std::uint32_t kSoftShadowSamples = 512;
 constexpr double kSunDegrees = 24.0;
 constexpr double kDisk = 0.5;
 constexpr double kDiskHeight = 1.0;
@@ -39,7 +39,7 @@ Estimate lit(const Light& light, const Hit& hit, const Vec3& toLight, const Esti
 std::vector<PixelTruth> truths(const Scene& scene, const World& world, const Strata& strata,
                                const std::function<Estimate(const Hit&, Random&)>& light) {
     return pixelTruths(
-        View(scene.cameras.at(0), kWidth, kHeight), strata,
+        View(scene.cameras.at(0), kSoftShadowWidth, kSoftShadowHeight), strata,
         [&](const Ray& ray) { return world.meetsGround(ray); },
         [&](const Ray& ray, Random& random) { return light(*world.closest(ray, Faces::Culled), random); });
 }
@@ -58,7 +58,9 @@ LinearImage render(const Scene& scene, const LightSizes& sizes, std::uint32_t ra
     options.effects = package::kEffectShadow | more;
     options.lights = sizes;
     options.shadowRays = raysPerSample;
-    return renderEffect(scene, options, setupOf(scene, kWidth, kHeight, kSamples / raysPerSample, {}));
+    return renderEffect(
+        scene, options,
+        setupOf(scene, kSoftShadowWidth, kSoftShadowHeight, kSoftShadowSamples / raysPerSample, {}));
 }
 
 TEST(SoftShadow, OfADiskUnderTheSun) {
@@ -68,17 +70,18 @@ TEST(SoftShadow, OfADiskUnderTheSun) {
     const World world(scene);
     const LightSizes sizes{0.0, kSunDegrees * kPi / 180.0};
     const LinearImage image = render(scene, sizes);
-    expectAgrees(image, byQuadrature(scene, world, sizes),
-                 {"shadow", "a disk under a sun of 24°", "quadrature", 1, samplesOf(kSamples), 1.0, 1e-4});
+    expectAgrees(
+        image, byQuadrature(scene, world, sizes),
+        {"shadow", "a disk under a sun of 24°", "quadrature", 1, samplesOf(kSoftShadowSamples), 1.0, 1e-4});
     const auto closed = truths(scene, world, {5, 4}, [&](const Hit& hit, Random&) {
         const double aside = std::hypot(hit.position.x, hit.position.z) / kDiskHeight;
         const double share = shareBesidesDisk(0.5 * sizes.sunDiameter, kDisk / kDiskHeight, aside);
         return Estimate{Vec3(share), Vec3(0.0), Vec3(share)};
     });
     // The polygon's outline is within 4e-4 of the disk's radius.
-    expectAgrees(
-        image, closed,
-        {"shadow", "a disk under a sun of 24°", "arcs of circles", 1, samplesOf(kSamples), 1.0, 3e-4});
+    expectAgrees(image, closed,
+                 {"shadow", "a disk under a sun of 24°", "arcs of circles", 1, samplesOf(kSoftShadowSamples),
+                  1.0, 3e-4});
 }
 
 TEST(SoftShadow, OfADiskUnderALamp) {
@@ -95,7 +98,7 @@ TEST(SoftShadow, OfADiskUnderALamp) {
                      {"shadow",
                       spot ? "a disk under a spot of radius 0.3 m, two rays a sample"
                            : "a disk under a lamp of radius 0.3 m",
-                      "quadrature", 1, samplesOf(kSamples), 1.2, 1e-4});
+                      "quadrature", 1, samplesOf(kSoftShadowSamples), 1.2, 1e-4});
     }
 }
 
@@ -121,7 +124,7 @@ TEST(SoftShadow, OfADiskInAMirror) {
         return Ray{hit->position, glm::reflect(ray.direction, hit->normal)};
     };
     const auto truths = pixelTruths(
-        View(scene.cameras.at(0), kWidth, kHeight), {6, 4},
+        View(scene.cameras.at(0), kSoftShadowWidth, kSoftShadowHeight), {6, 4},
         [&](const Ray& ray) {
             const std::optional<Ray> onwards = reflected(ray);
             return onwards && world.meetsGround(*onwards);
@@ -135,7 +138,7 @@ TEST(SoftShadow, OfADiskInAMirror) {
     EXPECT_GT(truths.size(), 200U);
     expectAgrees(render(scene, sizes, 1, package::kEffectReflection), truths,
                  {"shadow, reflection", "a disk under a lamp of radius 0.3 m, in a mirror", "quadrature", 1,
-                  samplesOf(kSamples), 1.2, 1e-4});
+                  samplesOf(kSoftShadowSamples), 1.2, 1e-4});
 }
 
 TEST(SoftShadow, OfASphereUnderTheSun) {
@@ -157,9 +160,9 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
         const double share = shareBesidesCap(0.5 * sizes.sunDiameter, std::asin(0.4 / distance), apart);
         return lit(scene.lights[0], hit, toSun, {Vec3(share), Vec3(0.0), Vec3(share)});
     });
-    expectAgrees(
-        render(scene, sizes), closed,
-        {"shadow", "a sphere under a sun of 24°", "lens of two caps", 1, samplesOf(kSamples), 1.0, 3e-4});
+    expectAgrees(render(scene, sizes), closed,
+                 {"shadow", "a sphere under a sun of 24°", "lens of two caps", 1,
+                  samplesOf(kSoftShadowSamples), 1.0, 3e-4});
 }
 
 }  // namespace

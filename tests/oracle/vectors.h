@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +13,14 @@ using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 
 inline constexpr double kPi = std::numbers::pi;
+
+inline double squared(double x) {
+    return x * x;
+}
+
+inline Vec3 toVec(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
 
 // Returns the columns of a frame: two tangents and the axis, which must be a unit vector.
 inline glm::dmat3 frameAbout(const Vec3& axis) {

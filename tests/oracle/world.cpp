@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kOwnSurface = 1e-9;  // share of the scene's size
 
-Vec3 toVec(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-
 glm::dmat4 toMatrix(const Matrix4& m) {
     glm::dmat4 matrix;
     for (std::size_t i = 0; i < m.size(); ++i) {

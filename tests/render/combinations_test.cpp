@@ -5,12 +5,18 @@
 
 #include <glint/package_modules.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +29,6 @@ struct Room {
     const char* name;
     Scene (*make)();
     AlphaPolicy alpha;
-    package::ShadowPlacement profileShadows;
 };
 
 // The choices of a renderer, for one strategy and tracer.
@@ -42,6 +47,89 @@ std::vector<Way> waysOf(std::uint32_t tracers) {
         }
     }
     return ways;
+}
+
+constexpr MergePolicy kPolicies[] = {MergePolicy::All, MergePolicy::None, MergePolicy::Family,
+                                     MergePolicy::Auto, MergePolicy::Profile};
+constexpr package::ShadowPlacement kPlacements[] = {package::ShadowPlacement::Inline,
+                                                    package::ShadowPlacement::Deferred};
+constexpr unsigned kOrderings = static_cast<unsigned>(package::Ordering::Count);
+constexpr unsigned kBinnings = 3;
+
+// One picture of the sweep.
+struct Combination {
+    MergePolicy merge;
+    package::ShadowPlacement shadows;
+    Way way;
+    std::optional<package::Ordering> ordering;  // none where the strategy orders nothing
+    Binning binning;
+};
+
+std::vector<Combination> allCombinations() {
+    std::vector<Combination> all;
+    for (const MergePolicy merge : kPolicies) {
+        for (const package::ShadowPlacement shadows : kPlacements) {
+            for (const Way& way : waysOf(package::kAllTracers)) {
+                const bool orders = (package::kOrderedStrategies & way.strategy) != 0;
+                for (unsigned ordering = 0; ordering < (orders ? kOrderings : 1U); ++ordering) {
+                    for (unsigned binning = 0; binning < kBinnings; ++binning) {
+                        all.push_back(
+                            {merge, shadows, way,
+                             orders ? std::optional(static_cast<package::Ordering>(ordering)) : std::nullopt,
+                             static_cast<Binning>(binning)});
+                    }
+                }
+            }
+        }
+    }
+    return all;
+}
+
+// Two settings, each with a value.
+using Pair = std::array<unsigned, 4>;
+
+std::vector<Pair> pairsOf(const Combination& combination) {
+    std::vector<std::array<unsigned, 2>> values{{0, static_cast<unsigned>(combination.merge)},
+                                                {1, static_cast<unsigned>(combination.shadows)},
+                                                {2, static_cast<unsigned>(combination.way.strategy)},
+                                                {3, static_cast<unsigned>(combination.way.tracer)},
+                                                {4, static_cast<unsigned>(combination.binning)}};
+    if (combination.ordering) {
+        values.push_back({5, static_cast<unsigned>(*combination.ordering)});
+    }
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (std::size_t j = i + 1; j < values.size(); ++j) {
+            pairs.push_back({values[i][0], values[i][1], values[j][0], values[j][1]});
+        }
+    }
+    return pairs;
+}
+
+// Chooses few combinations, greedily, that cover every pair of values of two settings. The nightly sweep sets
+// GLINT_NIGHTLY and takes all combinations.
+std::vector<Combination> chosenCombinations() {
+    const std::vector<Combination> all = allCombinations();
+    if (std::getenv("GLINT_NIGHTLY") != nullptr) {
+        return all;
+    }
+    std::set<Pair> missing;
+    for (const Combination& combination : all) {
+        const std::vector<Pair> pairs = pairsOf(combination);
+        missing.insert(pairs.begin(), pairs.end());
+    }
+    std::vector<Combination> chosen;
+    while (!missing.empty()) {
+        const auto gain = [&](const Combination& combination) {
+            return std::ranges::count_if(pairsOf(combination),
+                                         [&](const Pair& pair) { return missing.contains(pair); });
+        };
+        chosen.push_back(*std::ranges::max_element(all, {}, gain));
+        for (const Pair& pair : pairsOf(chosen.back())) {
+            missing.erase(pair);
+        }
+    }
+    return chosen;
 }
 
 // Makes a profile in which keys are hot, never hit and cold in turn. It does not contain the last key.
@@ -77,72 +165,66 @@ protected:
         return setup;
     }
 
-    // Renders every way of one package. Orderings and binnings take turns, so that each meets each way over
-    // the packages.
-    void sweep(const Scene& scene, const CompileSettings& settings) {
-        const LoadedScene loaded(scene, settings);
-        ASSERT_TRUE(loaded.ok());
-        plan_ = loaded.compiled().plan;
-        for (const Way& way : waysOf(settings.tracers)) {
-            RenderSetup frame = setup(scene);
-            frame.frame.binning = static_cast<Binning>(turn_ % 3);
-            RendererOptions options;
-            options.strategy = way.strategy;
-            options.tracer = way.tracer;
-            options.ordering =
-                static_cast<package::Ordering>(turn_ % static_cast<unsigned>(package::Ordering::Count));
-            options.checkOrder = true;
-            ++turn_;
-            const std::string what = std::string(GetParam().name) + ": " +
-                                     std::string(package::nameOf(way.strategy)) + ", " +
-                                     std::string(package::nameOf(way.tracer)) + ", merge " +
-                                     std::string(toString(settings.plan.merge)) + ", shadows " +
-                                     std::string(package::nameOf(settings.shadows)) + ", ordering " +
-                                     std::string(package::nameOf(*options.ordering)) + ", binning " +
-                                     std::to_string(static_cast<unsigned>(frame.frame.binning));
-            FrameCounters counters;
-            const LinearImage image = loaded.render(options, frame, &counters);
-            ASSERT_FALSE(image.pixels.empty()) << what;
-            EXPECT_GT(counters.rays, 0U) << what;
-            EXPECT_EQ(counters.orderErrors, 0U) << what;
-            if (reference_.pixels.empty()) {
-                reference_ = image;
-                first_ = what;
-            }
-            expectSameImage(image, reference_, what + " against " + first_);
+    void expectReference(const LoadedScene& loaded, const Scene& scene, const Combination& combination) {
+        RenderSetup frame = setup(scene);
+        frame.frame.binning = combination.binning;
+        RendererOptions options;
+        options.strategy = combination.way.strategy;
+        options.tracer = combination.way.tracer;
+        options.ordering = combination.ordering;
+        options.checkOrder = true;
+        const std::string what =
+            fmt::format("{}: {}, {}, merge {}, shadows {}, ordering {}, binning {}", GetParam().name,
+                        package::nameOf(combination.way.strategy), package::nameOf(combination.way.tracer),
+                        toString(combination.merge), package::nameOf(combination.shadows),
+                        combination.ordering ? package::nameOf(*combination.ordering) : "-",
+                        static_cast<unsigned>(combination.binning));
+        FrameCounters counters;
+        const LinearImage image = loaded.render(options, frame, &counters);
+        ASSERT_FALSE(image.pixels.empty()) << what;
+        EXPECT_GT(counters.rays, 0U) << what;
+        EXPECT_EQ(counters.orderErrors, 0U) << what;
+        if (reference_.pixels.empty()) {
+            reference_ = image;
+            first_ = what;
         }
+        expectSameImage(image, reference_, what + " against " + first_);
     }
 
-    Plan plan_;  // of the last package
-
 private:
+    std::vector<Key> keys_;  // of the last package
     LinearImage reference_;
     std::string first_;
-    unsigned turn_ = 0;
 };
 
 TEST_P(Combinations, GiveOneImage) {
     const Scene scene = GetParam().make();
-    CompileSettings settings;
-    settings.strategies = package::kAllStrategies;
-    settings.tracers = package::kAllTracers;
-    settings.plan.keys.alpha = GetParam().alpha;
-    for (const MergePolicy merge :
-         {MergePolicy::All, MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
-        for (const auto shadows : {package::ShadowPlacement::Inline, package::ShadowPlacement::Deferred}) {
+    const std::vector<Combination> combinations = chosenCombinations();
+    for (const MergePolicy merge : kPolicies) {
+        for (const package::ShadowPlacement shadows : kPlacements) {
+            CompileSettings settings;
+            settings.strategies = package::kAllStrategies;
+            settings.tracers = package::kAllTracers;
+            settings.plan.keys.alpha = GetParam().alpha;
             settings.shadows = shadows;
             settings.plan.merge = merge;
-            settings.plan.maxShaders = merge == MergePolicy::Auto ? 3 : 0;
-            sweep(scene, settings);
+            settings.plan.maxShaders = merge == MergePolicy::Auto ? 3 : merge == MergePolicy::Profile ? 4 : 0;
+            if (merge == MergePolicy::Profile) {
+                settings.plan.hits = makeUpHits(keys_);
+            }
+            const LoadedScene loaded(scene, settings);
+            ASSERT_TRUE(loaded.ok());
+            keys_ = loaded.compiled().plan.keys;
+            if (merge == MergePolicy::Profile) {
+                expectMergedByHits(loaded.compiled().plan);
+            }
+            for (const Combination& combination : combinations) {
+                if (combination.merge == merge && combination.shadows == shadows) {
+                    expectReference(loaded, scene, combination);
+                }
+            }
         }
     }
-    // Each room has one placement of shadows, so that each placement meets the policy.
-    settings.shadows = GetParam().profileShadows;
-    settings.plan.merge = MergePolicy::Profile;
-    settings.plan.maxShaders = 4;
-    settings.plan.hits = makeUpHits(plan_.keys);
-    sweep(scene, settings);
-    expectMergedByHits(plan_);
 }
 
 // Half the memory costs only the precision of its barycentrics and cone widths.
@@ -175,10 +257,8 @@ TEST_P(Combinations, PackedHitsAreClose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Combinations,
-                         ::testing::Values(Room{"Materials", roomOfMaterials, AlphaPolicy::Opaque,
-                                                package::ShadowPlacement::Inline},
-                                           Room{"Fence", roomWithFence, AlphaPolicy::Tested,
-                                                package::ShadowPlacement::Deferred}),
+                         ::testing::Values(Room{"Materials", roomOfMaterials, AlphaPolicy::Opaque},
+                                           Room{"Fence", roomWithFence, AlphaPolicy::Tested}),
                          [](const auto& room) { return std::string(room.param.name); });
 
 }  // namespace

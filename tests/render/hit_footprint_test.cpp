@@ -15,7 +15,7 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 // A square metre has 1024 x 512 texels, so a footprint of w metres has w * sqrt(1024 * 512) texels a side.
 constexpr std::array<double, 2> kTexels{1024.0, 512.0};
@@ -157,14 +157,14 @@ TEST(HitFootprint, NoLevelOfDetailWithoutAnArea) {
     const Expectation expectations[] = {
         {"a footprint", 0, 1.0F, true},
         {"no footprint", 0, 0.0F, false},
-        {"endless footprint", 0, kInfinity, false},
+        {"endless footprint", 0, kEndless, false},
         {"a footprint that is no number", 0, kNaN, false},
         {"a footprint whose area is no float", 0, 1e30F, false},
         {"no texels", 2, 1.0F, false},
         {"texels on a line", 3, 1.0F, false},
         {"no area in the world", 4, 1.0F, false},
         {"neither", 5, 1.0F, false},
-        {"neither, endless", 5, kInfinity, false},
+        {"neither, endless", 5, kEndless, false},
     };
     std::vector<Query> queries;
     for (const Expectation& expectation : expectations) {

@@ -34,7 +34,7 @@ double dot(const Double3& a, const Double3& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-Double3 unitOf(const Double3& v) {
+Double3 directionOf(const Double3& v) {
     const double length = std::sqrt(dot(v, v));
     return {v[0] / length, v[1] / length, v[2] / length};
 }
@@ -65,7 +65,7 @@ Double3 transformNormal(const std::array<float, 12>& rows, const Double3& n) {
     for (double& value : result) {
         value = determinant < 0.0 ? -value : value;
     }
-    return unitOf(result);
+    return directionOf(result);
 }
 
 Double3 transformPoint(const std::array<float, 12>& rows, const Double3& p) {
@@ -181,7 +181,8 @@ TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(values[k].texCoord, kTexCoords[k]) << "vertex " << k;
         EXPECT_EQ(values[k].color, (Float3{kColors[k][0], kColors[k][1], kColors[k][2]})) << "vertex " << k;
-        expectSameDirection(values[k].normal, unitOf(toDouble(kNormals[k])), "vertex " + std::to_string(k));
+        expectSameDirection(values[k].normal, directionOf(toDouble(kNormals[k])),
+                            "vertex " + std::to_string(k));
     }
 }
 

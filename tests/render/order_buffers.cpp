@@ -12,7 +12,7 @@ namespace glint::testing {
 
 namespace {
 
-constexpr VkDeviceSize kWord = sizeof(std::uint32_t);
+constexpr VkDeviceSize kOrderBuffersWord = sizeof(std::uint32_t);
 
 std::vector<std::uint8_t> hitBytes(const OrderProblem& problem, package::HitRecordFormat format) {
     const bool packed = format == package::HitRecordFormat::Packed;
@@ -92,10 +92,10 @@ Result<std::unique_ptr<OrderBuffers>> createOrderBuffers(Context::State& context
     buffers.rays = static_cast<std::uint32_t>(problem.hits.size());
     const VkDeviceSize slotBytes =
         std::max<VkDeviceSize>(problem.hits.size() + VkDeviceSize{bucketCount} * (problem.alignment - 1), 1) *
-        kWord;
-    const VkDeviceSize bucketBytes = VkDeviceSize{bucketCount} * kWord;
+        kOrderBuffersWord;
+    const VkDeviceSize bucketBytes = VkDeviceSize{bucketCount} * kOrderBuffersWord;
     const VkDeviceSize dispatchBytes = (VkDeviceSize{bucketCount} + 1) * sizeof(gpu::DispatchArguments);
-    constexpr VkDeviceSize kCounterBytes = gpu::kCounterCount * kWord;
+    constexpr VkDeviceSize kCounterBytes = gpu::kCounterCount * kOrderBuffersWord;
     const struct {
         Buffer& target;
         VkDeviceSize bytes;
@@ -109,7 +109,7 @@ Result<std::unique_ptr<OrderBuffers>> createOrderBuffers(Context::State& context
         {buffers.hits, hits.size(), kCopied, MemoryUse::Device},
         {buffers.geometries, geometryBytes, kCopied, MemoryUse::Device},
         {buffers.slots, slotBytes, kCopied, MemoryUse::Device},
-        {buffers.visited, (problem.hits.size() / 32 + 1) * kWord, kCopied, MemoryUse::Device},
+        {buffers.visited, (problem.hits.size() / 32 + 1) * kOrderBuffersWord, kCopied, MemoryUse::Device},
         {buffers.counts, bucketBytes, kCopied, MemoryUse::Device},
         {buffers.begins, bucketBytes, kCopied, MemoryUse::Device},
         {buffers.cursors, bucketBytes, kCopied, MemoryUse::Device},
@@ -168,8 +168,8 @@ void recordInput(Context::State& context, VkCommandBuffer commands, const OrderB
     }
     // The fills are adjacent, because two fills of one word would need a barrier in between.
     static_assert(gpu::kCounterRays == 0);
-    vk.CmdFillBuffer(commands, buffers.counters.handle.get(), 0, kWord, buffers.rays);
-    vk.CmdFillBuffer(commands, buffers.counters.handle.get(), kWord, VK_WHOLE_SIZE, 0);
+    vk.CmdFillBuffer(commands, buffers.counters.handle.get(), 0, kOrderBuffersWord, buffers.rays);
+    vk.CmdFillBuffer(commands, buffers.counters.handle.get(), kOrderBuffersWord, VK_WHOLE_SIZE, 0);
     recordDependency(context, commands, kEverything);
 }
 
@@ -194,7 +194,7 @@ OrderResult readResult(const OrderBuffers& buffers) {
     result.begins.resize(bucketCount);
     result.cursors.resize(bucketCount);
     result.dispatches.resize(bucketCount + 1);
-    result.slots.resize(buffers.slots.bytes / kWord);
+    result.slots.resize(buffers.slots.bytes / kOrderBuffersWord);
     const std::uint8_t* from = buffers.readback.mapped;
     const auto take = [&](auto& values) {
         const std::size_t bytes = values.size() * sizeof(values[0]);

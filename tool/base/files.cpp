@@ -14,17 +14,6 @@ namespace glint {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-struct FileCloser {
-    void operator()(std::FILE* file) const {
-        std::fclose(file);
-    }
-};
-using File = std::unique_ptr<std::FILE, FileCloser>;
-
-}  // namespace
-
 std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
     return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
 }

@@ -14,6 +14,18 @@ namespace glint {
 
 using Bytes = std::vector<std::uint8_t>;
 
+inline std::string_view asText(const Bytes& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+struct FileCloser {
+    void operator()(std::FILE* file) const {
+        std::fclose(file);
+    }
+};
+// An open file, which closes itself; what closing says of a full disk is lost.
+using File = std::unique_ptr<std::FILE, FileCloser>;
+
 // Returns the 64-bit XXH3 hash.
 std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed = 0);
 std::uint64_t hashBytes(std::string_view text);

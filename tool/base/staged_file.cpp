@@ -24,13 +24,6 @@ namespace {
 // Temporary files are called "scene.lock.glint-tmp-1234", with the number of the process.
 constexpr std::string_view kTag = ".glint-tmp-";
 
-struct FileCloser {
-    void operator()(std::FILE* file) const {
-        std::fclose(file);
-    }
-};
-using File = std::unique_ptr<std::FILE, FileCloser>;
-
 Diagnostic writeError(const fs::path& path, const std::string& why) {
     return makeError("file-write", path.string(), "can't be written: " + why,
                      "check the folder, its permissions and the free space");

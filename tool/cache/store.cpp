@@ -25,20 +25,16 @@ namespace {
 // This number grows when the layout of entries changes, so that versions of glint can share a folder without
 // reading each other's entries.
 constexpr std::string_view kLayout = "v1";
-constexpr std::string_view kMagic = "glint cache entry 1\n";
+constexpr std::string_view kEntryMagic = "glint cache entry 1\n";
 constexpr std::uint64_t kMaxEntryBytes = 1ULL << 30;
 constexpr std::string_view kTemporary = ".tmp";
 // A writer that has taken longer than this is assumed dead.
 constexpr auto kAbandoned = std::chrono::hours(1);
 // Backup tools and `du` recognise the folder as a cache by this file: https://bford.info/cachedir/
 constexpr const char* kTagFile = "CACHEDIR.TAG";
-constexpr std::string_view kTag =
+constexpr std::string_view kFolderTag =
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# Compiled shaders of glint. May be deleted at any time.\n";
-
-std::string_view asText(const Bytes& bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 std::uint64_t checksum(std::string_view key, std::string_view value) {
     return hashBytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()}, hashBytes(key));
@@ -114,10 +110,10 @@ fs::path CacheStore::fileOf(std::string_view kind, std::string_view key) const {
 std::optional<std::string> CacheStore::find(std::string_view kind, std::string_view key) {
     const fs::path path = fileOf(kind, key);
     const Result<Bytes> bytes = readFile(path, kMaxEntryBytes);
-    if (!bytes || !asText(*bytes).starts_with(kMagic)) {
+    if (!bytes || !asText(*bytes).starts_with(kEntryMagic)) {
         return std::nullopt;
     }
-    Unpacker entry(asText(*bytes).substr(kMagic.size()));
+    Unpacker entry(asText(*bytes).substr(kEntryMagic.size()));
     const std::optional<std::uint64_t> sum = entry.number();
     const std::optional<std::string_view> held = entry.text();
     const std::optional<std::string_view> value = entry.text();
@@ -139,7 +135,7 @@ void CacheStore::put(std::string_view kind, std::string_view key, std::string_vi
     }
     changed_ = true;
     const std::string bytes =
-        std::string(kMagic) + Packer().add(checksum(key, value)).add(key).add(value).take();
+        std::string(kEntryMagic) + Packer().add(checksum(key, value)).add(key).add(value).take();
     const fs::path temporary = fmt::format("{}{}{}-{}", path.string(), kTemporary, getpid(),
                                            std::hash<std::thread::id>()(std::this_thread::get_id()));
     if (const int failure = writeNew(temporary, bytes); failure != 0) {
@@ -162,7 +158,7 @@ void CacheStore::trim() {
     std::error_code error;
     if (!fs::exists(options_.folder / kTagFile, error)) {
         // An error is ignored, because nothing depends on this file.
-        (void)writeFile(options_.folder / kTagFile, kTag);
+        (void)writeFile(options_.folder / kTagFile, kFolderTag);
     }
     std::vector<Entry> entries = listEntries(options_.folder / kLayout);
     std::uint64_t bytes = 0;

@@ -1,4 +1,5 @@
 // glint bench: what each setting costs in time, and what it gains in accuracy.
+#include "base/clock.h"
 #include "bench/advice.h"
 #include "bench/sweep.h"
 #include "cli/bench_arguments.h"
@@ -28,8 +29,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 BenchPoint makePoint(PointKind kind, bench::Configuration configuration) {
     BenchPoint point;

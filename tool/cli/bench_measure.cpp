@@ -1,5 +1,6 @@
 #include "cli/bench_measure.h"
 
+#include "base/clock.h"
 #include "bench/rounds.h"
 #include "image/error.h"
 
@@ -15,8 +16,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 bool sameBits(const LinearImage& a, const LinearImage& b) {
     return a.pixels == b.pixels;

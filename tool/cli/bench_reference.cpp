@@ -1,5 +1,6 @@
 #include "cli/bench_reference.h"
 
+#include "base/clock.h"
 #include "cache/packing.h"
 #include "cache/program.h"
 #include "image/tone.h"
@@ -16,8 +17,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kKind = "reference";
 // The samples of a block: enough for their sequence to cover a pixel, and few enough to have many blocks.

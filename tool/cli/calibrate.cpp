@@ -1,5 +1,6 @@
 #include "cli/calibrate.h"
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "cli/bench_output.h"
 #include "cli/calibrate_group.h"
@@ -31,7 +32,6 @@ namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kDeviceFile = "device.json";
 

@@ -1,5 +1,6 @@
 #include "cli/calibrate_measure.h"
 
+#include "base/clock.h"
 #include "bench/rounds.h"
 #include "cli/bench_bed.h"
 #include "cli/render_setup.h"
@@ -19,7 +20,6 @@ namespace glint {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
 // The number of samples is chosen so that uber takes this long, within limits. The clock of a GPU ticks in
@@ -31,10 +31,6 @@ constexpr std::uint32_t kMaxSamples = 16;
 constexpr double kVisible = 1e-3;
 
 constexpr std::uint32_t kTile = 8;
-
-double millisecondsSince(Clock::time_point start) {
-    return Milliseconds(Clock::now() - start).count();
-}
 
 PictureDifference differenceOf(const LinearImage& image, const LinearImage& reference) {
     PictureDifference difference;

@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 // 256 cases take some 25 kilobytes for each point.
-constexpr std::uint64_t kMaxBytes = 1ULL << 28;
+constexpr std::uint64_t kMaxPointsBytes = 1ULL << 28;
 constexpr std::uint64_t kMaxCases = 1ULL << 20;
 constexpr double kAny = std::numeric_limits<double>::max();
 
@@ -87,7 +87,7 @@ bench::CalibrationPoint readPoint(JsonReader& reader, const Json& json, const st
 Result<CalibrationPoints> readCalibrationPoints(const std::filesystem::path& path) {
     JsonReader reader(path, "calibration-format",
                       "give the calibration.json that glint bench --calibrate wrote");
-    const Result<Json> json = reader.read(kMaxBytes);
+    const Result<Json> json = reader.read(kMaxPointsBytes);
     if (!json) {
         return json.error();
     }

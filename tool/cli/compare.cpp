@@ -105,11 +105,6 @@ std::optional<Diagnostic> judge(const CompareArguments& arguments, const ImageDi
     return std::nullopt;
 }
 
-int fail(const Console& console, const Diagnostic& error) {
-    console.report(error);
-    return kExitFailed;
-}
-
 int compare(const Console& console, const CompareArguments& arguments) {
     const Result<LinearImage> image = readImage(arguments.image);
     if (!image) {

@@ -1,6 +1,7 @@
 // glint compile: compiles a scene's materials into a package.
 #include "emit/compile.h"
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -34,8 +35,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // The facts to report at the end. The package is absent after a dry run, and after planning.
 struct Outcome {
@@ -155,15 +154,6 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
 CompileSummary summaryOf(const Outcome& outcome) {
     const int modules = outcome.package == nullptr ? 0 : static_cast<int>(outcome.package->modules.size());
     return {toJson(outcome), fieldsOf(outcome), droppedText(outcome.plan), modules};
-}
-
-double millisecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-int fail(const Console& console, const Diagnostic& error) {
-    console.report(error);
-    return kExitFailed;
 }
 
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.

@@ -1,5 +1,7 @@
 #include "cli/console.h"
 
+#include "base/clock.h"
+#include "cli/command_line.h"
 #include "cli/report.h"
 
 #include <fmt/format.h>
@@ -14,8 +16,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr const char* kClearLine = "\r\x1b[K";
 constexpr const char* kReset = "\x1b[0m";
@@ -156,6 +156,11 @@ Status Console::finish() const {
         return makeError("output", "stdout", "can't be written", "check the free space and the reader");
     }
     return okStatus();
+}
+
+int fail(const Console& console, const Diagnostic& error) {
+    console.report(error);
+    return kExitFailed;
 }
 
 }  // namespace glint

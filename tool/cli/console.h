@@ -69,4 +69,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
+// Reports an error; returns the exit code of a command that failed.
+int fail(const Console& console, const Diagnostic& error);
+
 }  // namespace glint

@@ -14,16 +14,16 @@ namespace glint {
 
 namespace {
 
-constexpr const char* kFormat = "glint-device";
-constexpr int kVersion = 1;
+constexpr const char* kDeviceFormat = "glint-device";
+constexpr int kDeviceVersion = 1;
 // A device file has a few kilobytes.
-constexpr std::uint64_t kMaxBytes = 1ULL << 20;
+constexpr std::uint64_t kMaxDeviceBytes = 1ULL << 20;
 constexpr std::uint64_t kMaxPoints = 1ULL << 32;
 // No constant reaches a year of its unit. Errors and regrets are factors.
 constexpr double kMostOfUnit = 1e12;
 constexpr double kMaxSubgroup = 1024.0;
 
-std::string percent(double share) {
+std::string percentText(double share) {
     return fmt::format("{:.1f} %", 100.0 * share);
 }
 
@@ -174,8 +174,8 @@ std::string describe(const DeviceFile& file) {
         if (quality == file.quality.strategies.end()) {
             row.insert(row.end(), {"-", "-", "-"});
         } else {
-            row.insert(row.end(), {std::to_string(quality->points), percent(quality->medianError),
-                                   percent(quality->worstError)});
+            row.insert(row.end(), {std::to_string(quality->points), percentText(quality->medianError),
+                                   percentText(quality->worstError)});
         }
     }
     const bench::Regret& regret = file.quality.regret;
@@ -186,16 +186,16 @@ std::string describe(const DeviceFile& file) {
                      fmt::format(
                          "\nBy these constants{} the strategy that is taken is {} slower than the fastest "
                          "(the median of {}\npoints), within 5 % at {} of them, and at most {} slower{}.\n",
-                         file.quality.held ? ", fitted to other scenes," : "", percent(regret.median),
-                         regret.points, percent(regret.withinFivePercent), percent(regret.worst),
+                         file.quality.held ? ", fitted to other scenes," : "", percentText(regret.median),
+                         regret.points, percentText(regret.withinFivePercent), percentText(regret.worst),
                          regret.worstPoint.empty() ? "" : " (" + regret.worstPoint + ")");
 }
 
 std::string toText(const DeviceFile& file) {
     const DeviceCosts& costs = file.costs;
     const bench::Regret& regret = file.quality.regret;
-    return toText(Json{{"format", kFormat},
-                       {"version", kVersion},
+    return toText(Json{{"format", kDeviceFormat},
+                       {"version", kDeviceVersion},
                        {"device", costs.device},
                        {"driver", costs.driver},
                        {"deviceType", costs.onCpu ? "cpu" : "gpu"},
@@ -215,17 +215,17 @@ std::string toText(const DeviceFile& file) {
 
 Result<DeviceFile> readDeviceFile(const std::filesystem::path& path) {
     JsonReader reader(path, "calibration-format", "make the file again with glint bench --calibrate");
-    const Result<Json> json = reader.read(kMaxBytes);
+    const Result<Json> json = reader.read(kMaxDeviceBytes);
     if (!json) {
         return json.error();
     }
-    if (!json->is_object() || reader.text(*json, "", "format") != kFormat) {
+    if (!json->is_object() || reader.text(*json, "", "format") != kDeviceFormat) {
         return makeError("calibration-format", path.string(), "is no device file",
                          "give the device.json that glint bench --calibrate wrote");
     }
     const std::uint64_t version = reader.count(*json, "", "version", kMaxPoints);
-    if (reader.ok() && version != kVersion) {
-        reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kVersion));
+    if (reader.ok() && version != kDeviceVersion) {
+        reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kDeviceVersion));
     }
     DeviceFile file;
     if (reader.ok()) {

@@ -15,12 +15,12 @@ namespace glint {
 namespace {
 
 constexpr const char* kAutomatic = "auto";
-constexpr const char* kNothing = "none";
+constexpr const char* kNoEffects = "none";
 constexpr const char* kEverything = "all";
 constexpr double kMaxMetres = 1e6;
 
 std::vector<std::string> effectChoices() {
-    std::vector<std::string> choices{kAutomatic, kNothing, kEverything};
+    std::vector<std::string> choices{kAutomatic, kNoEffects, kEverything};
     for (const package::EffectInfo& info : package::kEffects) {
         choices.emplace_back(info.name);
     }
@@ -57,7 +57,7 @@ CLI::Option& addEffectOptions(CLI::App& command, EffectArguments& arguments) {
 }
 
 void checkEffects(const EffectArguments& arguments) {
-    for (const char* const alone : {kNothing, kEverything}) {
+    for (const char* const alone : {kNoEffects, kEverything}) {
         const bool named = std::ranges::find(arguments.effects, alone) != arguments.effects.end();
         if (named && arguments.effects.size() > 1) {
             throw CLI::ValidationError(

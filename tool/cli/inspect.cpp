@@ -14,11 +14,6 @@ struct InspectArguments {
     std::string disassemble;  // empty: an overview instead
 };
 
-int fail(const Console& console, const Diagnostic& error) {
-    console.report(error);
-    return kExitFailed;
-}
-
 int tell(const Console& console, const InspectedPackage& inspected) {
     if (console.isJson()) {
         console.result(toJson(inspected));

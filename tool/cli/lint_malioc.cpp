@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Json = nlohmann::json;
+using MaliocJson = nlohmann::json;
 
 constexpr const char* kHint = "run it by hand on this file";
 
@@ -29,32 +29,32 @@ Diagnostic maliocError(const fs::path& where, const std::string& message) {
 }
 
 // Returns null if `value` has no member of that name.
-const Json& member(const Json& value, const char* name) {
-    static const Json null;
+const MaliocJson& member(const MaliocJson& value, const char* name) {
+    static const MaliocJson null;
     const auto found = value.is_object() ? value.find(name) : value.end();
     return value.is_object() && found != value.end() ? *found : null;
 }
 
-const Json& first(const Json& list) {
-    static const Json null;
+const MaliocJson& first(const MaliocJson& list) {
+    static const MaliocJson null;
     return list.is_array() && !list.empty() ? list.front() : null;
 }
 
-std::string textOf(const Json& value) {
+std::string textOf(const MaliocJson& value) {
     return value.is_string() ? value.get<std::string>() : std::string();
 }
 
-std::optional<std::int64_t> integerOf(const Json& value) {
+std::optional<std::int64_t> integerOf(const MaliocJson& value) {
     constexpr double kLimit = 1e15;
     const double number = value.is_number() ? value.get<double>() : std::nan("");
     return std::abs(number) < kLimit ? std::optional(std::llround(number)) : std::nullopt;
 }
 
 // Returns the value of a name in a list of {"name", "value"}.
-const Json& property(const Json& properties, std::string_view name) {
-    static const Json null;
+const MaliocJson& property(const MaliocJson& properties, std::string_view name) {
+    static const MaliocJson null;
     if (properties.is_array()) {
-        for (const Json& it : properties) {
+        for (const MaliocJson& it : properties) {
             if (textOf(member(it, "name")) == name) {
                 return member(it, "value");
             }
@@ -63,10 +63,10 @@ const Json& property(const Json& properties, std::string_view name) {
     return null;
 }
 
-void readCycles(const Json& performance, MaliocReport& report) {
-    const Json& pipelines = member(performance, "pipelines");
-    const Json& longest = member(performance, "longest_path_cycles");
-    const Json& counts = member(longest, "cycle_count");
+void readCycles(const MaliocJson& performance, MaliocReport& report) {
+    const MaliocJson& pipelines = member(performance, "pipelines");
+    const MaliocJson& longest = member(performance, "longest_path_cycles");
+    const MaliocJson& counts = member(longest, "cycle_count");
     if (pipelines.is_array() && counts.is_array()) {
         for (std::size_t i = 0; i < std::min(pipelines.size(), counts.size()); ++i) {
             // A path without a bound is null.
@@ -77,8 +77,8 @@ void readCycles(const Json& performance, MaliocReport& report) {
             }
         }
     }
-    if (const Json& bound = member(longest, "bound_pipelines"); bound.is_array()) {
-        for (const Json& pipeline : bound) {
+    if (const MaliocJson& bound = member(longest, "bound_pipelines"); bound.is_array()) {
+        for (const MaliocJson& pipeline : bound) {
             if (pipeline.is_string()) {
                 report.boundPipelines.push_back(textOf(pipeline));
             }
@@ -154,25 +154,25 @@ std::optional<fs::path> findProgram(const std::string& program) {
 }
 
 Result<MaliocReport> parseMalioc(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    const Json& shader = first(member(json, "shaders"));
+    const MaliocJson json = MaliocJson::parse(text, nullptr, false);
+    const MaliocJson& shader = first(member(json, "shaders"));
     if (!shader.is_object()) {
         const std::string line(text.substr(0, text.find('\n')));
         return maliocError({}, "malioc printed no report: " + (line.empty() ? "nothing at all" : line));
     }
-    if (const Json& error = first(member(shader, "errors")); error.is_string()) {
+    if (const MaliocJson& error = first(member(shader, "errors")); error.is_string()) {
         return maliocError({}, "malioc: " + textOf(error));
     }
     MaliocReport report;
     report.core = textOf(member(member(shader, "hardware"), "core"));
     // A compute shader has one variant.
-    const Json& variant = first(member(shader, "variants"));
+    const MaliocJson& variant = first(member(shader, "variants"));
     readCycles(member(variant, "performance"), report);
-    const Json& properties = member(variant, "properties");
+    const MaliocJson& properties = member(variant, "properties");
     report.workRegisters = integerOf(property(properties, "work_registers_used"));
     report.occupancy = integerOf(property(properties, "thread_occupancy"));
     report.spillBytes = integerOf(property(properties, "stack_spill_bytes"));
-    if (const Json& spills = property(properties, "has_stack_spilling"); spills.is_boolean()) {
+    if (const MaliocJson& spills = property(properties, "has_stack_spilling"); spills.is_boolean()) {
         report.spills = spills.get<bool>();
     } else if (report.spillBytes) {
         report.spills = *report.spillBytes > 0;

@@ -1,5 +1,6 @@
 #include "cli/lint_report.h"
 
+#include "cli/report.h"
 #include "cli/table.h"
 
 #include <fmt/format.h>
@@ -12,15 +13,6 @@ namespace {
 
 std::size_t countIn(const std::vector<LintFinding>& findings, Severity severity) {
     return static_cast<std::size_t>(std::ranges::count(findings, severity, &LintFinding::severity));
-}
-
-template <typename T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json textOrNull(const std::string& text) {
-    return text.empty() ? Json(nullptr) : Json(text);
 }
 
 Json findingsToJson(const std::vector<LintFinding>& findings, const std::string& where) {

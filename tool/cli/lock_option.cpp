@@ -19,7 +19,7 @@ namespace glint {
 namespace {
 
 // A key takes less than a kilobyte.
-constexpr std::uint64_t kMaxBytes = 1ULL << 26;
+constexpr std::uint64_t kMaxLockBytes = 1ULL << 26;
 
 Diagnostic formatError(const std::string& file, const LockTextError& error) {
     std::vector<std::string> features;
@@ -45,7 +45,7 @@ Result<LockText> readLock(const LockArguments& arguments) {
         }
         return LockText{};
     }
-    const Result<Bytes> bytes = readFile(arguments.file, kMaxBytes);
+    const Result<Bytes> bytes = readFile(arguments.file, kMaxLockBytes);
     if (!bytes) {
         return bytes.error();
     }

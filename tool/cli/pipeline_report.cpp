@@ -1,5 +1,6 @@
 #include "cli/pipeline_report.h"
 
+#include "cli/report.h"
 #include "cli/table.h"
 
 #include <fmt/format.h>
@@ -13,15 +14,6 @@
 namespace glint {
 
 namespace {
-
-std::string milliseconds(double value) {
-    return fmt::format("{:.3f} ms", value);
-}
-
-template <typename T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 Json stagesToJson(VkShaderStageFlags stages) {
     constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
@@ -95,8 +87,9 @@ Json statisticsToJson(const PipelineReport& report) {
 
 std::string toText(const PipelineReport& report) {
     const Renderer::PipelineMaking& making = report.making;
-    std::string text = fmt::format("{} in {} by {} thread{}", report.count, milliseconds(making.milliseconds),
-                                   making.threads, making.threads == 1 ? "" : "s");
+    std::string text =
+        fmt::format("{} in {} by {} thread{}", report.count, formatMilliseconds(making.milliseconds),
+                    making.threads, making.threads == 1 ? "" : "s");
     if (report.cache) {
         text += fmt::format("; cache of {}", formatBytes(report.cache->loadedBytes));
         if (making.cacheHits) {
@@ -116,7 +109,7 @@ Json toJson(const StartReport& start) {
 
 std::string toText(const StartReport& start) {
     return fmt::format("after {}: device {:.3f}, scene {:.3f}, renderer {:.3f}, sample {:.3f}",
-                       milliseconds(start.totalMs()), start.deviceMs, start.uploadMs, start.rendererMs,
+                       formatMilliseconds(start.totalMs()), start.deviceMs, start.uploadMs, start.rendererMs,
                        start.firstSampleMs);
 }
 

@@ -13,10 +13,10 @@ namespace glint {
 
 namespace {
 
-constexpr const char* kFormat = "glint-profile";
-constexpr int kVersion = 1;
+constexpr const char* kProfileFormat = "glint-profile";
+constexpr int kProfileVersion = 1;
 // A key takes less than a kilobyte.
-constexpr std::uint64_t kMaxBytes = 1ULL << 26;
+constexpr std::uint64_t kMaxProfileBytes = 1ULL << 26;
 // With this limit, sums of 2^16 keys stay below 2^64.
 constexpr std::uint64_t kMaxHits = 1ULL << 48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
@@ -34,12 +34,12 @@ void readFormat(JsonReader& reader, const Json& json) {
         reader.fail("", "is no JSON object");
         return;
     }
-    if (reader.text(json, "", "format") != kFormat) {
-        reader.fail("/format", fmt::format("is not \"{}\"", kFormat));
+    if (reader.text(json, "", "format") != kProfileFormat) {
+        reader.fail("/format", fmt::format("is not \"{}\"", kProfileFormat));
     }
     const std::uint64_t version = reader.count(json, "", "version", kMaxHits);
-    if (version != kVersion) {
-        reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kVersion));
+    if (version != kProfileVersion) {
+        reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kProfileVersion));
     }
 }
 
@@ -98,8 +98,8 @@ std::string toText(const Profile& profile) {
     for (const ProfileKey& key : profile.keys) {
         keys.push_back(Json{{"features", key.features}, {"materials", key.materials}, {"hits", key.hits}});
     }
-    return toText(Json{{"format", kFormat},
-                       {"version", kVersion},
+    return toText(Json{{"format", kProfileFormat},
+                       {"version", kProfileVersion},
                        {"sources", sources},
                        {"variant", profile.variant.empty() ? Json(nullptr) : Json(profile.variant)},
                        {"alpha", profile.alpha},
@@ -109,7 +109,7 @@ std::string toText(const Profile& profile) {
 
 Result<Profile> readProfile(const std::filesystem::path& path) {
     JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
-    const Result<Json> json = reader.read(kMaxBytes);
+    const Result<Json> json = reader.read(kMaxProfileBytes);
     if (!json) {
         return json.error();
     }

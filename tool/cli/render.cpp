@@ -1,4 +1,5 @@
 // glint render: renders a picture of a scene with the runtime.
+#include "base/clock.h"
 #include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -32,12 +33,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double millisecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // Returns the package that was given, after checking it, or compiles one now. Fills in the report's members
 // about it.

@@ -1,5 +1,6 @@
 #include "cli/render_frames.h"
 
+#include "base/clock.h"
 #include "cli/camera.h"
 #include "cli/render_setup.h"
 #include "image/image_file.h"
@@ -13,16 +14,6 @@
 namespace glint {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double millisecondsBetween(Clock::time_point start, Clock::time_point end) {
-    return std::chrono::duration<double, std::milli>(end - start).count();
-}
-
-double millisecondsSince(Clock::time_point start) {
-    return millisecondsBetween(start, Clock::now());
-}
 
 // Renders picture after picture with one scene on the device and one renderer.
 class FrameLoop {

@@ -1,5 +1,6 @@
 #include "cli/render_report.h"
 
+#include "cli/report.h"
 #include "cli/table.h"
 #include "emit/json.h"
 
@@ -11,11 +12,6 @@
 namespace glint {
 
 namespace {
-
-template <typename T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 Json toJson(const std::optional<EnvironmentReport>& environment) {
     if (!environment) {
@@ -91,10 +87,6 @@ std::string filesOf(const RenderReport& report) {
     }
     const std::string& first = frames.front().image;
     return frames.size() == 1 ? first : fmt::format("{} to {}", first, frames.back().image);
-}
-
-std::string milliseconds(double value) {
-    return fmt::format("{:.3f} ms", value);
 }
 
 // A gate of an effect, with the number of rays that it kept.
@@ -258,7 +250,8 @@ std::string toText(const RenderReport& report, Detail detail) {
         {"exposure", fmt::format("{:+.2f} EV, {}", report.exposure,
                                  report.exposureAutomatic ? "brings surfaces to mid-grey" : "as asked for")},
         {"scene", fmt::format("{} triangles, {} instances", scene.triangles, scene.instances)},
-        {"BLAS", fmt::format("{} in {}", formatBytes(scene.blasBytes), milliseconds(scene.blasBuildMs))}};
+        {"BLAS",
+         fmt::format("{} in {}", formatBytes(scene.blasBytes), formatMilliseconds(scene.blasBuildMs))}};
     if (report.sky) {
         rows.insert(rows.end() - 3, {"sky", toText(*report.sky)});
     }
@@ -266,14 +259,14 @@ std::string toText(const RenderReport& report, Detail detail) {
         const Environment::Statistics& map = report.environment->statistics;
         rows.push_back(
             {"environment", fmt::format("{}, {} x {}, {} levels in {}", report.environment->file, map.width,
-                                        map.height, map.levels, milliseconds(map.filterMs))});
+                                        map.height, map.levels, formatMilliseconds(map.filterMs))});
     }
     if (report.compileMs) {
-        rows.push_back({"compile", milliseconds(*report.compileMs)});
+        rows.push_back({"compile", formatMilliseconds(*report.compileMs)});
     }
     rows.push_back({"pipelines", toText(report.pipelines)});
     rows.push_back({"first sample", toText(report.start)});
-    rows.push_back({"render", milliseconds(report.renderMs)});
+    rows.push_back({"render", formatMilliseconds(report.renderMs)});
     for (const EffectCounters& effect : counters.effects) {
         if (!report.countsLight && package::effectInfo(effect.effect).kind != package::EffectKind::Rays) {
             continue;  // not counted

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,11 @@ std::string toText(const Json& json);
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
 Json featuresToJson(FeatureMask mask);
+// Returns the value, or null if there is none.
+template <typename T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
 // Returns the text, or null if it is empty.
 Json textOrNull(const std::string& text);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().

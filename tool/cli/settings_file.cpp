@@ -18,8 +18,8 @@ namespace glint {
 namespace {
 
 constexpr const char* kOption = "--settings";
-constexpr const char* kFormat = "glint-settings";
-constexpr int kVersion = 1;
+constexpr const char* kSettingsFormat = "glint-settings";
+constexpr int kSettingsVersion = 1;
 
 Diagnostic refusal(const std::filesystem::path& file, const std::string& pointer, const std::string& message,
                    const std::string& hint) {
@@ -28,7 +28,7 @@ Diagnostic refusal(const std::filesystem::path& file, const std::string& pointer
 }
 
 // Returns a number, a switch or a text as a word of the command line, or nothing for other values.
-std::optional<std::string> valueText(const Json& value) {
+std::optional<std::string> settingText(const Json& value) {
     if (value.is_string()) {
         return value.get<std::string>();
     }
@@ -79,8 +79,10 @@ std::string settingsText(const bench::Configuration& settings, const std::string
             values[name] = value->second;
         }
     }
-    return toText(Json{
-        {"format", kFormat}, {"version", kVersion}, {"origin", origin}, {"settings", std::move(values)}});
+    return toText(Json{{"format", kSettingsFormat},
+                       {"version", kSettingsVersion},
+                       {"origin", origin},
+                       {"settings", std::move(values)}});
 }
 
 Result<bench::Configuration> readSettings(const std::filesystem::path& file) {
@@ -92,12 +94,13 @@ Result<bench::Configuration> readSettings(const std::filesystem::path& file) {
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     constexpr const char* kHint = "give a file that `glint bench --budget-ms` or --max-error wrote";
     const Json json = nestsTooDeep(*bytes) ? Json() : Json::parse(text, nullptr, false);
-    if (!json.is_object() || json.value("format", Json()) != Json(kFormat) || !json.contains("settings") ||
-        !json["settings"].is_object()) {
+    if (!json.is_object() || json.value("format", Json()) != Json(kSettingsFormat) ||
+        !json.contains("settings") || !json["settings"].is_object()) {
         return refusal(file, "", "is no file of settings", kHint);
     }
-    if (json.value("version", Json()) != Json(kVersion)) {
-        return refusal(file, "/version", fmt::format("is not {}", kVersion), "this glint reads that version");
+    if (json.value("version", Json()) != Json(kSettingsVersion)) {
+        return refusal(file, "/version", fmt::format("is not {}", kSettingsVersion),
+                       "this glint reads that version");
     }
     bench::Configuration settings;
     const std::vector<std::string> names = bench::settingNames();
@@ -107,7 +110,7 @@ Result<bench::Configuration> readSettings(const std::filesystem::path& file) {
             return refusal(file, pointer, "is no setting" + suggestion(name, names),
                            "leave it out, or see docs/cli.md for those there are");
         }
-        std::optional<std::string> word = valueText(value);
+        std::optional<std::string> word = settingText(value);
         if (!word || word->empty()) {
             return refusal(file, pointer, "is neither a text nor a number",
                            fmt::format("write it as on the command line, behind --{}", name));

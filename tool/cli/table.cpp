@@ -207,6 +207,10 @@ std::string shaderTitle(std::uint64_t id, std::string_view name, Detail detail) 
                        kEllipsis);
 }
 
+std::string formatMilliseconds(double milliseconds) {
+    return fmt::format("{:.3f} ms", milliseconds);
+}
+
 std::string formatBytes(std::uint64_t bytes) {
     constexpr double kKibi = 1024.0;
     const auto value = static_cast<double>(bytes);

@@ -41,6 +41,8 @@ std::string shaderTitle(std::uint64_t id, std::string_view name, Detail detail);
 
 // Returns "812 B", "12.3 KiB" or "4.56 MiB".
 std::string formatBytes(std::uint64_t bytes);
+// "1.234 ms"
+std::string formatMilliseconds(double milliseconds);
 // Returns "a, b, c", or "-" for an empty list.
 std::string join(const std::vector<std::string>& words);
 

@@ -19,7 +19,7 @@ std::string featureList(FeatureMask mask) {
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string materialList(const SceneList& scenes, const std::vector<int>& materials) {
+std::string materialNames(const SceneList& scenes, const std::vector<int>& materials) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < materials.size() && i < kMaxNamesListed; ++i) {
         const std::string& name = scenes.materials()[materials[i]].name;
@@ -63,7 +63,7 @@ void addCase(mustache::data& context, const SceneList& scenes, const Case& shade
     context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
     context.set("always", featureList(shaderCase.always));
     context.set("sometimes", featureList(shaderCase.sometimes));
-    context.set("materials", materialList(scenes, shaderCase.materials));
+    context.set("materials", materialNames(scenes, shaderCase.materials));
 }
 
 mustache::data makeContext(const SceneList& scenes, const Plan& plan, const PlanOptions& options) {

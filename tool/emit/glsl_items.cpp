@@ -9,7 +9,7 @@ namespace glint {
 
 namespace {
 
-constexpr std::string_view kBlank = " \t\r";
+constexpr std::string_view kItemBlanks = " \t\r";
 
 bool startsWord(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -26,7 +26,7 @@ std::string_view wordAt(std::string_view text) {
 }
 
 std::string_view skipBlanks(std::string_view text) {
-    return text.substr(std::min(text.find_first_not_of(kBlank), text.size()));
+    return text.substr(std::min(text.find_first_not_of(kItemBlanks), text.size()));
 }
 
 // Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
@@ -50,7 +50,7 @@ void forEachToken(std::string_view text, const Visit& visit) {
         const std::string_view word = comment == 0 ? wordAt(text) : std::string_view();
         const std::size_t length = std::max({comment, word.size(), std::size_t{1}});
         if (!word.empty() ? startsWord(word.front())
-                          : comment == 0 && kBlank.find(text.front()) == std::string_view::npos) {
+                          : comment == 0 && kItemBlanks.find(text.front()) == std::string_view::npos) {
             visit(text.substr(0, length));
         }
         text.remove_prefix(length);

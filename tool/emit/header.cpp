@@ -19,7 +19,7 @@ namespace {
 
 // Returns an ASCII string literal. Octal escapes end after three digits, so the next character can't extend
 // them.
-std::string quote(std::string_view text) {
+std::string cppLiteral(std::string_view text) {
     std::string literal = "\"";
     for (const char character : text) {
         const auto code = static_cast<unsigned char>(character);
@@ -68,7 +68,7 @@ mustache::data materialNames(const Scene& scene) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         mustache::data entry;
         entry.set("index", fmt::format("{}", i));
-        entry.set("literal", quote(scene.materials[i].name));
+        entry.set("literal", cppLiteral(scene.materials[i].name));
         list.push_back(entry);
     }
     return list;
@@ -80,7 +80,7 @@ mustache::data sceneTables(const SceneList& scenes) {
         const Scene& scene = scenes.scenes()[i];
         mustache::data entry;
         entry.set("index", fmt::format("{}", i));
-        entry.set("literal", quote(scenes.name(i)));
+        entry.set("literal", cppLiteral(scenes.name(i)));
         entry.set("hasMaterials", !scene.materials.empty());
         entry.set("materialCount", fmt::format("{}", scene.materials.size()));
         entry.set("materialNames", materialNames(scene));

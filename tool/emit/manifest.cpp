@@ -15,7 +15,7 @@
 
 namespace glint {
 
-using Json = nlohmann::ordered_json;
+using ManifestJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -28,8 +28,8 @@ std::string relativeName(const std::string& path, const std::string& scenePath) 
     return (isBelow ? relative : file.filename()).generic_string();
 }
 
-Json sources(const Scene& scene) {
-    Json list = Json::array();
+ManifestJson sources(const Scene& scene) {
+    ManifestJson list = ManifestJson::array();
     for (const SourceFile& file : scene.files) {
         list.push_back({{"file", relativeName(file.path, scene.path)},
                         {"bytes", file.bytes},
@@ -38,10 +38,10 @@ Json sources(const Scene& scene) {
     return list;
 }
 
-Json features() {
+ManifestJson features() {
     std::vector<FeatureInfo> rows(featureTable().begin(), featureTable().end());
     std::ranges::sort(rows, {}, &FeatureInfo::feature);
-    Json list = Json::array();
+    ManifestJson list = ManifestJson::array();
     for (const FeatureInfo& info : rows) {
         list.push_back({{"name", info.name},
                         {"bit", static_cast<int>(info.feature)},
@@ -52,7 +52,7 @@ Json features() {
     return list;
 }
 
-Json settingsOf(const CompileSettings& settings) {
+ManifestJson settingsOf(const CompileSettings& settings) {
     return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
             {"energyCompensation", settings.energyCompensation},
             {"textureLod", toString(settings.textureLod)},
@@ -64,13 +64,13 @@ Json settingsOf(const CompileSettings& settings) {
 }
 
 // Returns the budget of cases, or null if there is none.
-Json maxShadersOf(const PlanOptions& options) {
+ManifestJson maxShadersOf(const PlanOptions& options) {
     const int budget = budgetOf(options);
-    return budget > 0 ? Json(budget) : Json(nullptr);
+    return budget > 0 ? ManifestJson(budget) : ManifestJson(nullptr);
 }
 
-Json materialList(const SceneList& scenes, const std::vector<int>& materials) {
-    Json list = Json::array();
+ManifestJson materialsToJson(const SceneList& scenes, const std::vector<int>& materials) {
+    ManifestJson list = ManifestJson::array();
     for (const int material : materials) {
         const SceneList::Place place = scenes.place(material);
         list.push_back({{"scene", place.scene},
@@ -81,8 +81,8 @@ Json materialList(const SceneList& scenes, const std::vector<int>& materials) {
 }
 
 // The places have no names; shaders[] has those.
-Json materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
-    Json list = Json::array();
+ManifestJson materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
+    ManifestJson list = ManifestJson::array();
     for (const int material : materials) {
         const SceneList::Place place = scenes.place(material);
         list.push_back({{"scene", place.scene}, {"index", place.index}});
@@ -90,21 +90,22 @@ Json materialPlaces(const SceneList& scenes, const std::vector<int>& materials) 
     return list;
 }
 
-Json sceneList(const SceneList& scenes) {
-    Json list = Json::array();
+ManifestJson sceneList(const SceneList& scenes) {
+    ManifestJson list = ManifestJson::array();
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
         const Scene& scene = scenes.scenes()[i];
-        list.push_back({{"name", scenes.name(i)},
-                        {"source", std::filesystem::path(scene.path).filename().string()},
-                        {"variant", scene.variant.empty() ? Json(nullptr) : Json(scene.variant)},
-                        {"materials", scene.materials.size()},
-                        {"primitives", scenes.primitivesOf(i).count},
-                        {"sources", sources(scene)}});
+        list.push_back(
+            {{"name", scenes.name(i)},
+             {"source", std::filesystem::path(scene.path).filename().string()},
+             {"variant", scene.variant.empty() ? ManifestJson(nullptr) : ManifestJson(scene.variant)},
+             {"materials", scene.materials.size()},
+             {"primitives", scenes.primitivesOf(i).count},
+             {"sources", sources(scene)}});
     }
     return list;
 }
 
-Json moduleEntry(const CompiledModule& module) {
+ManifestJson moduleEntry(const CompiledModule& module) {
     return {{"name", module.name},
             {"file", module.file},
             {"bytes", module.statistics.bytes},
@@ -117,8 +118,8 @@ Json moduleEntry(const CompiledModule& module) {
 
 // Lists a case's own modules by strategy. In the uber shader a case is a function, which is listed under
 // passes.
-Json stages(const CompiledPackage& package, int shaderId) {
-    Json object = Json::object();
+ManifestJson stages(const CompiledPackage& package, int shaderId) {
+    ManifestJson object = ManifestJson::object();
     for (const CompiledModule& module : package.modules) {
         const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
         if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
@@ -128,8 +129,8 @@ Json stages(const CompiledPackage& package, int shaderId) {
     return object;
 }
 
-Json shaders(const SceneList& scenes, const CompiledPackage& package) {
-    Json list = Json::array();
+ManifestJson shaders(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
     for (const Case& shaderCase : package.plan.cases) {
         if (shaderCase.isRetired()) {
             continue;
@@ -141,17 +142,17 @@ Json shaders(const SceneList& scenes, const CompiledPackage& package) {
                         {"keys", shaderCase.keys.size()},
                         {"share", shareToJson(shaderCase.share)},
                         {"reason", toString(shaderCase.reason)},
-                        {"materials", materialList(scenes, shaderCase.materials)},
+                        {"materials", materialsToJson(scenes, shaderCase.materials)},
                         {"stages", stages(package, shaderCase.shaderId)}});
     }
     return list;
 }
 
-Json passes(const CompiledPackage& package) {
-    Json list = Json::array();
+ManifestJson passes(const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
     for (const CompiledModule& module : package.modules) {
         if (package::findRole(module.key.role)->repeated != package::Repeated::ByCase) {
-            Json entry = {{"role", package::roleName(module.key.role)}};
+            ManifestJson entry = {{"role", package::roleName(module.key.role)}};
             entry.update(moduleEntry(module));
             list.push_back(std::move(entry));
         }
@@ -159,8 +160,8 @@ Json passes(const CompiledPackage& package) {
     return list;
 }
 
-Json keys(const SceneList& scenes, const CompiledPackage& package) {
-    Json list = Json::array();
+ManifestJson keys(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
     for (const Key& key : package.plan.keys) {
         list.push_back({{"features", featureNames(key.mask)},
                         {"mask", fmt::format("{:#018x}", key.mask)},
@@ -172,8 +173,8 @@ Json keys(const SceneList& scenes, const CompiledPackage& package) {
     return list;
 }
 
-Json dropped(const SceneList& scenes, const CompiledPackage& package) {
-    Json list = Json::array();
+ManifestJson dropped(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
     for (const DroppedFeature& feature : package.plan.dropped) {
         list.push_back({{"feature", feature.feature},
                         {"materials", materialPlaces(scenes, feature.materials)},
@@ -182,7 +183,7 @@ Json dropped(const SceneList& scenes, const CompiledPackage& package) {
     return list;
 }
 
-Json counts(const SceneList& scenes, const CompiledPackage& package) {
+ManifestJson counts(const SceneList& scenes, const CompiledPackage& package) {
     return {
         {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
         {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
@@ -190,8 +191,8 @@ Json counts(const SceneList& scenes, const CompiledPackage& package) {
         {"spirvBytes", package.spirvBytes}};
 }
 
-Json files(const CompiledPackage& package) {
-    Json list = Json::array();
+ManifestJson files(const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
     for (const PackageFile& file : package.files) {
         list.push_back(
             {{"file", file.name}, {"bytes", file.bytes.size()}, {"hash", hexHash(hashBytes(file.bytes))}});
@@ -211,14 +212,14 @@ bool staysInside(const std::filesystem::path& name) {
 
 std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings) {
-    Json manifest;
+    ManifestJson manifest;
     manifest["format"] = kManifestFormat;
     manifest["version"] = package::kVersion;
     manifest["toolVersion"] = toolVersion();
     manifest["scenes"] = sceneList(scenes);
     manifest["strategies"] = strategyNames(settings.strategies);
     manifest["strategyChoice"] =
-        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : Json(nullptr);
+        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : ManifestJson(nullptr);
     manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = toString(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
@@ -234,21 +235,21 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["dropped"] = dropped(scenes, package);
     manifest["files"] = files(package);
     // Names come from the scene. Bytes that are not UTF-8 are replaced rather than refused.
-    return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return manifest.dump(2, ' ', false, ManifestJson::error_handler_t::replace) + "\n";
 }
 
 std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
     if (nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
         return {};
     }
-    const Json manifest = Json::parse(text, nullptr, false);
-    if (!manifest.is_object() || manifest.value("format", Json()) != Json(kManifestFormat)) {
+    const ManifestJson manifest = ManifestJson::parse(text, nullptr, false);
+    if (!manifest.is_object() || manifest.value("format", ManifestJson()) != ManifestJson(kManifestFormat)) {
         return {};
     }
     std::set<std::string, std::less<>> names{package::kManifestFile, package::kTablesFile};
-    const Json list = manifest.value("files", Json::array());
-    for (const Json& file : list) {
-        const Json name = file.is_object() ? file.value("file", Json()) : Json();
+    const ManifestJson list = manifest.value("files", ManifestJson::array());
+    for (const ManifestJson& file : list) {
+        const ManifestJson name = file.is_object() ? file.value("file", ManifestJson()) : ManifestJson();
         if (name.is_string() && staysInside(name.get<std::string>())) {
             names.insert(name.get<std::string>());
         }

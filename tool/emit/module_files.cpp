@@ -19,14 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kMagic = "glint compiled module 1\n";
+constexpr std::string_view kModuleMagic = "glint compiled module 1\n";
 constexpr std::uint64_t kMaxFileBytes = 1ULL << 30;
 constexpr const char* kBuildAgain =
     "run Ninja on the file that `glint compile --plan-only` wrote, with the scenes and the glint of now";
-
-std::string_view asText(const Bytes& bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 std::string packFile(std::string_view text, const CachedModule& module) {
     const std::string body = Packer()
@@ -34,7 +30,7 @@ std::string packFile(std::string_view text, const CachedModule& module) {
                                  .add(text)
                                  .add(std::string_view(packModule(module)))
                                  .take();
-    return std::string(kMagic) + Packer().add(hashBytes(body)).take() + body;
+    return std::string(kModuleMagic) + Packer().add(hashBytes(body)).take() + body;
 }
 
 }  // namespace
@@ -87,10 +83,10 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
                          fmt::format("is no compiled module, or a damaged one; it should be {}", name),
                          "delete it and run Ninja again");
     };
-    if (!asText(*bytes).starts_with(kMagic)) {
+    if (!asText(*bytes).starts_with(kModuleMagic)) {
         return damaged();
     }
-    std::string_view rest = asText(*bytes).substr(kMagic.size());
+    std::string_view rest = asText(*bytes).substr(kModuleMagic.size());
     const std::optional<std::uint64_t> sum = Unpacker(rest).number();
     if (!sum || hashBytes(rest.substr(sizeof *sum)) != *sum) {
         return damaged();

@@ -93,7 +93,7 @@ ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
 }
 
 constexpr std::string_view kTemplateSuffix = ".mustache";
-constexpr std::string_view kComputeSuffix = ".comp";
+constexpr std::string_view kComputeExtension = ".comp";
 
 // "passes/lighting.comp" gives lighting.comp, or lighting.rgen if it is a ray generation shader. If a role
 // has several modules, the name says which one it is.
@@ -120,7 +120,7 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
         // "effect_rays" gives reflection_rays.
         name.replace(0, name.find('_'), package::kEffects[key.index].file);
     }
-    if (extension == kComputeSuffix && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
+    if (extension == kComputeExtension && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
         extension = ".rgen";
     }
     return name + extension;

@@ -22,7 +22,7 @@ namespace {
 // A manifest is small. A larger file of that name was not made by Glint.
 constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
 
-Diagnostic writeError(const fs::path& path, const std::string& why) {
+Diagnostic outputError(const fs::path& path, const std::string& why) {
     return makeError("output-write", path.string(), "can't be written: " + why,
                      "check the folder, its permissions and the free space; nothing was changed");
 }
@@ -57,7 +57,7 @@ Result<Names> inspectFolder(const fs::path& folder) {
     }
     const bool empty = fs::is_empty(folder, error);
     if (error) {
-        return writeError(folder, error.message());
+        return outputError(folder, error.message());
     }
     Names names = packageFiles(folder);
     if (names.empty() && hasTables(folder)) {
@@ -113,13 +113,13 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
         std::error_code error;
         fs::create_directories(target.parent_path(), error);
         if (error) {
-            return writeError(target, error.message());
+            return outputError(target, error.message());
         }
         if (holds(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
             continue;
         }
         if (Status status = writeStaged(target, file.bytes); !status) {
-            return writeError(folder / file.name, status.error().message);
+            return outputError(folder / file.name, status.error().message);
         }
     }
     return okStatus();
@@ -157,7 +157,7 @@ Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path
                              "move it elsewhere; nothing was changed");
         }
     }
-    return error ? Status(writeError(folder, error.message())) : okStatus();
+    return error ? Status(outputError(folder, error.message())) : okStatus();
 }
 
 // Returns whether this process works in `folder` or below it. A shell would otherwise be left in a folder

@@ -16,14 +16,14 @@ namespace {
 constexpr const char* kDamaged = "the file is damaged: export it again";
 
 // Elements of a run of bytes.
-struct Layout {
+struct ElementLayout {
     ByteView bytes;
     std::size_t offset = 0;
     std::size_t stride = 0;
     std::size_t elementSize = 0;
 };
 
-bool fits(const Layout& layout, std::size_t count) {
+bool fits(const ElementLayout& layout, std::size_t count) {
     if (count == 0) {
         return layout.offset <= layout.bytes.size();
     }
@@ -33,7 +33,7 @@ bool fits(const Layout& layout, std::size_t count) {
     return (layout.bytes.size() - layout.offset - layout.elementSize) / layout.stride >= count - 1;
 }
 
-std::string pointerOf(int accessor) {
+std::string accessorPointer(int accessor) {
     return fmt::format("/accessors/{}", accessor);
 }
 
@@ -42,7 +42,7 @@ const tinygltf::Accessor& accessorOf(const Document& document, int accessor) {
 }
 
 Diagnostic rangeError(const Document& document, const std::string& pointer, std::size_t count,
-                      const Layout& layout) {
+                      const ElementLayout& layout) {
     return document.error(
         "accessor-range", pointer,
         fmt::format("{} elements of {} bytes from byte {} at a stride of {} go beyond the {} "
@@ -89,7 +89,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
     if (accessor.bufferView < 0 || accessor.bufferView == standInBufferView(document.json())) {
         if (!document.chargeZeroElements(accessor.count)) {
             return document.error(
-                "accessor-count", pointerOf(index),
+                "accessor-count", accessorPointer(index),
                 fmt::format(
                     "with its {} elements that no buffer view holds, the scene passes the limit of {}",
                     accessor.count, Document::kMaxZeroElements),
@@ -106,14 +106,15 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
         document.model().bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
     const std::size_t stride = viewStride == 0 ? elementSize : viewStride;
     if (stride < elementSize) {
-        return document.error(
-            "accessor-stride", fmt::format("/bufferViews/{}/byteStride", accessor.bufferView),
-            fmt::format("is {}, but the elements of {} have {} bytes", stride, pointerOf(index), elementSize),
-            kDamaged);
+        return document.error("accessor-stride",
+                              fmt::format("/bufferViews/{}/byteStride", accessor.bufferView),
+                              fmt::format("is {}, but the elements of {} have {} bytes", stride,
+                                          accessorPointer(index), elementSize),
+                              kDamaged);
     }
-    const Layout layout{*bytes, accessor.byteOffset, stride, elementSize};
+    const ElementLayout layout{*bytes, accessor.byteOffset, stride, elementSize};
     if (!fits(layout, accessor.count)) {
-        return rangeError(document, pointerOf(index), accessor.count, layout);
+        return rangeError(document, accessorPointer(index), accessor.count, layout);
     }
     elements.resize(accessor.count * elementSize);
     for (std::size_t i = 0; i < accessor.count; ++i) {
@@ -123,13 +124,13 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
 }
 
 // Reads a part of a sparse accessor; nothing is in it where `count` is 0.
-Result<Layout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
-                            std::size_t offset, std::size_t elementSize, std::size_t count) {
+Result<ElementLayout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
+                                   std::size_t offset, std::size_t elementSize, std::size_t count) {
     const Result<ByteView> bytes = document.bufferView(bufferView);
     if (!bytes) {
         return bytes.error();
     }
-    const Layout layout{*bytes, offset, elementSize, elementSize};
+    const ElementLayout layout{*bytes, offset, elementSize, elementSize};
     if (!fits(layout, count)) {
         return rangeError(document, pointer, count, layout);
     }
@@ -141,7 +142,7 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     const auto& sparse = accessor.sparse;
     const auto count = static_cast<std::size_t>(sparse.count);
-    const std::string pointer = pointerOf(index) + "/sparse";
+    const std::string pointer = accessorPointer(index) + "/sparse";
     if (count > accessor.count) {
         return document.error("sparse-count", pointer + "/count",
                               fmt::format("is {}, more than the {} elements", count, accessor.count),
@@ -154,13 +155,14 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     }
     const auto indexSize =
         static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(indexType)));
-    const Result<Layout> indices = sparseLayout(document, pointer + "/indices", sparse.indices.bufferView,
-                                                sparse.indices.byteOffset, indexSize, count);
+    const Result<ElementLayout> indices =
+        sparseLayout(document, pointer + "/indices", sparse.indices.bufferView, sparse.indices.byteOffset,
+                     indexSize, count);
     if (!indices) {
         return indices.error();
     }
-    const Result<Layout> values = sparseLayout(document, pointer + "/values", sparse.values.bufferView,
-                                               sparse.values.byteOffset, elementSize, count);
+    const Result<ElementLayout> values = sparseLayout(document, pointer + "/values", sparse.values.bufferView,
+                                                      sparse.values.byteOffset, elementSize, count);
     if (!values) {
         return values.error();
     }
@@ -181,7 +183,7 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 // All elements, tightly packed.
 Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
-    if (Status status = document.chargeVertices(accessor.count, pointerOf(index)); !status) {
+    if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
         return status.error();
     }
     Bytes elements;
@@ -215,11 +217,11 @@ Result<ElementFormat> floatFormat(const Document& document, int index) {
     const bool isVector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_VEC2 ||
                           accessor.type == TINYGLTF_TYPE_VEC3 || accessor.type == TINYGLTF_TYPE_VEC4;
     if (!isVector) {
-        return document.error("accessor-type", pointerOf(index) + "/type",
+        return document.error("accessor-type", accessorPointer(index) + "/type",
                               "a vertex attribute can't be a matrix", "export the scene again");
     }
     if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-        return document.error("accessor-component-type", pointerOf(index) + "/componentType",
+        return document.error("accessor-component-type", accessorPointer(index) + "/componentType",
                               "a vertex attribute can't have 32-bit integers", "export the scene again");
     }
     return ElementFormat{
@@ -273,7 +275,7 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
 Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
-        return document.error("accessor-type", pointerOf(index), "must have 4 x 4 matrices of floats",
+        return document.error("accessor-type", accessorPointer(index), "must have 4 x 4 matrices of floats",
                               "export the scene again");
     }
     constexpr std::size_t kElements = std::tuple_size_v<Matrix4>;
@@ -292,7 +294,7 @@ Result<IndexElements> readIndices(Document& document, int index) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     const std::uint32_t restart = largestUnsigned(accessor.componentType);
     if (accessor.type != TINYGLTF_TYPE_SCALAR || restart == 0) {
-        return document.error("accessor-component-type", pointerOf(index),
+        return document.error("accessor-component-type", accessorPointer(index),
                               "indices must be scalars of unsigned integers", "export the scene again");
     }
     const auto size = static_cast<std::size_t>(

@@ -17,7 +17,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the animation again";
+constexpr const char* kExportAnimation = "export the animation again";
 
 std::optional<AnimationPath> pathOf(const std::string& name) {
     if (name == "translation") {
@@ -84,7 +84,7 @@ public:
 
 private:
     void leaveOut(const std::string& pointer, const std::string& why) {
-        document_.warn("animation-channel", pointer, why + "; the channel is not played", kExport);
+        document_.warn("animation-channel", pointer, why + "; the channel is not played", kExportAnimation);
     }
 
     // Values of a keyframe of that property; 0 where the node has no such property to animate.
@@ -153,7 +153,8 @@ private:
     }
 
     std::nullopt_t refuse(const std::string& pointer, const std::string& why) {
-        document_.warn("animation-keyframes", pointer, why + "; its channels are not played", kExport);
+        document_.warn("animation-keyframes", pointer, why + "; its channels are not played",
+                       kExportAnimation);
         return std::nullopt;
     }
 

@@ -18,7 +18,7 @@ namespace glint::gltf {
 namespace {
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr const char* kExport = "export the mesh again";
+constexpr const char* kExportMesh = "export the mesh again";
 
 struct Reader {
     const PrimitiveSource& source;
@@ -73,7 +73,7 @@ Result<FloatElements> readElements(const Reader& reader, const char* attribute, 
         }
         if (isBare(reader.document(), accessor)) {
             return reader.document().error("attribute-data", reader.pointer(attribute),
-                                           "is neither in the Draco data nor in a buffer view", kExport);
+                                           "is neither in the Draco data nor in a buffer view", kExportMesh);
         }
     }
     return readFloats(reader.document(), accessor, integers);
@@ -97,7 +97,7 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
         return document.error("attribute-count", reader.pointer(attribute),
                               fmt::format("has {} elements, {} has {}", elementCount(document, accessor),
                                           reader.draco != nullptr ? "the Draco data" : "POSITION", expected),
-                              kExport);
+                              kExportMesh);
     }
     const Result<FloatElements> elements = readElements(reader, attribute, accessor, integers);
     if (!elements) {
@@ -105,7 +105,7 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
     }
     if (elements->components < fewest || elements->components > N) {
         return document.error("attribute-type", reader.pointer(attribute),
-                              fmt::format("has {} components, not {}", elements->components, N), kExport);
+                              fmt::format("has {} components, not {}", elements->components, N), kExportMesh);
     }
     std::array<float, N> filled{};
     filled.fill(1.0F);
@@ -125,7 +125,7 @@ Status readColors(const Reader& reader) {
     if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized) {
         reader.document().warn("color-normalized", reader.pointer("COLOR_0"),
                                "integer colours are not marked as normalised; they are read as if they were",
-                               kExport);
+                               kExportMesh);
     }
     return readAttribute(reader, "COLOR_0", 3, Integers::Normalized, reader.primitive.colors);
 }
@@ -149,12 +149,12 @@ Status readInfluences(const Reader& reader) {
         if (jointAccessor < 0 || weightAccessor < 0) {
             return reader.document().error("skin-attribute", reader.primitive.pointer + "/attributes",
                                            fmt::format("has one of {} and {}, not both", joints, weights),
-                                           kExport);
+                                           kExportMesh);
         }
         if (!hasJointNumbers(reader.document(), jointAccessor)) {
             return reader.document().error("attribute-type", reader.pointer(joints.c_str()),
                                            "must have unsigned integers of 8 or 16 bits, not normalised",
-                                           kExport);
+                                           kExportMesh);
         }
         InfluenceSet& read = sets.emplace_back();
         if (Status s = readAttribute(reader, joints.c_str(), 4, Integers::AsValues, read.joints); !s) {
@@ -227,7 +227,7 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
         if (index >= vertices) {
             return document.error(
                 "index-range", pointer,
-                fmt::format("index {} is {}, but there are {} vertices", i, index, vertices), kExport);
+                fmt::format("index {} is {}, but there are {} vertices", i, index, vertices), kExportMesh);
         }
     }
     return std::move(indices->values);
@@ -242,7 +242,7 @@ void compareIndexCount(const Reader& reader, bool isList) {
             "draco-count", reader.primitive.pointer + "/indices",
             fmt::format("has {} elements, the Draco data {}; those of the Draco data are used",
                         elementCount(reader.document(), accessor), packed),
-            kExport);
+            kExportMesh);
     }
 }
 

@@ -29,7 +29,7 @@ constexpr std::array kMeshopt{
     Rule{.name = "mode", .kind = Kind::Text, .required = true},
     Rule{.name = "filter", .kind = Kind::Text}};
 
-constexpr std::array kDraco{
+constexpr std::array kDracoRules{
     Rule{.name = "bufferView", .kind = Kind::Index, .required = true, .target = "/bufferViews"},
     Rule{.name = "attributes", .kind = Kind::Object, .required = true}};
 
@@ -50,7 +50,7 @@ std::optional<SchemaError> checkExtension(const Json& root, Json& owner, std::st
 
 std::optional<SchemaError> checkDraco(const Json& root, Json& primitive, const std::string& pointer) {
     constexpr std::string_view kName = "KHR_draco_mesh_compression";
-    if (auto error = checkExtension(root, primitive, kName, kDraco, pointer)) {
+    if (auto error = checkExtension(root, primitive, kName, kDracoRules, pointer)) {
         return error;
     }
     if (findExtension(primitive, kName) == nullptr) {

@@ -17,7 +17,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the scene again, or without Draco compression";
+constexpr const char* kExportWithoutDraco = "export the scene again, or without Draco compression";
 
 // Regular connectivity with values that are predicted without a residue comes near a hundredth of a bit a
 // face; nothing sensible comes near this.
@@ -25,7 +25,7 @@ constexpr std::uint64_t kMaxFacesPerByte = 1ULL << 11;
 // What attributes may take for a byte of the file: 64 bytes for each of half as many points.
 constexpr std::uint64_t kMaxAttributeRatio = 1ULL << 16;
 
-struct Claim {
+struct HeaderClaim {
     std::uint64_t faces = 0;
     std::uint64_t points = 0;  // at least
     // Sets of attributes that have seams of their own, each with a table of all corners.
@@ -42,7 +42,7 @@ draco::DecoderBuffer bufferOf(ByteView bytes) {
 // What the header says is in the data; the library allocates by it before it reads more. Layout: Draco
 // bitstream specification 2.2, "Draco Decoder" to "Edgebreaker Connectivity Data"; empty where it is another
 // version, no mesh, or cut short.
-std::optional<Claim> readClaim(ByteView bytes) {
+std::optional<HeaderClaim> readClaim(ByteView bytes) {
     draco::DecoderBuffer buffer = bufferOf(bytes);
     draco::DracoHeader header{};
     if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok() ||
@@ -66,7 +66,7 @@ std::optional<Claim> readClaim(ByteView bytes) {
         !draco::DecodeVarint(&second, &buffer) || (!isSequential && !buffer.Decode(&seamTables))) {
         return std::nullopt;
     }
-    return isSequential ? Claim{first, second, 0, true} : Claim{second, first, seamTables, false};
+    return isSequential ? HeaderClaim{first, second, 0, true} : HeaderClaim{second, first, seamTables, false};
 }
 
 // Room that the decoder makes for attributes of a mesh of `packed` bytes before it reads their values.
@@ -75,7 +75,8 @@ Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t pa
     if (needed / kMaxAttributeRatio > packed) {
         return document.error(
             "draco-size", pointer,
-            fmt::format("its {} bytes say they hold {} bytes of attributes", packed, needed), kExport);
+            fmt::format("its {} bytes say they hold {} bytes of attributes", packed, needed),
+            kExportWithoutDraco);
     }
     if (!document.chargeUnpackedBytes(needed)) {
         return document.error("draco-size", pointer, "the scene's compressed meshes unpack to too much",
@@ -84,13 +85,14 @@ Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t pa
     return okStatus();
 }
 
-Status checkClaim(Document& document, const Claim& claim, std::size_t packed, const std::string& pointer) {
+Status checkClaim(Document& document, const HeaderClaim& claim, std::size_t packed,
+                  const std::string& pointer) {
     // Each point is a corner of a face.
     if (claim.faces / kMaxFacesPerByte > packed || claim.points > 3 * claim.faces) {
         return document.error("draco-size", pointer,
                               fmt::format("its {} bytes say they hold {} triangles and {} points", packed,
                                           claim.faces, claim.points),
-                              kExport);
+                              kExportWithoutDraco);
     }
     // A table has a number for each corner.
     const std::uint64_t tables = claim.seamTables * claim.faces * 3 * sizeof(std::uint32_t);
@@ -199,11 +201,12 @@ Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, c
     if (!bytes) {
         return bytes.error();
     }
-    const std::optional<Claim> claim = readClaim(*bytes);
+    const std::optional<HeaderClaim> claim = readClaim(*bytes);
     if (!claim) {
         return document.error(
             "draco-decode", pointer,
-            "its buffer view holds no Draco mesh of bitstream version 2.2, which glTF asks for", kExport);
+            "its buffer view holds no Draco mesh of bitstream version 2.2, which glTF asks for",
+            kExportWithoutDraco);
     }
     if (Status status = checkClaim(document, *claim, bytes->size(), pointer); !status) {
         return status.error();
@@ -218,7 +221,8 @@ Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, c
     if (!problem.empty()) {
         return document.error(
             "draco-decode", pointer,
-            fmt::format("/bufferViews/{} can't be decoded: Draco says \"{}\"", view, problem), kExport);
+            fmt::format("/bufferViews/{} can't be decoded: Draco says \"{}\"", view, problem),
+            kExportWithoutDraco);
     }
     const std::uint32_t points = mesh.mesh_->num_points();
     mesh.indices_.reserve(std::size_t{3} * mesh.mesh_->num_faces());
@@ -228,7 +232,7 @@ Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, c
                 return document.error("draco-decode", pointer,
                                       fmt::format("triangle {} of /bufferViews/{} uses point {} of {}", i,
                                                   view, corner.value(), points),
-                                      kExport);
+                                      kExportWithoutDraco);
             }
             mesh.indices_.push_back(corner.value());
         }
@@ -245,20 +249,21 @@ Result<Bytes> DracoMesh::attribute(const Document& document, std::uint32_t id, c
     const draco::PointAttribute* attribute = mesh_->GetAttributeByUniqueId(id);
     if (attribute == nullptr) {
         return document.error("draco-attribute", pointer,
-                              fmt::format("is {}, but the Draco data has no such attribute", id), kExport);
+                              fmt::format("is {}, but the Draco data has no such attribute", id),
+                              kExportWithoutDraco);
     }
     if (attribute->num_components() != format.components) {
         return document.error("draco-attribute", pointer,
                               fmt::format("the Draco data has {} components, the accessor {}",
                                           attribute->num_components(), format.components),
-                              kExport);
+                              kExportWithoutDraco);
     }
     Bytes bytes;
     if (!isVertexType(attribute->data_type()) ||
         !appendValuesAs(format.componentType, *mesh_, *attribute, format.components, bytes)) {
         return document.error("draco-attribute", pointer,
                               "has values in the Draco data that the accessor's component type does not hold",
-                              kExport);
+                              kExportWithoutDraco);
     }
     return bytes;
 }

@@ -25,7 +25,7 @@ const Json& imageJson(const Document& document, int image) {
     return document.json()["images"][static_cast<std::size_t>(image)];
 }
 
-std::string pointerOf(int image) {
+std::string imagePointer(int image) {
     return fmt::format("/images/{}", image);
 }
 
@@ -63,12 +63,12 @@ Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
     if (isDataUri(uri)) {
         std::optional<DataUri> data = decodeDataUri(uri);
         if (!data) {
-            return document.error("data-uri", pointerOf(image) + "/uri", "is no valid data URI",
+            return document.error("data-uri", imagePointer(image) + "/uri", "is no valid data URI",
                                   "export the scene again");
         }
         storage = std::move(data->bytes);
     } else {
-        Result<Bytes> bytes = document.readFile(uri, pointerOf(image));
+        Result<Bytes> bytes = document.readFile(uri, imagePointer(image));
         if (!bytes) {
             return bytes.error();
         }
@@ -156,7 +156,7 @@ Result<Image> importImage(Document& document, int index) {
     const Json& json = imageJson(document, index);
     Image image;
     image.name = nameOf(json, index);
-    image.pointer = pointerOf(index);
+    image.pointer = imagePointer(index);
     const bool hasView = find(json, "bufferView") != nullptr;
     const std::string uri = textMember(json, "uri");
     if (hasView == !uri.empty()) {

@@ -11,7 +11,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the scene again, or without meshopt compression";
+constexpr const char* kExportWithoutMeshopt = "export the scene again, or without meshopt compression";
 
 // The vertex codec stores 16 values of one byte position in a quarter of a byte at best (a group header of
 // two bits), and its later version leaves out whole positions of a block of 256: 1024 : 1. Indices stay far
@@ -83,7 +83,7 @@ Result<Layout> readLayout(const Document& document, const Json& extension, const
     const Json* filterName = find(extension, "filter");
     const std::string filter = filterName == nullptr ? "NONE" : filterName->get<std::string>();
     const auto fail = [&](std::string message) {
-        return document.error("meshopt-layout", pointer, std::move(message), kExport);
+        return document.error("meshopt-layout", pointer, std::move(message), kExportWithoutMeshopt);
     };
     const std::optional<Mode> knownMode = modeOf(mode);
     if (!knownMode) {
@@ -160,13 +160,13 @@ Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std
         return document.error("meshopt-layout", pointer,
                               fmt::format("{} elements of {} bytes are not its {} bytes", layout->count,
                                           layout->stride, byteLength),
-                              kExport);
+                              kExportWithoutMeshopt);
     }
     if (byteLength / kMaxRatio > packed.size()) {
         return document.error(
             "meshopt-size", pointer,
             fmt::format("says it unpacks {} bytes to {}, which no data can", packed.size(), byteLength),
-            kExport);
+            kExportWithoutMeshopt);
     }
     if (!document.chargeUnpackedBytes(byteLength)) {
         return document.error("meshopt-size", pointer,
@@ -179,7 +179,8 @@ Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std
     }
     if (const int code = decode(*layout, packed, bytes); code != 0) {
         return document.error("meshopt-decode", pointer,
-                              fmt::format("can't be unpacked: {} (code {})", explain(code), code), kExport);
+                              fmt::format("can't be unpacked: {} (code {})", explain(code), code),
+                              kExportWithoutMeshopt);
     }
     applyFilter(*layout, bytes);
     return bytes;

@@ -12,7 +12,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the mesh again";
+constexpr const char* kExportMorphs = "export the mesh again";
 // Of all nodes of a scene together: a thousand figures with a thousand targets each have a quarter of it.
 constexpr std::uint64_t kMaxWeights = 1ULL << 22;
 
@@ -31,12 +31,12 @@ Status readDifferences(const PrimitiveSource& source, const Json& target, const 
     }
     if (elements->components != 3) {
         return document.error("attribute-type", place,
-                              fmt::format("has {} components, not 3", elements->components), kExport);
+                              fmt::format("has {} components, not 3", elements->components), kExportMorphs);
     }
     if (elements->count != vertices) {
         return document.error("attribute-count", place,
                               fmt::format("has {} elements, POSITION has {}", elements->count, vertices),
-                              kExport);
+                              kExportMorphs);
     }
     differences.resize(vertices);
     for (std::size_t i = 0; i < vertices; ++i) {
@@ -89,7 +89,8 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
             if (!member.isBased && find(targets[i], member.attribute) != nullptr) {
                 source.document.warn(
                     "morph-attribute", pointer + "/" + member.attribute,
-                    "the primitive itself has no such attribute; its differences are left out", kExport);
+                    "the primitive itself has no such attribute; its differences are left out",
+                    kExportMorphs);
                 continue;
             }
             if (Status status = readDifferences(source, targets[i], pointer, member.attribute, vertices,

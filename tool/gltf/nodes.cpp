@@ -14,7 +14,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the scene again";
+constexpr const char* kExportNodes = "export the scene again";
 
 std::string pointerOf(std::size_t node) {
     return fmt::format("/nodes/{}", node);
@@ -30,7 +30,7 @@ Result<std::vector<int>> findParents(const Document& document) {
             if (parent >= 0) {
                 return document.error("node-parents", pointerOf(static_cast<std::size_t>(child)),
                                       fmt::format("is a child of /nodes/{} and /nodes/{}", parent, i),
-                                      kExport);
+                                      kExportNodes);
             }
             parent = static_cast<int>(i);
         }
@@ -57,7 +57,7 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
     const auto missed = std::find(reached.begin(), reached.end(), false);
     if (missed != reached.end()) {
         return document.error("node-cycle", pointerOf(static_cast<std::size_t>(missed - reached.begin())),
-                              "is its own ancestor, or a descendant of such a node", kExport);
+                              "is its own ancestor, or a descendant of such a node", kExportNodes);
     }
     return okStatus();
 }
@@ -80,12 +80,13 @@ std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& p
         const auto node = static_cast<std::size_t>(model.scenes[scene].nodes[i]);
         const std::string pointer = fmt::format("/scenes/{}/nodes/{}", scene, i);
         if (listed[node]) {
-            document.warn("scene-node-repeated", pointer, "names a node that the scene has already", kExport);
+            document.warn("scene-node-repeated", pointer, "names a node that the scene has already",
+                          kExportNodes);
         } else if (parents[node] >= 0) {
             document.warn(
                 "scene-node-child", pointer,
                 fmt::format("names a child of /nodes/{}; it is drawn only below that", parents[node]),
-                kExport);
+                kExportNodes);
         } else {
             roots.push_back(node);
         }
@@ -109,7 +110,7 @@ std::array<double, 4> readRotation(Document& document, const std::vector<double>
         document.warn("node-rotation", pointer + "/rotation",
                       fmt::format("is no unit quaternion (length {}); {} is used", length,
                                   length > 0.0 ? "its direction" : "no rotation"),
-                      kExport);
+                      kExportNodes);
     }
     if (length <= 0.0) {
         return {0, 0, 0, 1};
@@ -121,13 +122,13 @@ Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& j
                    const std::string& pointer) {
     if (json.contains("translation") || json.contains("rotation") || json.contains("scale")) {
         document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
-                      kExport);
+                      kExportNodes);
     }
     Matrix4 matrix{};
     std::copy_n(node.matrix.begin(), matrix.size(), matrix.begin());
     if (matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0) {
         document.warn("node-matrix", pointer + "/matrix",
-                      "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExport);
+                      "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
         matrix[3] = matrix[7] = matrix[11] = 0.0;
         matrix[15] = 1.0;
     }

@@ -34,7 +34,7 @@ bool isFinite(const std::array<float, N>& v) {
 
 // Unit length; nothing for zero and what is not finite. Doubles hold the squares of all floats, and products
 // of two floats squared underflow only far below what a float holds.
-std::optional<Float3> normalized(const Double3& v) {
+std::optional<Float3> unitVector(const Double3& v) {
     const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (!std::isfinite(largest) || largest == 0.0) {
         return std::nullopt;
@@ -82,7 +82,7 @@ std::vector<Float3> adjacentNormals(const Primitive& primitive, const std::vecto
     const auto& indices = primitive.indices;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const Float3& origin = primitive.positions[indices[i]];
-        const auto normal = normalized(cross(subtract(primitive.positions[indices[i + 1]], origin),
+        const auto normal = unitVector(cross(subtract(primitive.positions[indices[i + 1]], origin),
                                              subtract(primitive.positions[indices[i + 2]], origin)));
         for (std::size_t corner = i; normal && corner < i + 3; ++corner) {
             const std::uint32_t vertex = indices[corner];
@@ -99,7 +99,7 @@ void repairNormals(Document& document, Primitive& primitive) {
     std::vector<bool> broken(primitive.normals.size());
     std::size_t count = 0;
     for (std::size_t i = 0; i < primitive.normals.size(); ++i) {
-        const auto unit = normalized(widen(primitive.normals[i]));
+        const auto unit = unitVector(widen(primitive.normals[i]));
         broken[i] = !unit;
         count += unit ? 0 : 1;
         primitive.normals[i] = unit.value_or(Float3{});
@@ -122,14 +122,14 @@ void repairNormals(Document& document, Primitive& primitive) {
 Float3 anyTangent(const Float3& normal) {
     const Double3 n = widen(normal);
     const Double3 axis = std::abs(n[0]) < 0.5 ? Double3{1.0, 0.0, 0.0} : Double3{0.0, 1.0, 0.0};
-    return normalized(cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
+    return unitVector(cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
 }
 
 void repairTangents(Document& document, Primitive& primitive) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < primitive.tangents.size(); ++i) {
         const Float4 stored = primitive.tangents[i];
-        const auto unit = normalized({stored[0], stored[1], stored[2]});
+        const auto unit = unitVector({stored[0], stored[1], stored[2]});
         const Float3 tangent = unit ? *unit : anyTangent(primitive.normals[i]);
         const bool valid = unit.has_value() && std::isfinite(stored[3]) && stored[3] != 0.0F;
         count += valid ? 0 : 1;

@@ -15,7 +15,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the scene again";
+constexpr const char* kExportSkin = "export the scene again";
 
 // What a vertex follows, in the order of the file; not yet normalised.
 struct Influence {
@@ -60,11 +60,11 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& js
     if (matrices->size() < joints) {
         return document.error("skin-matrices", place,
                               fmt::format("has {} matrices for {} joints", matrices->size(), joints),
-                              kExport);
+                              kExportSkin);
     }
     matrices->resize(joints);
     if (!std::ranges::all_of(*matrices, fitsFloat)) {
-        return document.error("skin-matrices", place, "has elements that are no finite numbers", kExport);
+        return document.error("skin-matrices", place, "has elements that are no finite numbers", kExportSkin);
     }
     return matrices;
 }
@@ -80,7 +80,7 @@ Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, cons
     if (joints.empty() || joints.size() > kMaxJoints) {
         return document.error("skin-joints", pointer + "/joints",
                               fmt::format("has {} joints; 1 to {} are possible", joints.size(), kMaxJoints),
-                              kExport);
+                              kExportSkin);
     }
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const int node = numbers.inScene(joints[i].get<int>());

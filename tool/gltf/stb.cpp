@@ -32,7 +32,7 @@ struct StbFree {
     }
 };
 
-bool readHeader(ByteView bytes, Image& image, std::string& problem) {
+bool readStbHeader(ByteView bytes, Image& image, std::string& problem) {
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         problem = "larger than 2 GiB";
         return false;
@@ -49,7 +49,7 @@ bool readHeader(ByteView bytes, Image& image, std::string& problem) {
 }
 
 bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
-    if (!readHeader(bytes, image, problem)) {
+    if (!readStbHeader(bytes, image, problem)) {
         return false;
     }
     problem = findPngExcess(bytes, image.width, image.height);
@@ -62,7 +62,7 @@ bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
     if (!problem.empty()) {
         return false;
     }
-    if (!readHeader(bytes, image, problem)) {
+    if (!readStbHeader(bytes, image, problem)) {
         return false;
     }
     const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
@@ -74,7 +74,7 @@ bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
     return true;
 }
 
-bool decode(ByteView bytes, Image& image, std::string& problem) {
+bool decodeStb(ByteView bytes, Image& image, std::string& problem) {
     const int size = static_cast<int>(bytes.size());
     const bool isDeep = image.format == PixelFormat::Rgba16;
     int width = 0;
@@ -96,7 +96,7 @@ bool decode(ByteView bytes, Image& image, std::string& problem) {
 
 }  // namespace
 
-const Codec kPng{"PNG", readPngHeader, decode};
-const Codec kJpeg{"JPEG", readJpegHeader, decode};
+const Codec kPng{"PNG", readPngHeader, decodeStb};
+const Codec kJpeg{"JPEG", readJpegHeader, decodeStb};
 
 }  // namespace glint::gltf

@@ -20,7 +20,7 @@ const char* describe(VP8StatusCode code) {
     }
 }
 
-bool readHeader(ByteView bytes, Image& image, std::string& problem) {
+bool readWebpHeader(ByteView bytes, Image& image, std::string& problem) {
     WebPBitstreamFeatures features;
     if (const VP8StatusCode code = WebPGetFeatures(bytes.data(), bytes.size(), &features);
         code != VP8_STATUS_OK) {
@@ -37,7 +37,7 @@ bool readHeader(ByteView bytes, Image& image, std::string& problem) {
     return true;
 }
 
-bool decode(ByteView bytes, Image& image, std::string& problem) {
+bool decodeWebp(ByteView bytes, Image& image, std::string& problem) {
     const int stride = 4 * image.width;
     image.pixels.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(image.height));
     if (WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.pixels.data(), image.pixels.size(), stride) ==
@@ -51,6 +51,6 @@ bool decode(ByteView bytes, Image& image, std::string& problem) {
 
 }  // namespace
 
-const Codec kWebp{"WebP", readHeader, decode};
+const Codec kWebp{"WebP", readWebpHeader, decodeWebp};
 
 }  // namespace glint::gltf

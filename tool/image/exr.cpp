@@ -22,13 +22,13 @@ namespace glint {
 namespace {
 
 constexpr std::array<const char*, 4> kChannelNames{"R", "G", "B", "A"};
-constexpr std::size_t kPixelBytes = sizeof(std::array<float, 4>);
+constexpr std::size_t kExrPixelBytes = sizeof(std::array<float, 4>);
 // As in checkImageSize(). While OpenEXR reads the header, it allocates for all lines, and for a block of
 // them.
 constexpr int kMaxHeaderSize = 16384;
 // At its best, Deflate makes 516 pixels of 2 bytes out of one byte. Lossy compression makes more of a single
 // colour, but no sensible file comes near this limit.
-constexpr std::int64_t kMaxPixelsPerByte = 1LL << 14;
+constexpr std::int64_t kMaxExrPixelsPerByte = 1LL << 14;
 
 class MemoryOutput : public Imf::OStream {
 public:
@@ -90,17 +90,17 @@ private:
 Imf::FrameBuffer frameBuffer(std::array<float, 4>* pixels, std::size_t width, int left, int top) {
     Imf::FrameBuffer buffer;
     const std::int64_t toOrigin = (left + static_cast<std::int64_t>(top) * static_cast<std::int64_t>(width)) *
-                                  static_cast<std::int64_t>(kPixelBytes);
+                                  static_cast<std::int64_t>(kExrPixelBytes);
     for (std::size_t i = 0; i < kChannelNames.size(); ++i) {
         char* base = reinterpret_cast<char*>(pixels) + i * sizeof(float) - toOrigin;
         const double fill = i == 3 ? 1.0 : 0.0;
         buffer.insert(kChannelNames[i],
-                      Imf::Slice(Imf::FLOAT, base, kPixelBytes, kPixelBytes * width, 1, 1, fill));
+                      Imf::Slice(Imf::FLOAT, base, kExrPixelBytes, kExrPixelBytes * width, 1, 1, fill));
     }
     return buffer;
 }
 
-Diagnostic formatError(const std::string& where, const std::string& message) {
+Diagnostic exrError(const std::string& where, const std::string& message) {
     return makeError("image-format", where, message, "write it again from the program that made it");
 }
 
@@ -110,10 +110,10 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
     for (std::size_t i = 0; i < kChannelNames.size(); ++i) {
         const Imf::Channel* channel = channels.findChannel(kChannelNames[i]);
         if (!channel && i < 3) {
-            return formatError(where, std::string("has no channel ") + kChannelNames[i]);
+            return exrError(where, std::string("has no channel ") + kChannelNames[i]);
         }
         if (channel && (channel->xSampling != 1 || channel->ySampling != 1)) {
-            return formatError(where, std::string("has a subsampled channel ") + kChannelNames[i]);
+            return exrError(where, std::string("has a subsampled channel ") + kChannelNames[i]);
         }
     }
     const Imath::Box2i window = file.header().dataWindow();
@@ -122,9 +122,9 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
     if (Status checked = checkImageSize(width, height, where); !checked) {
         return checked.error();
     }
-    if (width * height / kMaxPixelsPerByte > stream.size()) {
-        return formatError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
-                                      " pixels, but has only " + std::to_string(stream.size()) + " bytes");
+    if (width * height / kMaxExrPixelsPerByte > stream.size()) {
+        return exrError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
+                                   " pixels, but has only " + std::to_string(stream.size()) + " bytes");
     }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.pixels.resize(static_cast<std::size_t>(width * height));
@@ -159,7 +159,7 @@ Result<Bytes> encodeExr(const LinearImage& image, const std::string& where) {
 
 Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::string& where) {
     if (const std::string excess = findExrExcess(bytes); !excess.empty()) {
-        return formatError(where, "is no OpenEXR file that can be read: " + excess);
+        return exrError(where, "is no OpenEXR file that can be read: " + excess);
     }
     try {
         // This limit applies to the whole process; it is always set to the same value.
@@ -167,7 +167,7 @@ Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::st
         MemoryInput stream(bytes, where);
         return decode(stream, where);
     } catch (const std::exception& error) {
-        return formatError(where, std::string("is no OpenEXR file that can be read: ") + error.what());
+        return exrError(where, std::string("is no OpenEXR file that can be read: ") + error.what());
     }
 }
 

@@ -17,9 +17,10 @@ constexpr std::uint32_t kMultipart = 0x1000;
 // channels and 16384 columns has half of this, in 256 lines.
 constexpr double kMaxBlockBytes = 1ULL << 27;
 
-class Reader {
+class ExrReader {
 public:
-    Reader(std::string_view bytes, std::size_t start) : rest_(bytes.substr(std::min(start, bytes.size()))) {}
+    ExrReader(std::string_view bytes, std::size_t start)
+        : rest_(bytes.substr(std::min(start, bytes.size()))) {}
 
     // Reads a zero-terminated text. Returns nothing if the file ends first.
     std::optional<std::string_view> text() {
@@ -77,7 +78,7 @@ constexpr std::array kFixedTypes{
 
 bool isChannelList(std::string_view value) {
     constexpr std::size_t kChannelBytes = 16;
-    Reader reader(value, 0);
+    ExrReader reader(value, 0);
     std::optional<std::string_view> name = reader.text();
     while (name && !name->empty() && reader.skip(kChannelBytes)) {
         name = reader.text();
@@ -86,7 +87,7 @@ bool isChannelList(std::string_view value) {
 }
 
 bool isStringVector(std::string_view value) {
-    Reader reader(value, 0);
+    ExrReader reader(value, 0);
     while (!reader.atEnd()) {
         const std::optional<std::uint32_t> length = reader.word();
         if (!length || !reader.skip(*length)) {
@@ -97,7 +98,7 @@ bool isStringVector(std::string_view value) {
 }
 
 bool isPreview(std::string_view value) {
-    Reader reader(value, 0);
+    ExrReader reader(value, 0);
     const std::uint64_t width = reader.word().value_or(0);
     const std::uint64_t height = reader.word().value_or(0);
     constexpr std::size_t kSizeBytes = 8;
@@ -115,7 +116,7 @@ double bytesPerPixel(std::string_view value) {
     constexpr std::int32_t kHalf = 1;
     constexpr std::size_t kChannelWords = 4;  // the type first
     double bytes = 0.0;
-    Reader reader(value, 0);
+    ExrReader reader(value, 0);
     for (std::optional<std::string_view> name = reader.text(); name && !name->empty(); name = reader.text()) {
         bytes += wordAt(reader.rest(), 0) == kHalf ? 2.0 : 4.0;
         reader.skip(kChannelWords * sizeof(std::uint32_t));
@@ -181,8 +182,8 @@ bool fits(std::string_view type, std::string_view value) {
 
 std::string findExrExcess(std::span<const std::uint8_t> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const std::optional<std::uint32_t> version = Reader(text, sizeof(std::uint32_t)).word();
-    Reader reader(text, kHeaderStart);
+    const std::optional<std::uint32_t> version = ExrReader(text, sizeof(std::uint32_t)).word();
+    ExrReader reader(text, kHeaderStart);
     bool isEmpty = true;
     BlockSize block;
     while (version) {

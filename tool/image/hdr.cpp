@@ -19,23 +19,23 @@ namespace glint {
 namespace {
 
 // A run of 127 pixels takes 2 bytes in each of 4 channels.
-constexpr std::int64_t kMaxPixelsPerByte = 16;
+constexpr std::int64_t kMaxHdrPixelsPerByte = 16;
 // stb_image asks for at most 4 bytes of a flat pixel; otherwise it asks for its whole buffer.
-constexpr int kPixelBytes = 4;
+constexpr int kHdrPixelBytes = 4;
 // The byte that stb_image reads beyond the end of the file: a run of 127 pixels. With runs of no pixels it
 // would read forever.
 constexpr char kPastEnd = '\xFF';
 
 // Gives stb_image the file, and notes if it asks for bytes that are not there.
-class Reader {
+class HdrReader {
 public:
-    Reader(std::span<const std::uint8_t> bytes, bool padded) : bytes_(bytes), padded_(padded) {}
+    HdrReader(std::span<const std::uint8_t> bytes, bool padded) : bytes_(bytes), padded_(padded) {}
 
     static const stbi_io_callbacks& callbacks() {
         static constexpr stbi_io_callbacks kCallbacks{
-            [](void* user, char* data, int size) { return static_cast<Reader*>(user)->read(data, size); },
-            [](void* user, int n) { static_cast<Reader*>(user)->skip(n); },
-            [](void* user) { return static_cast<Reader*>(user)->atEnd() ? 1 : 0; }};
+            [](void* user, char* data, int size) { return static_cast<HdrReader*>(user)->read(data, size); },
+            [](void* user, int n) { static_cast<HdrReader*>(user)->skip(n); },
+            [](void* user) { return static_cast<HdrReader*>(user)->atEnd() ? 1 : 0; }};
         return kCallbacks;
     }
     bool ranOut() const {
@@ -45,7 +45,7 @@ public:
 private:
     int read(char* data, int size) {
         const std::size_t count = std::min(static_cast<std::size_t>(size), bytes_.size() - position_);
-        if (count == 0 || (size <= kPixelBytes && count < static_cast<std::size_t>(size))) {
+        if (count == 0 || (size <= kHdrPixelBytes && count < static_cast<std::size_t>(size))) {
             ranOut_ = true;
         }
         std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(position_), count, data);
@@ -77,7 +77,7 @@ struct StbFree {
     }
 };
 
-Diagnostic formatError(const std::string& where, const std::string& message) {
+Diagnostic hdrError(const std::string& where, const std::string& message) {
     return makeError("image-format", where, message, "write it again from the program that made it");
 }
 
@@ -88,27 +88,27 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
     int height = 0;
     int channels = 0;
     // The header must end within the file.
-    Reader header(bytes, false);
-    if (stbi_info_from_callbacks(&Reader::callbacks(), &header, &width, &height, &channels) == 0) {
-        return formatError(where, "is no Radiance picture (.hdr) that can be read");
+    HdrReader header(bytes, false);
+    if (stbi_info_from_callbacks(&HdrReader::callbacks(), &header, &width, &height, &channels) == 0) {
+        return hdrError(where, "is no Radiance picture (.hdr) that can be read");
     }
     if (Status checked = checkImageSize(width, height, where); !checked) {
         return checked.error();
     }
     const std::int64_t count = std::int64_t{width} * height;
-    if (count / kMaxPixelsPerByte > static_cast<std::int64_t>(bytes.size())) {
-        return formatError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
-                                      " pixels, but has only " + std::to_string(bytes.size()) + " bytes");
+    if (count / kMaxHdrPixelsPerByte > static_cast<std::int64_t>(bytes.size())) {
+        return hdrError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
+                                   " pixels, but has only " + std::to_string(bytes.size()) + " bytes");
     }
-    Reader reader(bytes, true);
-    const std::unique_ptr<float, StbFree> pixels(
-        stbi_loadf_from_callbacks(&Reader::callbacks(), &reader, &width, &height, &channels, STBI_rgb_alpha));
+    HdrReader reader(bytes, true);
+    const std::unique_ptr<float, StbFree> pixels(stbi_loadf_from_callbacks(
+        &HdrReader::callbacks(), &reader, &width, &height, &channels, STBI_rgb_alpha));
     if (!pixels) {
-        return formatError(where,
-                           std::string("is no Radiance picture that can be read: ") + stbi_failure_reason());
+        return hdrError(where,
+                        std::string("is no Radiance picture that can be read: ") + stbi_failure_reason());
     }
     if (reader.ranOut()) {
-        return formatError(where, "ends early, or has a broken scan line");
+        return hdrError(where, "ends early, or has a broken scan line");
     }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.pixels.resize(static_cast<std::size_t>(count));

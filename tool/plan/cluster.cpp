@@ -8,7 +8,7 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
 
 struct Group {
     Cluster cluster;
@@ -17,7 +17,7 @@ struct Group {
     bool alive = true;
     // `partner` is the later group with which merging costs least; `increase` is what that merge adds to the
     // total cost.
-    std::size_t partner = kNone;
+    std::size_t partner = kNobody;
     double increase = 0.0;
 };
 
@@ -27,13 +27,13 @@ double increaseOf(const Group& a, const Group& b) {
 
 void findPartner(std::vector<Group>& groups, std::size_t index) {
     Group& group = groups[index];
-    group.partner = kNone;
+    group.partner = kNobody;
     for (std::size_t other = index + 1; other < groups.size(); ++other) {
         if (!groups[other].alive) {
             continue;
         }
         const double increase = increaseOf(group, groups[other]);
-        if (group.partner == kNone || increase < group.increase) {
+        if (group.partner == kNobody || increase < group.increase) {
             group.partner = other;
             group.increase = increase;
         }
@@ -61,12 +61,12 @@ std::vector<Group> makeGroups(std::vector<Cluster> start, std::span<const Weight
     return groups;
 }
 
-// Returns the group whose merge with its partner costs least, or kNone if only one group is left.
+// Returns the group whose merge with its partner costs least, or kNobody if only one group is left.
 std::size_t cheapest(const std::vector<Group>& groups) {
-    std::size_t best = kNone;
+    std::size_t best = kNobody;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        const bool merges = groups[i].alive && groups[i].partner != kNone;
-        if (merges && (best == kNone || groups[i].increase < groups[best].increase)) {
+        const bool merges = groups[i].alive && groups[i].partner != kNobody;
+        if (merges && (best == kNobody || groups[i].increase < groups[best].increase)) {
             best = i;
         }
     }
@@ -123,10 +123,10 @@ struct Movable {
 };
 
 // Returns the index of the cluster to which moving `key` costs least, if that is less than `saving`, else
-// kNone.
+// kNobody.
 std::size_t betterPlace(const std::vector<Movable>& places, std::size_t from, const KeySet& key,
                         double saving, bool mayOpen) {
-    std::size_t best = kNone;
+    std::size_t best = kNobody;
     double least = saving - kLeastSaving;
     bool opened = false;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -158,7 +158,7 @@ bool moveKey(std::vector<Movable>& places, std::vector<std::size_t>& placeOf, in
     const bool mayOpen = !rest.cluster.keys.empty() && alive < maxClusters;
     const std::size_t to = betterPlace(places, from, toSet(keys[static_cast<std::size_t>(key)]),
                                        places[from].cost - rest.cost, mayOpen);
-    if (to == kNone) {
+    if (to == kNobody) {
         return false;
     }
     places[from] = std::move(rest);
@@ -176,7 +176,7 @@ std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const Wei
     assert(maxClusters >= 1);
     std::vector<Group> groups = makeGroups(std::move(start), keys);
     std::size_t alive = groups.size();
-    for (std::size_t best = cheapest(groups); best != kNone; best = cheapest(groups)) {
+    for (std::size_t best = cheapest(groups); best != kNobody; best = cheapest(groups)) {
         const bool isWithinBudget = alive <= static_cast<std::size_t>(maxClusters);
         if (isWithinBudget && groups[best].increase >= 0.0) {
             break;
@@ -196,7 +196,7 @@ std::vector<Cluster> agglomerate(std::vector<Cluster> start, std::span<const Wei
 std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const WeightedKey> keys,
                               int maxClusters) {
     std::vector<Movable> places(clusters.size() + 1);  // one more, empty: a key may open it
-    std::vector<std::size_t> placeOf(keys.size(), kNone);
+    std::vector<std::size_t> placeOf(keys.size(), kNobody);
     for (std::size_t i = 0; i < clusters.size(); ++i) {
         for (const int key : clusters[i].keys) {
             placeOf[static_cast<std::size_t>(key)] = i;
@@ -208,7 +208,8 @@ std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const Wei
     for (int round = 0; moved && round < kMaxRounds; ++round) {
         moved = false;
         for (std::size_t key = 0; key < keys.size(); ++key) {
-            if (placeOf[key] != kNone && moveKey(places, placeOf, static_cast<int>(key), keys, maxClusters)) {
+            if (placeOf[key] != kNobody &&
+                moveKey(places, placeOf, static_cast<int>(key), keys, maxClusters)) {
                 moved = true;
                 // One empty cluster must always be there, so that a key can open it.
                 if (std::ranges::none_of(places, [](const Movable& m) { return m.cluster.keys.empty(); })) {

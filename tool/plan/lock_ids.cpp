@@ -8,10 +8,10 @@ namespace glint {
 
 namespace {
 
-constexpr int kNone = -1;
+constexpr int kNoId = -1;
 
 // An ID that a case can claim because some of its keys have it in the lock.
-struct Claim {
+struct IdClaim {
     int keys = 0;  // keys of the case that have this ID
     double share = 0.0;
     int id = 0;
@@ -19,7 +19,7 @@ struct Claim {
 };
 
 // Returns whether claim `a` wins over `b`.
-bool isStronger(const Claim& a, const Claim& b) {
+bool isStronger(const IdClaim& a, const IdClaim& b) {
     if (a.keys != b.keys) {
         return a.keys > b.keys;
     }
@@ -29,9 +29,9 @@ bool isStronger(const Claim& a, const Claim& b) {
     return a.id != b.id ? a.id < b.id : a.shaderCase < b.shaderCase;
 }
 
-std::vector<Claim> claimsOf(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
-                            const LockedIds& locked) {
-    std::vector<Claim> claims;
+std::vector<IdClaim> claimsOf(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
+                              const LockedIds& locked) {
+    std::vector<IdClaim> claims;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         double share = 0.0;
         std::map<int, int> keysById;
@@ -54,10 +54,10 @@ std::vector<Claim> claimsOf(std::span<const WeightedKey> keys, std::span<const C
 
 std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
                                  const LockedIds& locked) {
-    std::vector<int> ids(cases.size(), kNone);
+    std::vector<int> ids(cases.size(), kNoId);
     std::set<int> taken;
-    for (const Claim& claim : claimsOf(keys, cases, locked)) {
-        if (ids[claim.shaderCase] == kNone && taken.insert(claim.id).second) {
+    for (const IdClaim& claim : claimsOf(keys, cases, locked)) {
+        if (ids[claim.shaderCase] == kNoId && taken.insert(claim.id).second) {
             ids[claim.shaderCase] = claim.id;
         }
     }
@@ -67,7 +67,7 @@ std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<co
     }
     int next = 0;
     for (int& id : ids) {
-        if (id == kNone) {
+        if (id == kNoId) {
             while (taken.contains(next)) {
                 ++next;
             }

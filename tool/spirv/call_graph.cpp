@@ -11,8 +11,6 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kHeaderWords = 5;
-
 // glslang names functions like this: "shade(struct-Hit…;vf3;".
 std::string withoutParameters(const std::string& name) {
     return name.substr(0, name.find('('));
@@ -23,7 +21,7 @@ std::string withoutParameters(const std::string& name) {
 std::vector<SpirvFunction> findFunctions(std::span<const std::uint32_t> words) {
     std::vector<SpirvFunction> functions;
     std::map<std::uint32_t, std::string> names;
-    for (std::size_t at = kHeaderWords; at < words.size() && words[at] >> spv::WordCountShift != 0;
+    for (std::size_t at = kSpirvHeaderWords; at < words.size() && words[at] >> spv::WordCountShift != 0;
          at += words[at] >> spv::WordCountShift) {
         switch (words[at] & spv::OpCodeMask) {
             case spv::OpName:

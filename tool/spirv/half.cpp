@@ -1,5 +1,7 @@
 #include "spirv/half.h"
 
+#include "spirv/reader.h"
+
 // This defines HasResultAndType().
 #define SPV_ENABLE_UTILITY_CODE
 #include <glslang/SPIRV/spirv.hpp>
@@ -13,7 +15,6 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kBound = 3;  // index of the word that holds the first free ID
 constexpr std::uint32_t kOpcodeMask = 0xFFFF;
 constexpr std::uint32_t kLengthShift = 16;
@@ -28,7 +29,7 @@ std::uint32_t head(spv::Op opcode, std::size_t length) {
 // Calls visit(instruction) for each instruction until it returns false. Requires a valid module.
 template <typename Visit>
 void forEachInstruction(std::span<const std::uint32_t> words, const Visit& visit) {
-    for (std::size_t i = kHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
+    for (std::size_t i = kSpirvHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
         if (!visit(words.subspan(i, words[i] >> kLengthShift))) {
             break;
         }
@@ -106,7 +107,7 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
 
 void hideExtractions(std::vector<std::uint32_t>& words) {
     const Types types = readTypes(words);
-    std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kHeaderWords);
+    std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kSpirvHeaderWords);
     forEachInstruction(words, [&](std::span<const std::uint32_t> instruction) {
         if ((instruction[0] & kOpcodeMask) == spv::OpCompositeExtract) {
             appendHidden(instruction, types, hidden[kBound], hidden);
@@ -119,7 +120,7 @@ void hideExtractions(std::vector<std::uint32_t>& words) {
 }
 
 void showExtractions(std::vector<std::uint32_t>& words) {
-    for (std::size_t i = kHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
+    for (std::size_t i = kSpirvHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
         if ((words[i] & kOpcodeMask) == kHidden) {
             words[i] = head(spv::OpCompositeExtract, kHiddenWords);
         }

@@ -20,7 +20,6 @@ using Words = std::vector<std::uint32_t>;
 // This accepts everything that any Vulkan version accepts, because lint is about speed, not about
 // environments.
 constexpr spv_target_env kEnvironment = SPV_ENV_UNIVERSAL_1_6;
-constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kBoundWord = 3;
 
 // Returns whether an instruction belongs before the debug instructions (SPIR-V specification, section 2.4).
@@ -46,7 +45,7 @@ void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint3
 
 // Replaces the line numbers of the module by the offsets of its ray query instructions.
 Words markOffsets(std::span<const std::uint32_t> words) {
-    Words marked(words.begin(), words.begin() + kHeaderWords);
+    Words marked(words.begin(), words.begin() + kSpirvHeaderWords);
     const std::uint32_t file = marked[kBoundWord]++;
     bool named = false;
     forEachInstruction(words, [&](const SpirvInstruction& instruction) {

@@ -6,8 +6,7 @@ namespace glint {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x07230203;
-constexpr std::size_t kHeaderWords = 5;
+constexpr std::uint32_t kSpirvMagic = 0x07230203;
 
 Diagnostic formatError(std::string message) {
     return makeError("spirv-format", {}, std::move(message), "expected a SPIR-V module, little endian");
@@ -17,13 +16,13 @@ Diagnostic formatError(std::string message) {
 
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit) {
-    if (words.size() < kHeaderWords) {
+    if (words.size() < kSpirvHeaderWords) {
         return formatError("has " + std::to_string(words.size()) + " words; a module's header alone has 5");
     }
-    if (words[0] != kMagic) {
+    if (words[0] != kSpirvMagic) {
         return formatError("does not begin with the magic number of SPIR-V");
     }
-    for (std::size_t at = kHeaderWords; at < words.size();) {
+    for (std::size_t at = kSpirvHeaderWords; at < words.size();) {
         const std::size_t length = words[at] >> 16U;
         if (length == 0 || length > words.size() - at) {
             return formatError("the instruction at word " + std::to_string(at) + " claims " +

@@ -3,12 +3,16 @@
 
 #include <glint/result.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 
 namespace glint {
+
+// Words before the first instruction.
+inline constexpr std::size_t kSpirvHeaderWords = 5;
 
 struct SpirvInstruction {
     std::uint32_t opcode = 0;

@@ -11,14 +11,6 @@
 namespace glint::oracle {
 namespace {
 
-Vec3 toVec(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
-double squared(double x) {
-    return x * x;
-}
-
 double largestOf(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }

@@ -7,10 +7,6 @@
 namespace glint::oracle {
 namespace {
 
-Vec3 toVec(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
 template <class PixelAt>
 Picture pictureOf(const View& view, const PixelAt& pixelAt) {
     Picture picture{view.width(), view.height(), {}};

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr Matrix4 kPoseIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const double kHalf = std::numbers::sqrt2 / 2.0;
 
 void expectNear(const Matrix4& actual, const Matrix4& expected) {
@@ -123,7 +123,7 @@ TEST(Pose, JointsTakeTheMeshFromItsBindPose) {
     Skin skin;
     skin.joints = {1, 0};
     // The first joint was at (0, 1, 0) when the mesh was bound to it.
-    skin.inverseBinds = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, kIdentity};
+    skin.inverseBinds = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, kPoseIdentity};
     const std::vector<Matrix4> joints = jointMatrices(scene, skin);
     ASSERT_EQ(joints.size(), 2U);
     expectNear(joints[0], {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1});

@@ -17,13 +17,13 @@ namespace {
 
 using namespace glint;
 
-constexpr unsigned kSeed = 20250621;
-constexpr FeatureMask kNormals = bit(Feature::Normals);
+constexpr unsigned kLockSeed = 20250621;
+constexpr FeatureMask kLockNormals = bit(Feature::Normals);
 constexpr FeatureMask kUnlit = bit(Feature::Unlit);
-constexpr FeatureMask kTextured = kNormals | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
-constexpr FeatureMask kCoated = kNormals | bit(Feature::Clearcoat);
-constexpr MergePolicy kPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
-                                     MergePolicy::Auto, MergePolicy::Profile};
+constexpr FeatureMask kLockTextured = kLockNormals | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+constexpr FeatureMask kLockCoated = kLockNormals | bit(Feature::Clearcoat);
+constexpr MergePolicy kLockPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
+                                         MergePolicy::Auto, MergePolicy::Profile};
 
 // A material and the primitive that has it.
 struct Piece {
@@ -120,10 +120,10 @@ void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
 }
 
 TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
-    RecordProperty("seed", kSeed);
-    for (const MergePolicy merge : kPolicies) {
+    RecordProperty("seed", kLockSeed);
+    for (const MergePolicy merge : kLockPolicies) {
         SCOPED_TRACE(toString(merge));
-        std::mt19937 random(kSeed);
+        std::mt19937 random(kLockSeed);
         std::vector<Piece> pieces;
         PlanOptions options{{}, merge};
         options.maxShaders = merge == MergePolicy::Auto || merge == MergePolicy::Profile ? 6 : 0;
@@ -151,8 +151,8 @@ TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
 
 // With `none` each key is a case, so a key that ever had an ID keeps it forever.
 TEST(Lock, KeysComeBackWithTheirIds) {
-    RecordProperty("seed", kSeed);
-    std::mt19937 random(kSeed);
+    RecordProperty("seed", kLockSeed);
+    std::mt19937 random(kLockSeed);
     std::vector<Piece> pieces;
     PlanOptions options{{}, MergePolicy::None};
     LockedIds everSeen;
@@ -169,16 +169,16 @@ TEST(Lock, KeysComeBackWithTheirIds) {
 }
 
 TEST(Lock, OrderOfMaterialsMeansNothing) {
-    std::mt19937 random(kSeed);
+    std::mt19937 random(kLockSeed);
     std::vector<Piece> pieces;
     for (int i = 0; i < 30; ++i) {
         pieces.push_back(randomPiece(random));
         // The values are equal, so that sums of shares do not depend on their order.
         pieces.back().inputs.expectedHits = 1.0;
     }
-    for (const MergePolicy merge : kPolicies) {
+    for (const MergePolicy merge : kLockPolicies) {
         PlanOptions options{{}, merge};
-        options.lockedIds = {{kNormals, 7}, {kTextured, 3}, {kCoated, 7}};
+        options.lockedIds = {{kLockNormals, 7}, {kLockTextured, 3}, {kLockCoated, 7}};
         const auto expected = keysById(planOf(pieces, options));
         std::ranges::shuffle(pieces, random);
         EXPECT_EQ(keysById(planOf(pieces, options)), expected) << toString(merge);
@@ -204,20 +204,20 @@ Piece coated() {
 
 TEST(Lock, RetiredIdsAreLeftAlone) {
     PlanOptions options{{}, MergePolicy::None};
-    options.lockedIds = {{kUnlit, 0}, {kNormals, 4}};
+    options.lockedIds = {{kUnlit, 0}, {kLockNormals, 4}};
     const Plan plan = planOf({plain(), coated()}, options);
     checkIds(plan);
     ASSERT_EQ(plan.cases.size(), 5U);
     EXPECT_EQ(caseCount(plan), 2U);
     EXPECT_EQ(plan.cases[0].name, "Retired_0");
-    EXPECT_EQ(plan.cases[4].always, kNormals);
-    EXPECT_EQ(plan.cases[1].always, kCoated);
+    EXPECT_EQ(plan.cases[4].always, kLockNormals);
+    EXPECT_EQ(plan.cases[1].always, kLockCoated);
     const LockUpdate update = updateLock(options.lockedIds, plan, false);
-    EXPECT_EQ(update.ids, (LockedIds{{kUnlit, 0}, {kNormals, 4}, {kCoated, 1}}));
+    EXPECT_EQ(update.ids, (LockedIds{{kUnlit, 0}, {kLockNormals, 4}, {kLockCoated, 1}}));
     EXPECT_EQ(update.stale, std::vector<FeatureMask>{kUnlit});
-    EXPECT_EQ(update.added, std::vector<FeatureMask>{kCoated});
+    EXPECT_EQ(update.added, std::vector<FeatureMask>{kLockCoated});
     const LockUpdate pruned = updateLock(options.lockedIds, plan, true);
-    EXPECT_EQ(pruned.ids, (LockedIds{{kNormals, 4}, {kCoated, 1}}));
+    EXPECT_EQ(pruned.ids, (LockedIds{{kLockNormals, 4}, {kLockCoated, 1}}));
     EXPECT_EQ(pruned.stale, update.stale);
 }
 
@@ -243,7 +243,7 @@ TEST(Lock, MoreKeysThenMoreHitsDecideWhoKeepsAnId) {
 // Two branches gave different keys the same ID.
 TEST(Lock, SecondClaimOfAnIdGetsANewOne) {
     PlanOptions options{{}, MergePolicy::None};
-    options.lockedIds = {{kNormals, 0}, {kTextured, 1}, {kCoated, 1}};
+    options.lockedIds = {{kLockNormals, 0}, {kLockTextured, 1}, {kLockCoated, 1}};
     const Plan plan = planOf({plain(), textured(), coated()}, options);
     const LockUpdate update = updateLock(options.lockedIds, plan, false);
     ASSERT_EQ(update.moved.size(), 1U);
@@ -289,8 +289,8 @@ LockedIds randomIds(std::mt19937& random, std::size_t count) {
 }
 
 TEST(LockText, ReadsBackWhatItWrites) {
-    RecordProperty("seed", kSeed);
-    std::mt19937 random(kSeed);
+    RecordProperty("seed", kLockSeed);
+    std::mt19937 random(kLockSeed);
     for (const std::size_t count : {0U, 1U, 2U, 30U, 500U}) {
         const LockedIds ids = randomIds(random, count);
         const LockText text = parsed(formatLock(ids));
@@ -301,7 +301,7 @@ TEST(LockText, ReadsBackWhatItWrites) {
 }
 
 TEST(LockText, IsSortedByFeatures) {
-    const std::string text = formatLock({{kUnlit, 0}, {kTextured, 2}, {0, 9}, {kNormals, 1}});
+    const std::string text = formatLock({{kUnlit, 0}, {kLockTextured, 2}, {0, 9}, {kLockNormals, 1}});
     const std::string keys = text.substr(text.find("version"));
     EXPECT_EQ(keys, "version 1\n9 -\n2 baseColorTexture texCoord0 normals\n1 normals\n0 unlit\n");
     EXPECT_TRUE(text.starts_with("# "));
@@ -312,7 +312,7 @@ TEST(LockText, OrderRepetitionAndLineEndsMeanNothing) {
     const LockText text = parsed(
         "\xEF\xBB\xBF# mine\r\nversion 1\r\n4 normals clearcoat\r\n\r\n# theirs\nversion 1\n"
         "  1\tnormals \n4 clearcoat normals\n0 unlit");
-    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 0}, {kNormals, 1}, {kCoated, 4}}));
+    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 0}, {kLockNormals, 1}, {kLockCoated, 4}}));
     EXPECT_TRUE(text.repeated.empty());
 }
 
@@ -358,8 +358,8 @@ TEST(LockText, MistakesHaveTheirLines) {
 
 // Any file is read, or refused with the number of a line, in printable words.
 TEST(LockText, RandomEditsAreReadOrRefused) {
-    RecordProperty("seed", kSeed);
-    std::mt19937 random(kSeed);
+    RecordProperty("seed", kLockSeed);
+    std::mt19937 random(kLockSeed);
     const std::string whole = formatLock(randomIds(random, 20));
     const std::string_view pieces[] = {"<<<<<<<",   "version 1\n", "version 9", "-",    "\n", "\r", " ",
                                        "999999999", "unlit",       "#",         "\xFF", "",   "0",  "\t"};

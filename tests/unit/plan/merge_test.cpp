@@ -16,12 +16,12 @@ namespace {
 
 using namespace glint;
 
-constexpr unsigned kSeed = 20250317;
-constexpr FeatureMask kBase = bit(Feature::Normals);
-constexpr FeatureMask kTextured = kBase | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
-constexpr FeatureMask kCoated = kTextured | bit(Feature::Clearcoat);
+constexpr unsigned kMergeSeed = 20250317;
+constexpr FeatureMask kMergeBase = bit(Feature::Normals);
+constexpr FeatureMask kMergeTextured = kMergeBase | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+constexpr FeatureMask kMergeCoated = kMergeTextured | bit(Feature::Clearcoat);
 constexpr FeatureMask kDispersing =
-    kBase | bit(Feature::Transmission) | bit(Feature::Volume) | bit(Feature::Dispersion);
+    kMergeBase | bit(Feature::Transmission) | bit(Feature::Volume) | bit(Feature::Dispersion);
 
 std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
@@ -68,8 +68,8 @@ std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<CaseKeys>& 
 constexpr MergePolicy kBudgeted[] = {MergePolicy::Auto, MergePolicy::Profile};
 
 TEST(Merge, PartitionsTheKeysWithinTheBudget) {
-    RecordProperty("seed", kSeed);
-    std::mt19937 random(kSeed);
+    RecordProperty("seed", kMergeSeed);
+    std::mt19937 random(kMergeSeed);
     for (const std::size_t count : {1U, 2U, 3U, 17U, 40U, 150U}) {
         const std::vector<WeightedKey> keys = randomKeys(random, count);
         for (const MergePolicy merge : kBudgeted) {
@@ -93,7 +93,7 @@ TEST(Merge, OfNothingMakesNoCase) {
 }
 
 TEST(Merge, GivesTheSameCasesAgain) {
-    std::mt19937 random(kSeed);
+    std::mt19937 random(kMergeSeed);
     std::vector<WeightedKey> keys = randomKeys(random, 60);
     // All shares are tied, so the order of the masks decides.
     for (WeightedKey& key : keys) {
@@ -108,7 +108,7 @@ TEST(Merge, GivesTheSameCasesAgain) {
 
 TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
     const std::vector<WeightedKey> keys =
-        glint::testing::toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+        glint::testing::toKeys({{kMergeTextured, 50.0}, {kMergeCoated, 30.0}, {kDispersing, 20.0}});
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
     ASSERT_EQ(cases.size(), 3U);
     for (const CaseKeys& shaderCase : cases) {
@@ -117,10 +117,10 @@ TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
 }
 
 TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
-    const FeatureMask doubleSided = kCoated | bit(Feature::DoubleSided);
+    const FeatureMask doubleSided = kMergeCoated | bit(Feature::DoubleSided);
     const auto casesWith = [&](double weight) {
         const std::vector<WeightedKey> keys =
-            glint::testing::toKeys({{kTextured, 1000.0}, {kCoated, weight}, {doubleSided, weight}});
+            glint::testing::toKeys({{kMergeTextured, 1000.0}, {kMergeCoated, weight}, {doubleSided, weight}});
         const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
         return casesOfKeys(keys.size(), cases);
     };
@@ -133,7 +133,7 @@ TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
 
 // The keys are the same: the keys with the hits get their own cases.
 TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
-    std::mt19937 random(kSeed);
+    std::mt19937 random(kMergeSeed);
     const std::vector<WeightedKey> start = randomKeys(random, 30);
     for (const MergePolicy merge : kBudgeted) {
         for (std::size_t hot = 0; hot < start.size(); ++hot) {
@@ -151,23 +151,23 @@ TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
 }
 
 TEST(Merge, RareKeysAreTheRest) {
-    std::map<FeatureMask, double> weights{{kTextured, 600.0}, {kCoated, 400.0}};
+    std::map<FeatureMask, double> weights{{kMergeTextured, 600.0}, {kMergeCoated, 400.0}};
     for (const Feature feature : {Feature::Sheen, Feature::Anisotropy, Feature::Iridescence}) {
-        weights[kBase | bit(feature)] = 1.0;
+        weights[kMergeBase | bit(feature)] = 1.0;
     }
     const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
     EXPECT_EQ(cases.size(), 3U);
     const auto reasons = reasonsByMask(keys, cases);
-    EXPECT_EQ(reasons.at(kBase | bit(Feature::Sheen)), CaseReason::Rest);
-    EXPECT_EQ(reasons.at(kBase | bit(Feature::Iridescence)), CaseReason::Rest);
-    EXPECT_EQ(reasons.at(kTextured), CaseReason::Own);
-    EXPECT_EQ(reasons.at(kCoated), CaseReason::Own);
+    EXPECT_EQ(reasons.at(kMergeBase | bit(Feature::Sheen)), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeBase | bit(Feature::Iridescence)), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Own);
+    EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::Own);
 }
 
 // Each of a thousand keys with equal shares is rare, but together they are not.
 TEST(Merge, ManyEqualKeysAreNotAllRest) {
-    std::mt19937 random(kSeed);
+    std::mt19937 random(kMergeSeed);
     std::vector<WeightedKey> keys = randomKeys(random, 1000);
     for (WeightedKey& key : keys) {
         key.share = 1e-3;
@@ -177,7 +177,7 @@ TEST(Merge, ManyEqualKeysAreNotAllRest) {
 
 TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
     const std::vector<WeightedKey> keys =
-        glint::testing::toKeys({{kTextured, 50.0}, {kCoated, 30.0}, {kDispersing, 20.0}});
+        glint::testing::toKeys({{kMergeTextured, 50.0}, {kMergeCoated, 30.0}, {kDispersing, 20.0}});
     const std::vector<CaseKeys> two = mergeKeys(keys, MergePolicy::Auto, 2);
     ASSERT_EQ(two.size(), 2U);
     EXPECT_EQ(std::ranges::count(two, CaseReason::Budget, &CaseKeys::reason), 1);
@@ -187,22 +187,22 @@ TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
 }
 
 TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
-    const FeatureMask sheen = kBase | bit(Feature::Sheen);
+    const FeatureMask sheen = kMergeBase | bit(Feature::Sheen);
     const std::vector<WeightedKey> keys =
-        glint::testing::toKeys({{kBase, 500.0},
-                                {kTextured, 460.0},
-                                {kTextured | bit(Feature::TextureTransform), 20.0},
-                                {kTextured | bit(Feature::VertexColor), 18.0},
-                                {kCoated, 0.0},
+        glint::testing::toKeys({{kMergeBase, 500.0},
+                                {kMergeTextured, 460.0},
+                                {kMergeTextured | bit(Feature::TextureTransform), 20.0},
+                                {kMergeTextured | bit(Feature::VertexColor), 18.0},
+                                {kMergeCoated, 0.0},
                                 {sheen, 0.0},
                                 {sheen | bit(Feature::DoubleSided), 2.0}});
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
     const auto reasons = reasonsByMask(keys, cases);
-    EXPECT_EQ(reasons.at(kBase), CaseReason::Hot);
-    EXPECT_EQ(reasons.at(kTextured), CaseReason::Hot);
-    EXPECT_EQ(reasons.at(kTextured | bit(Feature::TextureTransform)), CaseReason::Cold);
+    EXPECT_EQ(reasons.at(kMergeBase), CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kMergeTextured | bit(Feature::TextureTransform)), CaseReason::Cold);
     EXPECT_EQ(reasons.at(sheen | bit(Feature::DoubleSided)), CaseReason::Cold);
-    EXPECT_EQ(reasons.at(kCoated), CaseReason::NeverHit);
+    EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::NeverHit);
     EXPECT_EQ(reasons.at(sheen), CaseReason::NeverHit);
     // There are two hot keys, at most two families of cold keys, and one case for the others.
     const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
@@ -215,7 +215,7 @@ TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
 }
 
 TEST(Merge, AProfileWithoutHitsMakesOneCase) {
-    std::mt19937 random(kSeed);
+    std::mt19937 random(kMergeSeed);
     std::vector<WeightedKey> keys = randomKeys(random, 10);
     for (WeightedKey& key : keys) {
         key.share = 0.0;

@@ -1,0 +1,18 @@
+// The clock that measures what the host does.
+#pragma once
+
+#include <chrono>
+
+namespace glint {
+
+using Clock = std::chrono::steady_clock;
+
+inline double millisecondsBetween(Clock::time_point start, Clock::time_point end) {
+    return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
+inline double millisecondsSince(Clock::time_point start) {
+    return millisecondsBetween(start, Clock::now());
+}
+
+}  // namespace glint
