@@ -30,7 +30,7 @@ namespace {
 struct ExplainArguments {
     std::string scene;
     std::string material;
-    std::string variant;
+    ReadingArguments reading;
     std::string calibration;
     bool wholePlan = false;
     PlanArguments plan;
@@ -225,7 +225,8 @@ Result<StrategyAdvice> advise(const KnownCosts& costs, const Planned& planned, c
 
 int explain(const Console& console, const ExplainArguments& arguments) {
     ImportOptions import;
-    import.variant = arguments.variant;
+    import.variant = arguments.reading.variant;
+    import.strictPaths = arguments.reading.strictPaths;
     const Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());
@@ -324,7 +325,7 @@ void addExplain(CLI::App& app, Action& chosen) {
             "what each shader costs by the cost model of --merge auto,\n"
             "what shares it and why, instead of materials")
         .excludes(&material);
-    addVariant(command, arguments->variant);
+    addReadingOptions(command, arguments->reading);
     addCalibration(command, arguments->calibration);
     addPlanOptions(command, arguments->plan);
     addProfileInput(command, arguments->plan);

@@ -78,8 +78,13 @@ struct AccuracyArguments {
 };
 std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments);
 
-// --variant NAME: of KHR_materials_variants.
-CLI::Option& addVariant(CLI::App& command, std::string& variant);
+// How scenes are read.
+struct ReadingArguments {
+    std::string variant;  // of KHR_materials_variants; empty: none
+    bool strictPaths = false;
+};
+// --variant NAME, --strict-paths.
+void addReadingOptions(CLI::App& command, ReadingArguments& arguments);
 
 // A number within [min, max], the whole of `text`; NaN is outside of every range.
 bool parseReal(const std::string& text, double min, double max, double& value);

@@ -277,7 +277,8 @@ int run(const Console& console, const RenderArguments& arguments) {
     console.progress("reading " + arguments.scene);
     ImportOptions import;
     import.decodeImages = true;
-    import.variant = arguments.variant;
+    import.variant = arguments.reading.variant;
+    import.strictPaths = arguments.reading.strictPaths;
     Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());

@@ -37,7 +37,7 @@ std::string hintFor(const std::string& id) {
 Document::Document(const std::filesystem::path& path, const ImportOptions& options)
     : name_(path.string()),
       options_(options),
-      source_(path, options.maxFileBytes),
+      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow),
       verticesLeft_(options.maxVertices),
       unpackedBytesLeft_(options.maxFileBytes) {}
 
