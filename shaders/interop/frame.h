@@ -240,8 +240,8 @@ struct PushConstants {
     GLINT_ADDRESS(Frame) frame;
     uint tlasIndex;  // into the array of acceleration structures; uniform in a dispatch
     uint bucket;     // shading passes: which bucket this dispatch shades
-    uint geometry;   // G-buffer pass: GeometryRecord index of this draw
-    uint pad;
+    uint geometry;   // G-buffer pass: GeometryRecord index of this draw's first instance
+    uint geometryStride;  // and from one instance's GeometryRecord to the next one's
 };
 
 // Descriptor set 0: the scene.
