@@ -107,6 +107,14 @@ Json primaryToJson(const Planned& planned, const Key& key, int material) {
     return list;
 }
 
+// What animations change of the material: planning drops no feature for a value that passes.
+std::vector<std::string> changesOf(const SceneList& scenes, int material) {
+    const SceneList::Place place = scenes.place(material);
+    const std::vector<AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
+    const auto found = std::ranges::find(all, place.index, &AnimatedMaterial::material);
+    return found == all.end() ? std::vector<std::string>() : found->changes;
+}
+
 Json toJson(const Planned& planned, int material) {
     Json keys = Json::array();
     for (const Key* key : keysOf(planned, material)) {
@@ -132,7 +140,8 @@ Json toJson(const Planned& planned, int material) {
     return {{"index", material},
             {"name", planned.scenes.materialName(material)},
             {"keys", keys},
-            {"dropped", dropped}};
+            {"dropped", dropped},
+            {"animated", changesOf(planned.scenes, material)}};
 }
 
 std::string whyText(const Case& shader) {
@@ -176,6 +185,9 @@ std::string toText(const Planned& planned, int material) {
     }
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
+    }
+    for (const std::string& change : changesOf(planned.scenes, material)) {
+        rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
     }
     return text + formatFields(rows);
 }

@@ -24,6 +24,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -51,7 +52,10 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
                                    !arguments.environment.file.empty()};
         Status checked = checkPackage(*package, arguments.package, demand, scene);
-        const bool isLit = arguments.addsSun(scene) || !scene.lights.empty();
+        const bool isLit =
+            arguments.addsSun(scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
+                return light.shines() || light.canShine;
+            });
         if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
                                       "has no effect shadow: the lights of the picture cast none",

@@ -19,6 +19,10 @@ struct MaterialTables {
 // Textures of colours are sRGB, the others linear. Requires a scene that checkScene() accepts.
 MaterialTables makeMaterialTables(const Scene& scene);
 
+// The record of a material alone: its factors and the transforms of its textures. What it says of the
+// textures themselves is for makeMaterialTables() to settle.
+gpu::MaterialRecord makeMaterialRecord(const Material& material);
+
 // Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
 Status checkScene(const Scene& scene);
 

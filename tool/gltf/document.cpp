@@ -220,8 +220,9 @@ Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointe
                 "from it",
                 "export the scene again");
         }
-        return error("buffer-data", pointer, "has neither a \"uri\" nor the binary chunk of a GLB",
-                     "export the scene again");
+        return error("buffer-external", pointer,
+                     "has neither a \"uri\" nor the binary chunk of a GLB: its data is not in the file",
+                     "export the scene with its data");
     }
     const std::string& text = uri->get_ref<const std::string&>();
     if (!isDataUri(text)) {
@@ -290,6 +291,10 @@ Diagnostic Document::error(std::string id, std::string_view pointer, std::string
 
 void Document::warn(std::string id, std::string_view pointer, std::string message, std::string hint) {
     warnings_.push_back(makeWarning(std::move(id), where(pointer), std::move(message), std::move(hint)));
+}
+
+void Document::note(std::string id, std::string_view pointer, std::string message, std::string hint) {
+    warnings_.push_back({Severity::Note, std::move(id), where(pointer), std::move(message), std::move(hint)});
 }
 
 }  // namespace glint::gltf

@@ -64,7 +64,9 @@ public:
     Diagnostic error(std::string id, std::string_view pointer, std::string message,
                      std::string hint = {}) const;
     void warn(std::string id, std::string_view pointer, std::string message, std::string hint = {});
+    void note(std::string id, std::string_view pointer, std::string message, std::string hint = {});
 
+    // Notes, too.
     std::vector<Diagnostic>& warnings() {
         return warnings_;
     }

@@ -32,6 +32,9 @@ struct ImportOptions {
 // variant. The error names the file and, where there is one, the JSON pointer of the culprit.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
+// The materials as planning sees them: those that animations change stand for all their values.
+std::vector<Material> planningMaterials(const Scene& scene);
+
 // The primitives of all meshes, mesh by mesh, as planning sees them.
 std::vector<PrimitiveInputs> planningInputs(const Scene& scene);
 
