@@ -222,10 +222,11 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
         } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
             parts = shared->second;
         }
-        // A flattened instance has no place in a TLAS, whose transforms must be invertible. It is not drawn
-        // either: a surface that the camera sees and reflections don't would be worse than none.
-        // One that moves may be whole again in the next frame: it keeps its place, hidden.
-        const bool hidden = !isInvertible(instance.objectToWorld);
+        // An instance that is not visible is left out. A flattened one has no place in a TLAS, whose
+        // transforms must be invertible. It is not drawn either: a surface that the camera sees and
+        // reflections don't would be worse than none. One that moves may be whole again in the next frame: it
+        // keeps its place, hidden.
+        const bool hidden = !instance.visible || !isInvertible(instance.objectToWorld);
         if (hidden && !scene.moves) {
             continue;
         }
@@ -237,7 +238,8 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
                 const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
                 layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
                                         layout.parts[part].doubleSided,
-                                        (record.flags & gpu::kInstanceMirrored) != 0, i, hidden});
+                                        (record.flags & gpu::kInstanceMirrored) != 0, i, hidden,
+                                        range.primitive});
                 layout.geometries.push_back(makeGeometryRecord(entry, primitive, range.first, i));
                 placeDeformed(deformed, i, range.primitive, layout.geometries.back());
                 layout.triangles += range.count;

@@ -77,8 +77,9 @@ struct Draw {
     std::uint32_t vertexCount = 0;
     bool doubleSided = false;
     bool mirrored = false;
-    std::uint32_t instance = 0;  // index into SceneView::instances
-    bool hidden = false;         // the instance is flattened, as long as it is
+    std::uint32_t instance = 0;   // index into SceneView::instances
+    bool hidden = false;          // the instance is flattened or not visible, as long as it is
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
 };
 
 // Those of a mesh among primitives that are sorted as SceneView::primitives are: indices [first, end).

@@ -71,7 +71,14 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
-    const std::vector<gpu::MaterialRecord> materials = materialsWithSizes(state.context, known, scene.images);
+    std::vector<gpu::MaterialRecord> materials = materialsWithSizes(state.context, known, scene.images);
+    Result<std::vector<ChangingMaterial>> changing = replaceMaterials(scene.materials, materials);
+    if (!changing) {
+        return changing.error();
+    }
+    if (scene.moves) {
+        state.changing = std::move(*changing);
+    }
     if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
         return s;
     }
@@ -254,7 +261,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     state->statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
     state->statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
     if (!state->motion) {
-        state->draws = std::move(layout.draws);
+        state->batches = batchDraws(layout.draws);
     }
     return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
 }

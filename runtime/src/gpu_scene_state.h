@@ -2,8 +2,10 @@
 #pragma once
 
 #include "acceleration.h"
+#include "draw_batches.h"
 #include "geometry.h"
 #include "resources.h"
+#include "scene_materials.h"
 #include "scene_motion.h"
 
 #include <glint/renderer.h>
@@ -39,7 +41,10 @@ struct GpuScene::State {
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    std::vector<Draw> draws;
+    std::vector<Draw> draws;  // empty where the scene stays: its batches are enough
+    std::vector<DrawBatch> batches;
+    // Materials that an update changes, as the device has them. Empty where the scene stays.
+    std::vector<ChangingMaterial> changing;
     Statistics statistics;
     std::unique_ptr<SceneMotion> motion;  // null: the scene stays as it is
 };

@@ -1,10 +1,12 @@
 // SceneMotion: an update, from the pose to the commands.
 #include "motion_record.h"
 
+#include "draw_batches.h"
 #include "gpu_scene_state.h"
 #include "instance_math.h"
 #include "pass_dependencies.h"
 #include "scene_checks.h"
+#include "scene_materials.h"
 
 #include <algorithm>
 #include <cstring>
@@ -42,9 +44,16 @@ void recordCopies(const GpuScene::State& state, VkCommandBuffer commands) {
     };
     copy(0, motion.lightOffset, state.instances);
     copy(motion.lightOffset, motion.placedOffset, state.lights);
-    copy(motion.placedOffset,
-         motion.placedOffset + motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR),
-         motion.placedBuffer);
+    copy(motion.placedOffset, motion.materialOffset, motion.placedBuffer);
+    std::vector<VkBufferCopy> regions;
+    for (std::size_t i = 0; i < state.changing.size(); ++i) {
+        constexpr VkDeviceSize kBytes = sizeof(gpu::MaterialRecord);
+        regions.push_back({motion.materialOffset + i * kBytes, state.changing[i].material * kBytes, kBytes});
+    }
+    if (!regions.empty()) {
+        state.context.vk.CmdCopyBuffer(commands, motion.staging.handle.get(), state.materials.handle.get(),
+                                       static_cast<std::uint32_t>(regions.size()), regions.data());
+    }
 }
 
 void recordTlas(const GpuScene::State& state, VkCommandBuffer commands, BuildAction action) {
@@ -142,12 +151,13 @@ std::vector<Box> boxesOf(const SceneMotion& motion, std::span<const InstanceView
     return boxes;
 }
 
-bool place(SceneMotion& motion, std::span<const InstanceView> instances, std::vector<Draw>& draws) {
+bool place(GpuScene::State& state, std::span<const InstanceView> instances) {
+    SceneMotion& motion = *state.motion;
     bool changed = false;
     std::vector<bool> whole(instances.size());
     std::vector<bool> mirrored(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        whole[i] = isInvertible(instances[i].objectToWorld);
+        whole[i] = instances[i].visible && isInvertible(instances[i].objectToWorld);
         mirrored[i] = (makeInstanceRecord(instances[i].objectToWorld).flags & gpu::kInstanceMirrored) != 0;
     }
     for (std::size_t i = 0; i < motion.placed.size(); ++i) {
@@ -162,15 +172,22 @@ bool place(SceneMotion& motion, std::span<const InstanceView> instances, std::ve
             changed = true;
         }
     }
-    for (Draw& draw : draws) {
-        draw.hidden = !whole[draw.instance];
+    bool redrawn = state.batches.empty();
+    for (Draw& draw : state.draws) {
+        const bool hidden = !whole[draw.instance];
+        redrawn = redrawn || draw.hidden != hidden || draw.mirrored != mirrored[draw.instance];
+        draw.hidden = hidden;
         draw.mirrored = mirrored[draw.instance];
+    }
+    if (redrawn) {
+        state.batches = batchDraws(state.draws);
     }
     return changed;
 }
 
-void stage(const SceneMotion& motion, std::span<const InstanceView> instances,
+void stage(const GpuScene::State& state, std::span<const InstanceView> instances,
            std::span<const LightView> lights) {
+    const SceneMotion& motion = *state.motion;
     std::uint8_t* const bytes = motion.staging.mapped;
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const gpu::InstanceRecord record = makeInstanceRecord(instances[i].objectToWorld);
@@ -183,6 +200,10 @@ void stage(const SceneMotion& motion, std::span<const InstanceView> instances,
     if (!motion.placed.empty()) {
         std::memcpy(bytes + motion.placedOffset, motion.placed.data(),
                     motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR));
+    }
+    for (std::size_t i = 0; i < state.changing.size(); ++i) {
+        const gpu::MaterialRecord& record = state.changing[i].record;
+        std::memcpy(bytes + motion.materialOffset + i * sizeof(record), &record, sizeof(record));
     }
 }
 
@@ -223,12 +244,15 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
     if (Status s = checkMotion(view, shape); !s) {
         return s;
     }
-    const bool changed = place(motion, view.instances, state.draws);
+    if (Status s = takeMaterials(view.materials, state.changing); !s) {
+        return s;
+    }
+    const bool changed = place(state, view.instances);
     std::vector<bool> deformed =
         motion.deformer ? motion.deformer->setPose(view.instances) : std::vector<bool>(view.instances.size());
     const std::vector<Box> boxes = boxesOf(motion, view.instances);
     const Decisions decisions = decide(motion, std::move(deformed), changed, boxes, view.builds);
-    stage(motion, view.instances, view.lights);
+    stage(state, view.instances, view.lights);
     recordAll(state, commands, decisions);
     motion.statistics = countsOf(decisions);
     motion.recorded = true;

@@ -24,12 +24,12 @@ struct Decisions {
 // Of the scene's instances, in world space.
 std::vector<Box> boxesOf(const SceneMotion& motion, std::span<const InstanceView> instances);
 
-// Instances of the top level as the pose has them; what is flattened keeps its last place, out of sight.
-// Draws follow. Returns whether an instance of the top level has changed.
-bool place(SceneMotion& motion, std::span<const InstanceView> instances, std::vector<Draw>& draws);
+// Instances of the top level as the pose has them; what is flattened or not visible keeps its last place, out
+// of sight. Draws follow. Returns whether an instance of the top level has changed.
+bool place(GpuScene::State& state, std::span<const InstanceView> instances);
 
-// Records of instances and lights, and the instances of the top level, where the copy starts from.
-void stage(const SceneMotion& motion, std::span<const InstanceView> instances,
+// Records of instances, lights and materials, and the instances of the top level, where the copy starts from.
+void stage(const GpuScene::State& state, std::span<const InstanceView> instances,
            std::span<const LightView> lights);
 
 // Everything that the device has to do, with its dependencies before and after.

@@ -106,17 +106,15 @@ void PassRecorder::drawScene() {
     beginRendering();
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
     bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
-    for (const Draw& draw : state_.scene.draws) {
-        if (draw.hidden) {
-            continue;
-        }
+    for (const DrawBatch& draw : state_.scene.batches) {
         vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
         // glTF's fronts are counter-clockwise on screen, unless a mirroring transform turns them.
         vk_.CmdSetFrontFace(commands_,
                             draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
         pushed_.geometry = draw.geometry;
+        pushed_.geometryStride = draw.stride;
         push();
-        vk_.CmdDraw(commands_, draw.vertexCount, 1, 0, 0);
+        vk_.CmdDraw(commands_, draw.vertexCount, draw.count, 0, 0);
     }
     vk_.CmdEndRendering(commands_);
     endPass();

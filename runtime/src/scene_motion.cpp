@@ -47,8 +47,9 @@ Status createBuffers(GpuScene::State& state, std::size_t lights) {
     motion.placedBuffer = std::move(*placedBuffer);
     motion.lightOffset = motion.meshes.size() * sizeof(gpu::InstanceRecord);
     motion.placedOffset = motion.lightOffset + lights * sizeof(gpu::LightRecord);
-    const VkDeviceSize bytes =
+    motion.materialOffset =
         motion.placedOffset + motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR);
+    const VkDeviceSize bytes = motion.materialOffset + state.changing.size() * sizeof(gpu::MaterialRecord);
     Result<Buffer> staging = createBuffer(state.context, motion.pool, std::max<VkDeviceSize>(bytes, 1),
                                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
     if (!staging) {
@@ -96,7 +97,7 @@ Status buildAll(GpuScene::State& state, const SceneView& scene) {
     }
     decisions.tlas = BuildAction::Build;
     motion.tlasHistory.apply(decisions.tlas, boxes);
-    stage(motion, scene.instances, scene.lights);
+    stage(state, scene.instances, scene.lights);
     Result<CommandRunner> runner = CommandRunner::create(state.context);
     if (!runner) {
         return runner.error();
@@ -155,7 +156,7 @@ Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneL
                                            state.partBlases[placed.part]));
     }
     state.draws = layout.draws;
-    place(motion, scene.instances, state.draws);
+    place(state, scene.instances);
     if (Status s = createBuffers(state, scene.lights.size()); !s) {
         return s;
     }

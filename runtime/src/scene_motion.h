@@ -43,10 +43,12 @@ struct SceneMotion {
     std::vector<std::unique_ptr<MotionBounds>> boundsOfMeshes;
     std::vector<std::uint32_t> lightTypes;
 
-    // Instance records, light records and `placed`, one after the other, for the copy to the device.
+    // Instance records, light records, `placed` and records of materials that change, one after the other,
+    // for the copy to the device.
     Buffer staging;
     VkDeviceSize lightOffset = 0;
     VkDeviceSize placedOffset = 0;
+    VkDeviceSize materialOffset = 0;
 
     Timer timer;  // deform, bottom levels, top level
     MotionStatistics statistics;

@@ -246,9 +246,9 @@ GLINT_INTEROP_BEGIN
 struct PushConstants {
     GLINT_ADDRESS(Frame) frame;
     uint tlasIndex;  // into the array of acceleration structures; uniform in a dispatch
-    uint bucket;     // the bucket that this dispatch of a shading pass shades
-    uint geometry;   // GeometryRecord index of this draw of the G-buffer pass
-    uint pad;
+    uint bucket;     // shading passes: which bucket this dispatch shades
+    uint geometry;   // G-buffer pass: GeometryRecord index of this draw's first instance
+    uint geometryStride;  // and from one instance's GeometryRecord to the next one's
 };
 
 // Descriptor set 0: the scene.

@@ -4,6 +4,7 @@
 #include "hit/features.glsl"
 
 layout(location = 0) flat in uint primitive;
+layout(location = 3) flat in uint geometryIndex;
 #if GLINT_HAS_MASKED
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in float vertexAlpha;
@@ -13,13 +14,13 @@ layout(location = 0) out uvec2 surface;
 
 void main() {
 #if GLINT_HAS_MASKED
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[pushed.geometry];
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[geometryIndex];
     if ((geometry.flags & kGeometryMasked) != 0u) {
         MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
         float alpha = material.baseColorFactor.a * vertexAlpha;
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
             TextureRecord record = material.textures[kTextureBaseColor];
-            // The draw has one material, so the indices are uniform.
+            // All instances of a draw have one material: the indices are uniform.
 #if GLINT_TEXTURE_LOD_CONES
             alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
                              texCoord, GLINT_FRAME.sampleLodBias)
@@ -35,5 +36,5 @@ void main() {
         }
     }
 #endif
-    surface = uvec2(pushed.geometry, primitive);
+    surface = uvec2(geometryIndex, primitive);
 }

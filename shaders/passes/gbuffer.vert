@@ -6,13 +6,15 @@
 #include "hit/geometry.glsl"
 
 layout(location = 0) flat out uint primitive;
+layout(location = 3) flat out uint geometryIndex;
 #if GLINT_HAS_MASKED
 layout(location = 1) out vec2 texCoord;
 layout(location = 2) out float vertexAlpha;
 #endif
 
 void main() {
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[pushed.geometry];
+    geometryIndex = pushed.geometry + uint(gl_InstanceIndex) * pushed.geometryStride;
+    GeometryRecord geometry = GLINT_FRAME.geometries.data[geometryIndex];
     InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
     uint index = geometry.indices.data[gl_VertexIndex];
     vec4 world = vec4(transformPoint(instance.objectToWorld, geometry.positions.data[index]), 1.0);

@@ -65,6 +65,7 @@ constexpr Maker kMakers[] = {
     {R"(\bSchemaError\{\s*)", kError},
     {R"(\bcheckBudget\([^"]*)", kError},
     {R"(\b(?:makeWarning|warn)\(\s*)", kWarning},
+    {R"(\bnote\(\s*)", kNote},
     {R"(Severity::Error,\s*)", kError},
     {R"(Severity::Warning,\s*)", kWarning},
     {R"(Severity::Note,\s*)", kNote},

@@ -4,6 +4,7 @@
 #include "cli/schemas.h"
 #include "cli/tiny_scene.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -154,6 +155,55 @@ TEST_F(MovingScene, IsExplained) {
     EXPECT_EQ(motion.at("deformedMeshes")[0].at("morphTargets"), 1);
     EXPECT_EQ(motion.at("deformedMeshes")[0].at("node"), 1);
     EXPECT_NE(run({"explain", scene_}).out.find("Slide"), std::string::npos);
+}
+
+// The names of the effects that `explain` finds chosen.
+std::set<std::string> chosenEffects(const Json& explained) {
+    std::set<std::string> names;
+    for (const Json& effect : explained.at("effects")) {
+        if (effect.at("chosen").get<bool>()) {
+            names.insert(effect.at("name").get<std::string>());
+        }
+    }
+    return names;
+}
+
+// Of values that pass, effects and keys are those that any of them calls for.
+TEST_F(MovingScene, PointersArePlannedFor) {
+    Json gltf = Json::parse(readText(scene_));
+    Json& floor = gltf["materials"][0];
+    floor["pbrMetallicRoughness"]["metallicFactor"] = 0.0;
+    floor["pbrMetallicRoughness"]["roughnessFactor"] = 1.0;
+    floor["extensions"]["KHR_materials_transmission"] = Json::object();
+    gltf["extensions"]["KHR_lights_punctual"]["lights"].push_back({{"type", "point"}, {"intensity", 0}});
+    gltf["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    writeText(scene_, gltf.dump());
+    const Json still = run({"explain", scene_, "--json"}).json();
+    EXPECT_EQ(chosenEffects(still), std::set<std::string>());
+    EXPECT_TRUE(still.at("materials")[0].at("animated").empty());
+
+    // From 0 to 1, each: the weights' own sampler.
+    Json& animation = gltf["animations"][0];
+    for (const char* pointer :
+         {"/materials/0/pbrMetallicRoughness/roughnessFactor",
+          "/materials/0/extensions/KHR_materials_transmission/transmissionFactor",
+          "/extensions/KHR_lights_punctual/lights/0/intensity", "/cameras/0/perspective/aspectRatio"}) {
+        Json channel{{"sampler", 1}};
+        channel["target"]["path"] = "pointer";
+        channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] = pointer;
+        animation["channels"].push_back(channel);
+    }
+    writeText(scene_, gltf.dump());
+    const Outcome outcome = run({"explain", scene_, "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Json moving = outcome.json();
+    expectFits("explain", moving);
+    EXPECT_EQ(chosenEffects(moving), (std::set<std::string>{"shadow", "reflection", "refraction"}));
+    EXPECT_EQ(moving.at("materials")[0].at("animated").size(), 2U);
+    EXPECT_EQ(moving.at("motion").at("animations")[0].at("channels").at("material"), 2);
+    EXPECT_EQ(moving.at("motion").at("animations")[0].at("channels").at("light"), 1);
+    EXPECT_NE(outcome.err.find("note: \"/cameras/0/perspective/aspectRatio\""), std::string::npos)
+        << outcome.err;
 }
 
 TEST_F(RenderCommand, SaysThatNothingMoves) {

@@ -45,6 +45,28 @@ TEST(SceneView, NumbersStayAsInTheScene) {
     EXPECT_EQ(data.instances[2].mesh, 3U);
 }
 
+// Each placement is an instance, placed before its node; nodes that are never shown are none.
+TEST(SceneView, PlacementsAreInstances) {
+    Scene scene;
+    scene.meshes.resize(1);
+    scene.meshes[0].primitives = {triangle()};
+    scene.nodes = {placing(0), placing(0), placing(0)};
+    scene.nodes[0].world[0] = 2.0;
+    scene.nodes[0].instancing = 0;
+    scene.instancings.resize(1);
+    scene.instancings[0].count = 3;
+    scene.instancings[0].translations = {{0, 0, 0}, {1, 0, 0}, {5, 0, 7}};
+    scene.nodes[1].shown = scene.nodes[1].canShow = false;
+    scene.nodes[2].shown = false;
+    const SceneViewData data = makeSceneView(scene);
+    ASSERT_EQ(data.instances.size(), 4U);
+    EXPECT_EQ(data.primitives.size(), 1U) << "geometry is there once";
+    EXPECT_EQ(data.instances[2].objectToWorld[3], 10.0F);
+    EXPECT_EQ(data.instances[2].objectToWorld[11], 7.0F);
+    EXPECT_TRUE(data.instances[2].visible);
+    EXPECT_FALSE(data.instances[3].visible) << "an animation can show it";
+}
+
 TEST(SceneView, AttributesAreViewsOfTheScene) {
     Scene scene;
     scene.meshes.resize(1);

@@ -53,6 +53,22 @@ TEST_F(Scenes, AVariantIsUsedWhereThereIsOne) {
     EXPECT_NE(unknown.err.find("[variant-unknown]"), std::string::npos) << unknown.err;
 }
 
+// Links into a store are followed, as build systems make them, unless the caller forbids it.
+TEST_F(Scenes, LinksThatLeadOutAreAChoice) {
+    std::filesystem::rename(path("day") / "scene.bin", path("store.bin"));
+    std::filesystem::create_symlink(path("store.bin"), path("day") / "scene.bin");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"compile", "day/day.gltf", "--dry-run"}, {"explain", "day/day.gltf"}}) {
+        const Outcome followed = run(command);
+        EXPECT_EQ(followed.exit, 0) << followed.err;
+        std::vector<std::string> strict = command;
+        strict.emplace_back("--strict-paths");
+        const Outcome refused = run(strict);
+        EXPECT_EQ(refused.exit, 1);
+        EXPECT_NE(refused.err.find("[uri-unsafe]"), std::string::npos) << refused.err;
+    }
+}
+
 // The second scene's tables lie behind the first's.
 TEST_F(Scenes, RenderAsFromPackagesOfTheirOwn) {
     ASSERT_EQ(run({"compile", "day/day.gltf", "night/night.gltf", "-o", "two"}).exit, 0);

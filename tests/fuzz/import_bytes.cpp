@@ -48,6 +48,20 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive) {
             "every vertex follows as many joints");
 }
 
+// Of channels of that path.
+std::size_t targetsOf(const Scene& scene, AnimationPath path) {
+    switch (path) {
+        case AnimationPath::Material:
+            return scene.animatedMaterials.size();
+        case AnimationPath::Light:
+            return scene.restLights.size();
+        case AnimationPath::Camera:
+            return scene.restCameras.size();
+        default:
+            return scene.nodes.size();
+    }
+}
+
 void checkAnimation(const Scene& scene, const Animation& animation) {
     for (const AnimationSampler& sampler : animation.samplers) {
         const std::size_t parts = sampler.interpolation == Interpolation::CubicSpline ? 3 : 1;
@@ -56,7 +70,8 @@ void checkAnimation(const Scene& scene, const Animation& animation) {
                 "a sampler has the values of its keyframes");
     }
     for (const AnimationChannel& channel : animation.channels) {
-        require(static_cast<std::size_t>(channel.node) < scene.nodes.size(), "a channel's node exists");
+        require(static_cast<std::size_t>(channel.target) < targetsOf(scene, channel.path),
+                "a channel's target exists");
         require(static_cast<std::size_t>(channel.sampler) < animation.samplers.size(),
                 "a channel's sampler exists");
     }

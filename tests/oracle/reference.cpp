@@ -18,6 +18,9 @@ Vec3 Reference::surface(const Ray& ray, const Hit& hit, double mirrorRoughness) 
     }
     Vec3 result = shading.emission();
     for (const Light& light : scene_.lights) {
+        if (!light.shown) {
+            continue;
+        }
         const LightCap cap = lightCap(light, {}, hit.position);
         const Vec3 reflected = shading.scattered(cap.direction) * irradianceFrom(light, hit.position);
         if (reflected != Vec3(0.0) && world_.visible({hit.position, cap.direction}, cap.centerDistance)) {

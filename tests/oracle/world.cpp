@@ -1,5 +1,7 @@
 #include "oracle/world.h"
 
+#include "gltf/transform.h"
+
 #include <algorithm>
 #include <array>
 
@@ -57,11 +59,10 @@ void appendPrimitive(const Scene& scene, const Primitive& primitive, const glm::
 std::vector<Triangle> trianglesOf(const Scene& scene) {
     std::vector<Triangle> triangles;
     for (const Node& node : scene.nodes) {
-        if (node.mesh < 0) {
-            continue;
-        }
-        for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-            appendPrimitive(scene, primitive, toMatrix(node.world), triangles);
+        for (const Matrix4& world : gltf::placesOf(scene, node)) {
+            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                appendPrimitive(scene, primitive, toMatrix(world), triangles);
+            }
         }
     }
     return triangles;

@@ -1,7 +1,11 @@
 // Tests scenes that move: each pose must give the picture of the same scene uploaded in that pose.
 #include "cli/camera.h"
 #include "cli/scene_view.h"
+#include "gltf/animatable.h"
+#include "gltf/animated_values.h"
+#include "gltf/transform.h"
 #include "gpu_scene_state.h"
+#include "motion/pose.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
@@ -261,6 +265,122 @@ TEST(Motion, WornStructuresAreBuiltAnew) {
     }
     moving.scene.nodes[1].weights = {7.0, 0.0};
     EXPECT_EQ(moving.update().rebuilds, 1U) << "after as many refits as there may be";
+}
+
+// The material of node 1 gets a coat and another colour within a second.
+Scene paintedScene() {
+    Scene scene = rigidScene();
+    const int painted = scene.meshes[1].primitives[0].material;
+    Material& material = scene.materials[static_cast<std::size_t>(painted)];
+    material.clearcoat = {true, 0.0F, 0.1F, 1.0F};
+    AnimatedMaterial& animated = scene.animatedMaterials.emplace_back();
+    animated.material = painted;
+    animated.rest = material;
+    Animation& animation = scene.animations.emplace_back();
+    const auto drive = [&](const char* name, std::size_t width, std::vector<float> values) {
+        animation.channels.push_back({0, AnimationPath::Material, static_cast<int>(animation.samplers.size()),
+                                      *findMaterialProperty(name)});
+        animation.samplers.push_back({Interpolation::Linear, {0.0F, 1.0F}, width, std::move(values)});
+    };
+    drive("extensions/KHR_materials_clearcoat/clearcoatFactor", 1, {0, 1});
+    drive("pbrMetallicRoughness/baseColorFactor", 4, {0, 0, 0, 1, 0.9F, 0.1F, 0.4F, 1});
+    gltf::settleAnimatedValues(scene);
+    return scene;
+}
+
+// The same with the values of a time as if they were the file's: its key has what these alone call for.
+Scene plainScene(Scene scene, double time) {
+    constexpr std::array<std::size_t, 1> kFirst{0};
+    const int painted = scene.animatedMaterials[0].material;
+    scene.materials[static_cast<std::size_t>(painted)] = poseAt(scene, kFirst, time).materials[0];
+    scene.animatedMaterials.clear();
+    scene.animations.clear();
+    return scene;
+}
+
+TEST(Motion, MaterialsChange) {
+    const Scene scene = paintedScene();
+    Moving moving(scene);
+    ASSERT_TRUE(moving.ok());
+    const std::size_t painted = static_cast<std::size_t>(scene.animatedMaterials[0].material);
+    std::vector<LinearImage> images;
+    for (const double time : {0.0, 1.0}) {
+        const Scene plain = plainScene(scene, time);
+        moving.scene.materials[painted] = plain.materials[painted];
+        EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept);
+        images.push_back(moving.render());
+        expectSameImage(images.back(), renderStill(plain), "at " + std::to_string(time));
+    }
+    expectUnlike(images[1], images[0], "painted");
+    // Uploaded as it is at a time, a scene that stays shows that, too.
+    Scene posed = scene;
+    posed.materials[painted] = plainScene(scene, 1.0).materials[painted];
+    expectSameImage(renderStill(posed), images[1], "uploaded as painted");
+    MotionView motion = moving.data.motion();
+    motion.materials = {};
+    const Status refused = moving.gpuScene->updateAndWait(motion);
+    EXPECT_EQ(refused ? "done" : refused.error().id, "scene-material");
+}
+
+TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
+    Scene scene = rigidScene();
+    Moving moving(scene);
+    ASSERT_TRUE(moving.ok());
+    const LinearImage whole = moving.render();
+    moving.scene.nodes[1].shown = false;
+    moving.scene.lights[0].shown = false;
+    moving.update();
+    const LinearImage hidden = moving.render();
+    expectUnlike(hidden, whole, "hidden");
+    Scene without = scene;
+    without.nodes[1].mesh = -1;
+    without.lights[0].intensity = 0.0F;
+    expectSameImage(hidden, renderStill(without), "hidden");
+    moving.scene.nodes[1].shown = true;
+    moving.scene.lights[0].shown = true;
+    moving.update();
+    expectSameImage(moving.render(), whole, "shown again");
+    // What is never shown is not uploaded.
+    scene.nodes[1].shown = false;
+    scene.nodes[1].canShow = false;
+    EXPECT_EQ(makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
+}
+
+// Placements of one node are drawn as nodes in these places are, by fewer calls; one of them is mirrored.
+TEST(Motion, InstancesAreDrawnAsNodesAre) {
+    Scene nodes = rigidScene();
+    Primitive second = nodes.meshes[1].primitives[0];
+    second.pointer = "/meshes/1/primitives/1";
+    second.material = nodes.meshes[0].primitives[0].material;
+    for (Float3& position : second.positions) {
+        position[2] += 0.3F;
+        position[0] += 0.4F;
+    }
+    nodes.meshes[1].primitives.push_back(second);
+    Scene instanced = nodes;
+    Instancing& instancing = instanced.instancings.emplace_back();
+    instancing.count = 4;
+    instancing.translations = {{0, 0, 0}, {0.6F, 0.9F, -0.5F}, {1.2F, 1.5F, -1}, {1.8F, 0.2F, -1.5F}};
+    instancing.scales = {{1, 1, 1}, {0.5F, 0.5F, 0.5F}, {0.5F, 1, 1}, {-1, 1, 1}};
+    instanced.nodes[1].instancing = 0;
+    const Node node = nodes.nodes[1];
+    for (std::size_t i = 0; i < instancing.count; ++i) {
+        Node copy = node;
+        copy.world = gltf::multiply(node.world, gltf::instanceTransform(instancing, i));
+        if (i == 0) {
+            nodes.nodes[1] = copy;
+        } else {
+            nodes.nodes.push_back(copy);
+        }
+    }
+    const Moving still(instanced, false);
+    ASSERT_TRUE(still.ok());
+    expectSameImage(still.render(), renderStill(nodes), "instanced");
+    // The floor; two primitives in three places, in one that is mirrored, and of the other node. Each mesh
+    // has one structure.
+    EXPECT_EQ(still.gpuScene->state().batches.size(), 7U);
+    EXPECT_EQ(still.gpuScene->statistics().instances, 6U);
+    EXPECT_EQ(still.gpuScene->statistics().blasCount, still.data.primitives.size() - 1);
 }
 
 bool hasDeformModule(const Package& package) {

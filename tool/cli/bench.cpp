@@ -270,7 +270,8 @@ int run(const Console& console, const BenchArguments& arguments) {
     console.progress("reading " + arguments.render.scene);
     ImportOptions import;
     import.decodeImages = true;
-    import.variant = arguments.render.variant;
+    import.variant = arguments.render.reading.variant;
+    import.strictPaths = arguments.render.reading.strictPaths;
     const Result<Scene> scene = importScene(arguments.render.scene, import);
     if (!scene) {
         return fail(scene.error());

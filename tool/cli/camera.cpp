@@ -216,7 +216,10 @@ Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
     Bounds bounds = kNothing;
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const InstanceView& instance = view.instances[i];
-        const Node& node = scene.nodes[view.nodes[i]];
+        const Node& node = scene.nodes[view.sources[i].node];
+        if (!instance.visible) {
+            continue;
+        }
         if (!isDeformed(scene, node)) {
             rigid.instances.push_back(instance);
             continue;

@@ -241,7 +241,8 @@ int compile(const Console& console, const CompileArguments& given) {
     };
     console.progress("reading " + join(arguments.scenes));
     ImportOptions import;
-    import.variant = arguments.variant;
+    import.variant = arguments.reading.variant;
+    import.strictPaths = arguments.reading.strictPaths;
     const Result<std::vector<Scene>> scenes = readScenes(arguments.scenes, import);
     if (!scenes) {
         return fail(console, scenes.error());

@@ -87,7 +87,7 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
     addTexts(command, "SCENE", arguments.scenes, "FILE",
              "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
         .required();
-    addVariant(command, arguments.variant);
+    addReadingOptions(command, arguments.reading);
     addSettingsFile(command, arguments.settings);
     addOutputOptions(command, arguments);
     addShaderOptions(command, arguments);

@@ -24,7 +24,7 @@ struct CompileArguments {
     std::string embed;  // a C++ source; empty: none
     TracingArguments tracing;
     std::string calibration;  // a device file; empty: constants that are built in
-    std::string variant;
+    ReadingArguments reading;
     PlanArguments plan;
     LockArguments lock;
     AccuracyArguments accuracy;

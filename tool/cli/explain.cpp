@@ -30,7 +30,7 @@ namespace {
 struct ExplainArguments {
     std::string scene;
     std::string material;
-    std::string variant;
+    ReadingArguments reading;
     std::string calibration;
     bool wholePlan = false;
     PlanArguments plan;
@@ -107,6 +107,14 @@ Json primaryToJson(const Planned& planned, const Key& key, int material) {
     return list;
 }
 
+// What animations change of the material: planning drops no feature for a value that passes.
+std::vector<std::string> changesOf(const SceneList& scenes, int material) {
+    const SceneList::Place place = scenes.place(material);
+    const std::vector<AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
+    const auto found = std::ranges::find(all, place.index, &AnimatedMaterial::material);
+    return found == all.end() ? std::vector<std::string>() : found->changes;
+}
+
 Json toJson(const Planned& planned, int material) {
     Json keys = Json::array();
     for (const Key* key : keysOf(planned, material)) {
@@ -132,7 +140,8 @@ Json toJson(const Planned& planned, int material) {
     return {{"index", material},
             {"name", planned.scenes.materialName(material)},
             {"keys", keys},
-            {"dropped", dropped}};
+            {"dropped", dropped},
+            {"animated", changesOf(planned.scenes, material)}};
 }
 
 std::string whyText(const Case& shader) {
@@ -178,7 +187,10 @@ std::string toText(const Planned& planned, int material, Detail detail) {
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
-    return text + formatFields(rows, detail);
+    for (const std::string& change : changesOf(planned.scenes, material)) {
+        rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
+    }
+    return text + formatFields(rows);
 }
 
 // Returns an empty text if the scene has no variants.
@@ -226,7 +238,8 @@ Result<StrategyAdvice> advise(const KnownCosts& costs, const Planned& planned, c
 
 int explain(const Console& console, const ExplainArguments& arguments) {
     ImportOptions import;
-    import.variant = arguments.variant;
+    import.variant = arguments.reading.variant;
+    import.strictPaths = arguments.reading.strictPaths;
     const Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());
@@ -328,7 +341,7 @@ void addExplain(CLI::App& app, Action& chosen) {
             "costs by the cost model of --merge auto, what shares it,\n"
             "and why")
         .excludes(&material);
-    addVariant(command, arguments->variant);
+    addReadingOptions(command, arguments->reading);
     addCalibration(command, arguments->calibration);
     addPlanOptions(command, arguments->plan);
     addProfileInput(command, arguments->plan);

@@ -23,17 +23,35 @@ constexpr std::string_view nameOf(AnimationPath path) {
             return "rotation";
         case AnimationPath::Scale:
             return "scale";
+        case AnimationPath::Visible:
+            return "visible";
+        case AnimationPath::Material:
+            return "material";
+        case AnimationPath::Light:
+            return "light";
+        case AnimationPath::Camera:
+            return "camera";
         case AnimationPath::Weights:
+        case AnimationPath::Weight:
             break;
     }
     return "weights";
 }
 
-// Counts the channels by what they move.
+// Whether a channel of that path drives a node.
+bool drivesNode(AnimationPath path) {
+    return path != AnimationPath::Material && path != AnimationPath::Light && path != AnimationPath::Camera;
+}
+
+constexpr AnimationPath kPaths[] = {
+    AnimationPath::Translation, AnimationPath::Rotation, AnimationPath::Scale, AnimationPath::Weights,
+    AnimationPath::Visible,     AnimationPath::Material, AnimationPath::Light, AnimationPath::Camera};
+
+// Channels by what they move; those of one weight are among those of all.
 std::map<AnimationPath, std::size_t> channelsOf(const Animation& animation) {
     std::map<AnimationPath, std::size_t> counts;
     for (const AnimationChannel& channel : animation.channels) {
-        ++counts[channel.path];
+        ++counts[channel.path == AnimationPath::Weight ? AnimationPath::Weights : channel.path];
     }
     return counts;
 }
@@ -41,7 +59,9 @@ std::map<AnimationPath, std::size_t> channelsOf(const Animation& animation) {
 std::size_t nodesOf(const Animation& animation) {
     std::set<int> nodes;
     for (const AnimationChannel& channel : animation.channels) {
-        nodes.insert(channel.node);
+        if (drivesNode(channel.path)) {
+            nodes.insert(channel.target);
+        }
     }
     return nodes.size();
 }
@@ -89,8 +109,7 @@ Json motionToJson(const Scene& scene) {
     for (std::size_t i = 0; i < scene.animations.size(); ++i) {
         const Animation& animation = scene.animations[i];
         Json channels = Json::object();
-        for (const AnimationPath path : {AnimationPath::Translation, AnimationPath::Rotation,
-                                         AnimationPath::Scale, AnimationPath::Weights}) {
+        for (const AnimationPath path : kPaths) {
             channels[std::string(nameOf(path))] = 0;
         }
         for (const auto& [path, count] : channelsOf(animation)) {

@@ -342,9 +342,11 @@ std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArgument
     return {&energy, &lod, &precision};
 }
 
-CLI::Option& addVariant(CLI::App& command, std::string& variant) {
-    return addText(command, "--variant", variant, "NAME",
-                   "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
+void addReadingOptions(CLI::App& command, ReadingArguments& arguments) {
+    addText(command, "--variant", arguments.variant, "NAME",
+            "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
+    addFlag(command, "--strict-paths", arguments.strictPaths,
+            "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
 }
 
 bool parseReal(const std::string& text, double min, double max, double& value) {

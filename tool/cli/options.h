@@ -79,8 +79,13 @@ struct AccuracyArguments {
 };
 std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, AccuracyArguments& arguments);
 
-// Adds --variant NAME, for KHR_materials_variants.
-CLI::Option& addVariant(CLI::App& command, std::string& variant);
+// How scenes are read.
+struct ReadingArguments {
+    std::string variant;  // of KHR_materials_variants; empty: none
+    bool strictPaths = false;
+};
+// --variant NAME, --strict-paths.
+void addReadingOptions(CLI::App& command, ReadingArguments& arguments);
 
 // Parses the whole of `text` as a number within [min, max]. NaN is outside of every range.
 bool parseReal(const std::string& text, double min, double max, double& value);

@@ -25,6 +25,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -47,7 +48,10 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
                                    !arguments.environment.file.empty()};
         Status checked = checkPackage(*package, arguments.package, demand, scene);
-        const bool isLit = arguments.addsSun(scene) || !scene.lights.empty();
+        const bool isLit =
+            arguments.addsSun(scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
+                return light.shines() || light.canShine;
+            });
         if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
                                       "has no effect shadow, so the lights of the picture cast no shadows",
@@ -277,7 +281,8 @@ int run(const Console& console, const RenderArguments& arguments) {
     console.progress("reading " + arguments.scene);
     ImportOptions import;
     import.decodeImages = true;
-    import.variant = arguments.variant;
+    import.variant = arguments.reading.variant;
+    import.strictPaths = arguments.reading.strictPaths;
     Result<Scene> scene = importScene(arguments.scene, import);
     if (!scene) {
         console.report(scene.error());

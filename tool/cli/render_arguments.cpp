@@ -114,7 +114,7 @@ bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
 
 std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, "SCENE", arguments.scene, "FILE", "the scene, .gltf or .glb").required();
-    addVariant(command, arguments.variant);
+    addReadingOptions(command, arguments.reading);
     addSettingsFile(command, arguments.settings);
     addPictureOptions(command, arguments);
     addEnvironmentOptions(command, arguments.environment);

@@ -27,7 +27,7 @@ struct RenderArguments {
     FrameArguments frame;
     EnvironmentArguments environment;
     MotionArguments motion;
-    std::string variant;
+    ReadingArguments reading;
     PlanArguments plan;
     AccuracyArguments accuracy;
     EffectArguments effects;

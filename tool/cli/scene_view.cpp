@@ -1,5 +1,7 @@
 #include "cli/scene_view.h"
 
+#include "emit/tables.h"
+#include "gltf/transform.h"
 #include "motion/pose.h"
 
 #include <algorithm>
@@ -23,7 +25,7 @@ LightView toView(const Light& light) {
             break;
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        view.intensity[i] = light.color[i] * light.intensity;
+        view.intensity[i] = light.shown ? light.color[i] * light.intensity : 0.0F;
     }
     view.position = light.position;
     view.direction = light.direction;
@@ -62,11 +64,11 @@ bool hasTriangles(const Primitive& primitive) {
     return primitive.indices.size() >= 3;
 }
 
-// Returns for each mesh whether a node places it.
+// For each mesh, whether a node that is shown at some time places it.
 std::vector<bool> placedMeshes(const Scene& scene) {
     std::vector<bool> placed(scene.meshes.size(), false);
     for (const Node& node : scene.nodes) {
-        if (node.mesh >= 0) {
+        if (node.mesh >= 0 && node.canShow) {
             placed[static_cast<std::size_t>(node.mesh)] = true;
         }
     }
@@ -88,14 +90,27 @@ bool isSkinned(const Scene& scene, const Node& node) {
            });
 }
 
+// How often the node draws its mesh.
+std::size_t placementsOf(const Scene& scene, const Node& node) {
+    return node.instancing < 0 ? 1 : scene.instancings[static_cast<std::size_t>(node.instancing)].count;
+}
+
+Matrix4 worldOf(const Scene& scene, const Node& node, std::size_t placement) {
+    if (node.instancing < 0) {
+        return node.world;
+    }
+    const Instancing& instancing = scene.instancings[static_cast<std::size_t>(node.instancing)];
+    return gltf::multiply(node.world, gltf::instanceTransform(instancing, placement));
+}
+
 }  // namespace
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene, moves};
+    return {primitives, instances, images, lights, packageScene, moves, materials};
 }
 
 MotionView SceneViewData::motion() const {
-    return {instances, lights};
+    return {instances, lights, MotionView::Builds::ByRule, materials};
 }
 
 std::array<float, 12> toRows(const Matrix4& matrix) {
@@ -125,13 +140,22 @@ SceneViewData makeSceneView(const Scene& scene) {
     }
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const Node& node = scene.nodes[i];
-        if (node.mesh >= 0 && visible[static_cast<std::size_t>(node.mesh)]) {
+        if (node.mesh < 0 || !node.canShow || !visible[static_cast<std::size_t>(node.mesh)]) {
+            continue;
+        }
+        const std::size_t count = placementsOf(scene, node);
+        for (std::size_t placement = 0; placement < count; ++placement) {
             data.instances.emplace_back().mesh = static_cast<std::uint32_t>(node.mesh);
-            data.nodes.push_back(i);
+            data.sources.push_back({i, placement});
         }
     }
-    data.joints.resize(data.nodes.size());
-    data.weights.resize(data.nodes.size());
+    data.joints.resize(data.instances.size());
+    data.weights.resize(data.instances.size());
+    for (const AnimatedMaterial& animated : scene.animatedMaterials) {
+        data.materials.push_back({static_cast<std::uint32_t>(animated.material), {}});
+    }
+    std::ranges::sort(data.materials, {}, &MaterialView::material);
+    data.materialRecords.resize(data.materials.size());
     for (const Image& image : scene.images) {
         data.images.push_back(
             {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
@@ -145,14 +169,16 @@ SceneViewData makeSceneView(const Scene& scene) {
 
 void poseSceneView(const Scene& scene, SceneViewData& data) {
     for (std::size_t i = 0; i < data.instances.size(); ++i) {
-        const Node& node = scene.nodes[data.nodes[i]];
+        const Node& node = scene.nodes[data.sources[i].node];
         InstanceView& instance = data.instances[i];
+        instance.visible = node.shown;
         const bool skinned = isSkinned(scene, node);
         // Only the sign of its transform's determinant counts, because it decides which side of a triangle is
         // the front (section 3.7.4). If it is negative, the instance mirrors X, and so do its joints before
         // that.
         const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
-        instance.objectToWorld = skinned ? InstanceView{}.objectToWorld : toRows(node.world);
+        instance.objectToWorld =
+            skinned ? InstanceView{}.objectToWorld : toRows(worldOf(scene, node, data.sources[i].placement));
         data.joints[i].clear();
         if (skinned) {
             instance.objectToWorld[0] = mirror;
@@ -166,6 +192,12 @@ void poseSceneView(const Scene& scene, SceneViewData& data) {
         data.weights[i].assign(node.weights.begin(), node.weights.end());
         instance.joints = data.joints[i];
         instance.morphWeights = data.weights[i];
+    }
+    for (std::size_t i = 0; i < data.materials.size(); ++i) {
+        const gpu::MaterialRecord record = makeMaterialRecord(scene.materials[data.materials[i].material]);
+        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&record);
+        data.materialRecords[i].assign(bytes, bytes + sizeof(record));
+        data.materials[i].record = data.materialRecords[i];
     }
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         data.lights[i] = toView(scene.lights[i]);

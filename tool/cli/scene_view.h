@@ -19,10 +19,17 @@ struct SceneViewData {
     std::vector<ImageView> images;
     std::vector<LightView> lights;
 
-    std::uint32_t packageScene = 0;  // as in SceneView
-    bool moves = false;              // likewise
-    std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
-    // The data to which the spans of primitives and instances point.
+    std::uint32_t packageScene = 0;       // as in SceneView
+    bool moves = false;                   // likewise
+    std::vector<MaterialView> materials;  // those that animations change
+    // By instance: what places it.
+    struct Source {
+        std::size_t node = 0;       // index into Scene::nodes
+        std::size_t placement = 0;  // index into its Instancing, if it has one
+    };
+    std::vector<Source> sources;
+    // What the spans of primitives, instances and materials point into.
+    std::vector<std::vector<std::uint8_t>> materialRecords;
     std::vector<std::vector<MorphTargetView>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;
@@ -40,12 +47,13 @@ struct SceneViewData {
     ~SceneViewData() = default;
 };
 
-// Returns every mesh that a node places, with the Scene's numbers of mesh and primitive. Primitives without a
-// triangle are left out, and so are instances of meshes that have no other primitives.
+// Every mesh that a node places, with the numbers of mesh and primitive that the Scene has. Primitives
+// without a triangle are left out, and so are instances of meshes that have no other, and nodes that are
+// never shown.
 SceneViewData makeSceneView(const Scene& scene);
 
-// Applies the pose of `scene`, from which `data` was made: instances, joints, weights and lights. Lights that
-// were added after those of the scene stay.
+// Takes the pose of `scene`, from which `data` was made: instances, joints, weights, materials and lights.
+// Lights that were added after those of the scene stay.
 void poseSceneView(const Scene& scene, SceneViewData& data);
 
 // Returns three rows of four of a column-major matrix.

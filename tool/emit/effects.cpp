@@ -11,11 +11,10 @@ namespace mustache = kainjow::mustache;
 
 namespace {
 
+// At rest, or at a time of an animation.
 bool isLit(const Scene& scene) {
-    return std::ranges::any_of(scene.lights, [](const Light& light) {
-        return light.intensity > 0.0F &&
-               std::ranges::any_of(light.color, [](float channel) { return channel > 0.0F; });
-    });
+    return std::ranges::any_of(scene.lights,
+                               [](const Light& light) { return light.shines() || light.canShine; });
 }
 
 std::string upperCase(std::string_view name) {
@@ -43,6 +42,14 @@ EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings)
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (used[i]) {
             materials.push_back(&scenes.materials()[i]);
+        }
+    }
+    for (std::size_t scene = 0; scene < scenes.scenes().size(); ++scene) {
+        const std::size_t first = scenes.materialsOf(scene).first;
+        for (const AnimatedMaterial& animated : scenes.scenes()[scene].animatedMaterials) {
+            if (used[first + static_cast<std::size_t>(animated.material)]) {
+                materials.push_back(&animated.smoothest);
+            }
         }
     }
     const bool lit = settings.addsLight || std::ranges::any_of(scenes.scenes(), isLit);

@@ -183,9 +183,9 @@ constexpr MemberLayout kFrameConstants[] = {
 };
 
 constexpr MemberLayout kPushConstants[] = {
-    GLINT_MEMBER(PushConstants, frame),  GLINT_MEMBER(PushConstants, tlasIndex),
-    GLINT_MEMBER(PushConstants, bucket), GLINT_MEMBER(PushConstants, geometry),
-    GLINT_MEMBER(PushConstants, pad),
+    GLINT_MEMBER(PushConstants, frame),          GLINT_MEMBER(PushConstants, tlasIndex),
+    GLINT_MEMBER(PushConstants, bucket),         GLINT_MEMBER(PushConstants, geometry),
+    GLINT_MEMBER(PushConstants, geometryStride),
 };
 
 constexpr StructLayout kStructs[] = {

@@ -77,7 +77,9 @@ void setExtensions(const Material& material, gpu::MaterialRecord& record) {
     record.dispersion = material.dispersion.dispersion;
 }
 
-gpu::MaterialRecord makeRecord(const Material& material) {
+}  // namespace
+
+gpu::MaterialRecord makeMaterialRecord(const Material& material) {
     gpu::MaterialRecord record{};
     const auto& base = material.baseColorFactor;
     record.baseColorFactor = {base[0], base[1], base[2], base[3]};
@@ -89,16 +91,19 @@ gpu::MaterialRecord makeRecord(const Material& material) {
     record.occlusionStrength = material.occlusionStrength;
     record.alphaCutoff = material.alphaCutoff;
     setExtensions(material, record);
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+        if (material.textures[slot].texture >= 0) {
+            setTransform(material.textures[slot].transform, record.textures[slot]);
+        }
+    }
     return record;
 }
-
-}  // namespace
 
 MaterialTables makeMaterialTables(const Scene& scene) {
     MaterialTables tables;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
     for (const Material& material : scene.materials) {
-        gpu::MaterialRecord record = makeRecord(material);
+        gpu::MaterialRecord record = makeMaterialRecord(material);
         for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
             const TextureInfo& info = material.textures[slot];
             if (info.texture < 0) {
@@ -115,7 +120,6 @@ MaterialTables makeMaterialTables(const Scene& scene) {
             record.textures[slot].textureIndex = place->second;
             record.textures[slot].samplerIndex = static_cast<std::uint32_t>(texture.sampler);
             record.textures[slot].texCoord = static_cast<std::uint32_t>(info.texCoord);
-            setTransform(info.transform, record.textures[slot]);
         }
         tables.materials.push_back(record);
     }

@@ -20,8 +20,11 @@ struct MaterialTables {
 // accepts.
 MaterialTables makeMaterialTables(const Scene& scene);
 
-// Returns the error "scene-index" if an index in `scene` is out of range. importScene() never makes such a
-// scene.
+// The record of a material alone: its factors and the transforms of its textures. What it says of the
+// textures themselves is for makeMaterialTables() to settle.
+gpu::MaterialRecord makeMaterialRecord(const Material& material);
+
+// Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
 Status checkScene(const Scene& scene);
 
 // Returns the bytes of the file.

@@ -1,4 +1,4 @@
-// What of a scene can move, as plain data: animations, skins, morph targets.
+// What animations change in a scene, as plain data; skins and morph targets.
 #pragma once
 
 #include <array>
@@ -10,10 +10,21 @@
 namespace glint {
 
 enum class Interpolation : std::uint8_t { Step, Linear, CubicSpline };
-enum class AnimationPath : std::uint8_t { Translation, Rotation, Scale, Weights };
+// What a channel drives. Below Weights only KHR_animation_pointer reaches it.
+enum class AnimationPath : std::uint8_t {
+    Translation,
+    Rotation,
+    Scale,
+    Weights,
+    Weight,    // of one morph target
+    Visible,   // KHR_node_visibility: 0 or 1
+    Material,  // these have a row in the tables of gltf/animatable.h
+    Light,
+    Camera
+};
 
-// Keyframes. A keyframe has as many values as its property has numbers: 3, 4 (a quaternion x, y, z, w), or
-// one for each morph target.
+// Keyframes. A keyframe has as many values as its property has numbers: 1, 2, 3, 4 (a colour, or a quaternion
+// x, y, z, w), or one for each morph target.
 struct AnimationSampler {
     Interpolation interpolation = Interpolation::Linear;
     std::vector<float> times;  // seconds, ascending, finite, at least 0; not empty
@@ -23,9 +34,12 @@ struct AnimationSampler {
 };
 
 struct AnimationChannel {
-    int node = 0;  // index into Scene::nodes; its transform is no matrix unless path is Weights
+    // Index into Scene::nodes, whose transform is no matrix if the path is one of its parts; into
+    // Scene::animatedMaterials, lights or cameras.
+    int target = 0;
     AnimationPath path = AnimationPath::Translation;
-    int sampler = 0;  // index into Animation::samplers; its width is that of the property
+    int sampler = 0;   // index into Animation::samplers; its width is that of the property
+    int property = 0;  // Weight: the morph target; Material, Light, Camera: the number of the property
 };
 
 struct Animation {

@@ -1,6 +1,8 @@
 #include "gltf/animations.h"
 
 #include "gltf/accessor.h"
+#include "gltf/animated_values.h"
+#include "gltf/animation_pointers.h"
 #include "gltf/node_numbers.h"
 
 #include <fmt/format.h>
@@ -10,7 +12,9 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace glint::gltf {
@@ -58,9 +62,18 @@ std::string flawOfTimes(const FloatElements& times) {
     return std::ranges::is_sorted(times.values, std::less_equal<>{}) ? "" : "its times do not ascend";
 }
 
+// What of a sampler's keyframes a property reads.
+struct KeyframeForm {
+    std::size_t width = 0;
+    // None: that of a node's property, whose integers are fractions and whose elements may be of any width.
+    std::optional<ValueKind> kind{};
+
+    auto operator<=>(const KeyframeForm&) const = default;
+};
+
 class AnimationReader {
 public:
-    AnimationReader(Document& document, const Scene& scene, const NodeNumbers& numbers, std::size_t index)
+    AnimationReader(Document& document, Scene& scene, const NodeNumbers& numbers, std::size_t index)
         : document_(document),
           scene_(scene),
           numbers_(numbers),
@@ -105,12 +118,10 @@ private:
     void readChannel(const Json& json, const std::string& pointer) {
         const Json& target = json["target"];
         const std::string& pathName = target["path"].get_ref<const std::string&>();
-        if (pathName == "pointer" || findExtension(target, "KHR_animation_pointer") != nullptr) {
-            if (!std::exchange(warnedOfPointer_, true)) {
-                document_.warn("animation-pointer", pointer,
-                               "what KHR_animation_pointer animates stays as it is",
-                               "animate nodes or morph weights instead");
-            }
+        const Json* const extension = findExtension(target, "KHR_animation_pointer");
+        if (pathName == "pointer" || extension != nullptr) {
+            const Json* const text = extension == nullptr ? nullptr : find(*extension, "pointer");
+            readPointer(json, pointer, text == nullptr ? "" : text->get<std::string>());
             return;
         }
         const Json* inFile = find(target, "node");
@@ -124,14 +135,54 @@ private:
             return;
         }
         const std::size_t width = widthOf(*path, scene_.nodes[static_cast<std::size_t>(node)], pointer);
-        const int sampler = width == 0 ? -1 : samplerOf(json, pointer, width);
+        const int sampler = width == 0 ? -1 : samplerOf(json, pointer, {width});
         if (sampler >= 0) {
             animation_.channels.push_back({node, *path, sampler});
         }
     }
 
+    void readPointer(const Json& channel, const std::string& place, const std::string& pointer) {
+        const std::string where = place + "/target/extensions/KHR_animation_pointer/pointer";
+        const PointerTarget target = resolvePointer(document_, scene_, numbers_, pointer);
+        if (target.verdict == PointerTarget::Verdict::Unknown) {
+            if (noted_.insert(pointer).second) {
+                document_.note(
+                    "animation-pointer", where,
+                    fmt::format("\"{}\" is nothing that Glint has data for; the channel is not played",
+                                pointer));
+            }
+            return;
+        }
+        if (target.verdict == PointerTarget::Verdict::Wrong) {
+            document_.warn("animation-pointer", where,
+                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why), kExport);
+            return;
+        }
+        const int sampler =
+            target.targets.empty() ? -1 : samplerOf(channel, place, {target.width, target.kind});
+        for (const int found : target.targets) {
+            if (sampler >= 0) {
+                const int index = target.path == AnimationPath::Material ? animatedMaterial(found) : found;
+                animation_.channels.push_back({index, target.path, sampler, target.property});
+            }
+        }
+    }
+
+    // The material's place among those that animations change.
+    int animatedMaterial(int material) {
+        std::vector<AnimatedMaterial>& all = scene_.animatedMaterials;
+        const auto found = std::ranges::find(all, material, &AnimatedMaterial::material);
+        if (found != all.end()) {
+            return static_cast<int>(found - all.begin());
+        }
+        AnimatedMaterial& added = all.emplace_back();
+        added.material = material;
+        added.rest = scene_.materials[static_cast<std::size_t>(material)];
+        return static_cast<int>(all.size()) - 1;
+    }
+
     // Index into animation_.samplers; -1 where there is none that can be used.
-    int samplerOf(const Json& channel, const std::string& pointer, std::size_t width) {
+    int samplerOf(const Json& channel, const std::string& pointer, const KeyframeForm& form) {
         const auto inFile = channel["sampler"].get<std::size_t>();
         const Json& samplers = json_["samplers"];
         if (inFile >= samplers.size()) {
@@ -139,12 +190,12 @@ private:
                      fmt::format("is {}, but the animation has {} samplers", inFile, samplers.size()));
             return -1;
         }
-        const auto [known, isNew] = samplers_.try_emplace(std::pair(inFile, width), -1);
+        const auto [known, isNew] = samplers_.try_emplace(std::pair(inFile, form), -1);
         if (!isNew) {
             return known->second;
         }
         std::optional<AnimationSampler> read =
-            readSampler(samplers[inFile], fmt::format("{}/samplers/{}", pointer_, inFile), width);
+            readSampler(samplers[inFile], fmt::format("{}/samplers/{}", pointer_, inFile), form);
         if (read) {
             known->second = static_cast<int>(animation_.samplers.size());
             animation_.samplers.push_back(std::move(*read));
@@ -158,8 +209,29 @@ private:
         return std::nullopt;
     }
 
+    // What the accessor breaks of what a pointer's property asks for; empty: nothing.
+    std::string flawOfForm(int accessor, const KeyframeForm& form, Interpolation interpolation) const {
+        const tinygltf::Accessor& values = document_.model().accessors[static_cast<std::size_t>(accessor)];
+        const auto components = static_cast<std::size_t>(
+            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(values.type)));
+        const std::size_t expected = form.kind == ValueKind::Vector ? form.width : 1;
+        if (components != expected) {
+            return fmt::format("/accessors/{} has elements of {} numbers, not {}", accessor, components,
+                               expected);
+        }
+        const bool isByte = values.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        if (form.kind == ValueKind::Bool && (!isByte || values.normalized)) {
+            return fmt::format("/accessors/{} drives true and false, but holds no plain unsigned bytes",
+                               accessor);
+        }
+        if (form.kind == ValueKind::Bool && interpolation != Interpolation::Step) {
+            return "drives true and false, which takes the interpolation STEP";
+        }
+        return {};
+    }
+
     std::optional<AnimationSampler> readSampler(const Json& json, const std::string& pointer,
-                                                std::size_t width) {
+                                                const KeyframeForm& form) {
         const std::optional<Interpolation> interpolation = interpolationOf(json);
         if (!interpolation) {
             return refuse(pointer, fmt::format("{} is no interpolation", json["interpolation"].dump()));
@@ -171,13 +243,20 @@ private:
         if (const std::string flaw = flawOfTimes(*times); !flaw.empty()) {
             return refuse(pointer, flaw);
         }
-        // Integers stand for fractions whether they are marked as normalised or not: glTF has no others here.
-        Result<FloatElements> values = readFloats(document_, json["output"].get<int>(), Integers::Normalized);
+        const int output = json["output"].get<int>();
+        if (const std::string flaw = form.kind ? flawOfForm(output, form, *interpolation) : "";
+            !flaw.empty()) {
+            return refuse(pointer, flaw);
+        }
+        // Of a node's property integers stand for fractions, marked as normalised or not: glTF has no others
+        // there. Those that a pointer's property reads are what they are marked as.
+        Result<FloatElements> values =
+            readFloats(document_, output, form.kind ? Integers::AsValues : Integers::Normalized);
         if (!values) {
             return refuse(pointer, values.error().where + " " + values.error().message);
         }
         const std::size_t perKeyframe = *interpolation == Interpolation::CubicSpline ? 3 : 1;
-        const std::size_t expected = times->count * width * perKeyframe;
+        const std::size_t expected = times->count * form.width * perKeyframe;
         if (values->values.size() != expected) {
             return refuse(pointer, fmt::format("has {} numbers for {} keyframes, not {}",
                                                values->values.size(), times->count, expected));
@@ -185,17 +264,18 @@ private:
         if (!areFinite(values->values)) {
             return refuse(pointer, "has values that are not finite");
         }
-        return AnimationSampler{*interpolation, std::move(times->values), width, std::move(values->values)};
+        return AnimationSampler{*interpolation, std::move(times->values), form.width,
+                                std::move(values->values)};
     }
 
     Document& document_;
-    const Scene& scene_;
+    Scene& scene_;
     const NodeNumbers& numbers_;
     const Json& json_;
     std::string pointer_;
     Animation animation_;
-    std::map<std::pair<std::size_t, std::size_t>, int> samplers_;  // by number in the file and width
-    bool warnedOfPointer_ = false;
+    std::map<std::pair<std::size_t, KeyframeForm>, int> samplers_;  // by number in the file
+    std::set<std::string> noted_;                                   // pointers that are unknown
 };
 
 }  // namespace
@@ -206,6 +286,7 @@ void importAnimations(Document& document, Scene& scene) {
     for (std::size_t i = 0; i < count; ++i) {
         scene.animations.push_back(AnimationReader(document, scene, numbers, i).read());
     }
+    settleAnimatedValues(scene);
 }
 
 }  // namespace glint::gltf

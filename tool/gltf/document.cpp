@@ -37,7 +37,7 @@ std::string hintFor(const std::string& id) {
 Document::Document(const std::filesystem::path& path, const ImportOptions& options)
     : name_(path.string()),
       options_(options),
-      source_(path, options.maxFileBytes),
+      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow),
       verticesLeft_(options.maxVertices),
       unpackedBytesLeft_(options.maxFileBytes) {}
 
@@ -220,8 +220,9 @@ Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointe
                 "from it",
                 "export the scene again");
         }
-        return error("buffer-data", pointer, "has neither a \"uri\" nor the binary chunk of a GLB",
-                     "export the scene again");
+        return error("buffer-external", pointer,
+                     "has neither a \"uri\" nor the binary chunk of a GLB: its data is not in the file",
+                     "export the scene with its data");
     }
     const std::string& text = uri->get_ref<const std::string&>();
     if (!isDataUri(text)) {

@@ -64,9 +64,9 @@ public:
     Diagnostic error(std::string id, std::string_view pointer, std::string message,
                      std::string hint = {}) const;
     void warn(std::string id, std::string_view pointer, std::string message, std::string hint = {});
-    // A note, kept among the warnings.
     void note(std::string id, std::string_view pointer, std::string message, std::string hint = {});
 
+    // Notes, too.
     std::vector<Diagnostic>& warnings() {
         return warnings_;
     }

@@ -1,5 +1,7 @@
 #include "gltf/expected_hits.h"
 
+#include "gltf/transform.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -55,6 +57,29 @@ double areaOf(const Primitive& primitive, const Cofactors& cofactors) {
     return std::isfinite(sum) ? sum : 0.0;
 }
 
+// Where a mesh is drawn, and how many placements this one stands for.
+struct Place {
+    Cofactors cofactors{};
+    double count = 1.0;
+};
+
+// Of many instances an even selection: a shear or an uneven scale costs a pass over the triangles for each.
+constexpr std::size_t kMaxInstances = 1024;
+
+void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places) {
+    if (node.instancing < 0) {
+        places.push_back({cofactorsOf(node.world)});
+        return;
+    }
+    const Instancing& instancing = scene.instancings[static_cast<std::size_t>(node.instancing)];
+    const std::size_t taken = std::min(instancing.count, kMaxInstances);
+    for (std::size_t i = 0; i < taken; ++i) {
+        const Matrix4 local = gltf::instanceTransform(instancing, i * instancing.count / taken);
+        places.push_back({cofactorsOf(gltf::multiply(node.world, local)),
+                          static_cast<double>(instancing.count) / static_cast<double>(taken)});
+    }
+}
+
 // How much the upper 3 x 3 scales every area, if it does so whatever its direction; else negative.
 double uniformAreaScale(const Cofactors& cofactors) {
     // Equal but for what single precision leaves of a rotation.
@@ -71,14 +96,14 @@ double uniformAreaScale(const Cofactors& cofactors) {
 }
 
 // The area at each place of a mesh. One pass over the triangles serves all places that scale uniformly.
-std::vector<double> areasOf(const Primitive& primitive, const std::vector<Cofactors>& places) {
+std::vector<double> areasOf(const Primitive& primitive, const std::vector<Place>& places) {
     constexpr Cofactors kIdentity{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
     const double local = places.empty() ? 0.0 : areaOf(primitive, kIdentity);
     std::vector<double> areas;
     areas.reserve(places.size());
-    for (const Cofactors& cofactors : places) {
-        const double scale = uniformAreaScale(cofactors);
-        const double area = scale >= 0.0 ? scale * local : areaOf(primitive, cofactors);
+    for (const Place& place : places) {
+        const double scale = uniformAreaScale(place.cofactors);
+        const double area = scale >= 0.0 ? scale * local : areaOf(primitive, place.cofactors);
         areas.push_back(std::isfinite(area) ? area : 0.0);
     }
     return areas;
@@ -102,10 +127,10 @@ double medianOf(const std::vector<std::vector<double>>& areas) {
 
 void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
     constexpr double kMedians = 10.0;
-    std::vector<std::vector<Cofactors>> places(scene.meshes.size());
+    std::vector<std::vector<Place>> places(scene.meshes.size());
     for (const Node& node : scene.nodes) {
-        if (node.mesh >= 0) {
-            places[static_cast<std::size_t>(node.mesh)].push_back(cofactorsOf(node.world));
+        if (node.mesh >= 0 && node.canShow) {
+            addPlaces(scene, node, places[static_cast<std::size_t>(node.mesh)]);
         }
     }
     std::vector<std::vector<double>> areas;
@@ -118,8 +143,10 @@ void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
     const double large = kMedians * medianOf(areas);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         inputs[i].expectedHits = 0.0;
-        for (const double area : areas[i]) {
-            inputs[i].expectedHits += area > 0.0 ? area / (area + large) : 0.0;
+        const std::vector<Place>& own = places[static_cast<std::size_t>(inputs[i].mesh)];
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            const double area = areas[i][k];
+            inputs[i].expectedHits += area > 0.0 ? own[k].count * area / (area + large) : 0.0;
         }
     }
 }

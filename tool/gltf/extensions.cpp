@@ -4,6 +4,7 @@
 #include "gltf/schema.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,10 @@ namespace {
 
 // KHR_texture_basisu is here whether this build decodes it or not: textures.cpp says what becomes of each
 // texture.
-constexpr auto kSupported = std::to_array<std::string_view>({"EXT_meshopt_compression",
+constexpr auto kSupported = std::to_array<std::string_view>({"EXT_mesh_gpu_instancing",
+                                                             "EXT_meshopt_compression",
                                                              "EXT_texture_webp",
+                                                             "KHR_animation_pointer",
                                                              "KHR_draco_mesh_compression",
                                                              "KHR_lights_punctual",
                                                              "KHR_materials_anisotropy",
@@ -35,8 +38,28 @@ constexpr auto kSupported = std::to_array<std::string_view>({"EXT_meshopt_compre
                                                              "KHR_materials_volume",
                                                              "KHR_mesh_quantization",
                                                              "KHR_meshopt_compression",
+                                                             "KHR_node_visibility",
                                                              "KHR_texture_basisu",
                                                              "KHR_texture_transform"});
+
+// Ratified or registered extensions whose data a renderer may leave unread, even where a file requires them.
+constexpr auto kNoPicture = std::to_array<std::string_view>(
+    {"AGI_stk_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
+     "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root", "KHR_node_hoverability",
+     "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
+
+// Members of both lists of a document that change no picture, in alphabetical order.
+std::set<std::string> unreadOf(const Document& document) {
+    std::set<std::string> names;
+    for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
+        for (const Json& name : arrayMember(document.json(), list)) {
+            if (changesNoPicture(name.get_ref<const std::string&>())) {
+                names.insert(name.get<std::string>());
+            }
+        }
+    }
+    return names;
+}
 
 std::string hintFor(std::string_view name) {
     if (name == "MSFT_texture_dds" || name == "EXT_texture_avif") {
@@ -52,6 +75,10 @@ std::string hintFor(std::string_view name) {
 
 bool isSupportedExtension(std::string_view name) {
     return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+}
+
+bool changesNoPicture(std::string_view name) {
+    return std::find(kNoPicture.begin(), kNoPicture.end(), name) != kNoPicture.end();
 }
 
 bool requiresExtension(const Document& document, std::string_view name) {
@@ -78,7 +105,7 @@ Status checkExtensions(Document& document) {
     const Json& required = arrayMember(document.json(), "extensionsRequired");
     for (std::size_t i = 0; i < required.size(); ++i) {
         const std::string& name = required[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(name)) {
+        if (!isSupportedExtension(name) && !changesNoPicture(name)) {
             return unsupportedExtension(document, name, fmt::format("/extensionsRequired/{}", i));
         }
     }
@@ -86,10 +113,15 @@ Status checkExtensions(Document& document) {
     const Json& used = arrayMember(document.json(), "extensionsUsed");
     for (std::size_t i = 0; i < used.size(); ++i) {
         const std::string& name = used[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(name) && warned.insert(name).second) {
+        if (!isSupportedExtension(name) && !changesNoPicture(name) && warned.insert(name).second) {
             document.warn("extension-ignored", fmt::format("/extensionsUsed/{}", i),
                           fmt::format("the extension {} is not supported; what it adds is left out", name));
         }
+    }
+    if (const std::set<std::string> unread = unreadOf(document); !unread.empty()) {
+        document.note("extension-no-picture", "/extensionsUsed",
+                      fmt::format("{} change{} no picture and {} not read", fmt::join(unread, ", "),
+                                  unread.size() == 1 ? "s" : "", unread.size() == 1 ? "is" : "are"));
     }
     return okStatus();
 }

@@ -10,10 +10,14 @@ namespace glint::gltf {
 
 class Document;
 
-// Errors on extensionsRequired that Glint can't honour; warns once of each other extension it doesn't read.
+// Errors on extensionsRequired that Glint can't honour; warns once of each other extension it doesn't read,
+// but for those that change no picture, which one note names together.
 Status checkExtensions(Document& document);
 
 bool isSupportedExtension(std::string_view name);
+
+// Whether the extension holds what no picture shows: metadata, and what users may select.
+bool changesNoPicture(std::string_view name);
 
 // Whether the checked document lists the extension as required.
 bool requiresExtension(const Document& document, std::string_view name);

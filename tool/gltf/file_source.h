@@ -1,4 +1,4 @@
-// The files of a scene: opened within the scene's folder only, bounded in total, recorded.
+// The files of a scene: named relative to its folder, bounded in total, recorded.
 #pragma once
 
 #include "base/files.h"
@@ -14,10 +14,13 @@
 
 namespace glint::gltf {
 
+// Symbolic links that lead out of the scene's folder.
+enum class OuterLinks : std::uint8_t { Follow, Refuse };
+
 class FileSource {
 public:
     // `maxBytes` bounds the sum over all files.
-    FileSource(const std::filesystem::path& scenePath, std::uint64_t maxBytes);
+    FileSource(const std::filesystem::path& scenePath, std::uint64_t maxBytes, OuterLinks links);
 
     // Reads the scene's own file.
     Result<Bytes> readScene();
@@ -36,6 +39,7 @@ private:
 
     std::filesystem::path scenePath_;
     std::uint64_t bytesLeft_;
+    OuterLinks links_;
     std::vector<SourceFile> files_;
 };
 

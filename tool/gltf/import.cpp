@@ -3,6 +3,7 @@
 #include "gltf/animations.h"
 #include "gltf/document.h"
 #include "gltf/expected_hits.h"
+#include "gltf/instancing.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
 #include "gltf/morphs.h"
@@ -49,6 +50,9 @@ Status fillScene(Document& document, Scene& scene) {
         return status;
     }
     if (Status status = importSkins(document, scene); !status) {
+        return status;
+    }
+    if (Status status = importInstances(document, scene); !status) {
         return status;
     }
     importAnimations(document, scene);

@@ -161,7 +161,7 @@ void readMaterialExtensions(Document& document, const Json& json, const std::str
         }
     }
     for (const auto& [name, ignored] : extensions->items()) {
-        if (!isSupportedExtension(name)) {
+        if (!isSupportedExtension(name) && !changesNoPicture(name)) {
             material.unsupportedExtensions.push_back(name);
         }
     }

@@ -2,6 +2,7 @@
 
 #include "gltf/material_extensions.h"
 #include "gltf/object_reader.h"
+#include "gltf/texture_places.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
@@ -13,12 +14,7 @@ namespace glint::gltf {
 
 namespace {
 
-// Where each slot's texture stands; the extension's name stands for its object, "" for the material itself.
-constexpr struct {
-    const char* owner;
-    const char* member;
-    TextureSlot slot;
-} kTextures[] = {
+constexpr TexturePlace kTextures[] = {
     {"pbrMetallicRoughness", "baseColorTexture", TextureSlot::BaseColor},
     {"pbrMetallicRoughness", "metallicRoughnessTexture", TextureSlot::MetallicRoughness},
     {"KHR_materials_pbrSpecularGlossiness", "diffuseTexture", TextureSlot::BaseColor},
@@ -129,6 +125,10 @@ void readFactors(Document& document, const Json& json, const std::string& pointe
 }
 
 }  // namespace
+
+std::span<const TexturePlace> texturePlaces() {
+    return kTextures;
+}
 
 Status importMaterials(Document& document, Scene& scene) {
     importSamplers(document, scene);

@@ -9,11 +9,14 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace glint::gltf {
 
 namespace {
+
+constexpr std::string_view kNoData = "buffer-external";
 
 ColorContent contentOf(const std::vector<Float4>& colors) {
     if (colors.empty()) {
@@ -86,6 +89,13 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
         primitive.material =
             source.primitives[i].material < 0 ? defaultMaterial : source.primitives[i].material;
         const Result<bool> drawn = readPrimitive({document, source.primitives[i], primitives[i]}, primitive);
+        // Data that the file leaves to others to bring (glTF 2.0, section 3.6.1.1) is no fault of the file.
+        if (!drawn && drawn.error().id == kNoData) {
+            document.warn("buffer-external", primitive.pointer,
+                          fmt::format("is left out: {} {}", drawn.error().where, drawn.error().message),
+                          drawn.error().hint);
+            continue;
+        }
         if (!drawn) {
             return drawn.error();
         }

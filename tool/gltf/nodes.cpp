@@ -159,6 +159,7 @@ Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {
         return placed.error();
     }
     node.camera = static_cast<int>(scene.cameras.size());
+    placed->source = camera;
     scene.cameras.push_back(std::move(*placed));
     return okStatus();
 }
@@ -169,6 +170,7 @@ Status placeLight(Document& document, int light, Node& node, Scene& scene) {
         return placed.error();
     }
     node.light = static_cast<int>(scene.lights.size());
+    placed->source = light;
     scene.lights.push_back(std::move(*placed));
     return okStatus();
 }
@@ -186,12 +188,17 @@ Status appendNode(Document& document, std::size_t index, int parent, Scene& scen
         return document.error("node-transform", pointerOf(index), "its transform in the world overflows",
                               "check the scales of the node and its parents");
     }
+    const Json& json = document.json()["nodes"][index];
+    if (const Json* const visibility = findExtension(json, "KHR_node_visibility")) {
+        const Json* const visible = find(*visibility, "visible");
+        node.visible = visible == nullptr || visible->get<bool>();
+    }
     if (source.camera >= 0) {
         if (Status status = placeCamera(document, source.camera, node, scene); !status) {
             return status;
         }
     }
-    if (const Json* light = findExtension(document.json()["nodes"][index], "KHR_lights_punctual")) {
+    if (const Json* light = findExtension(json, "KHR_lights_punctual")) {
         if (Status status = placeLight(document, (*light)["light"].get<int>(), node, scene); !status) {
             return status;
         }

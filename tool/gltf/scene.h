@@ -51,6 +51,16 @@ struct Transform {
     std::array<double, 3> scale{1.0, 1.0, 1.0};
 };
 
+// Placements of a node's mesh beside each other (EXT_mesh_gpu_instancing): the mesh is drawn once for each of
+// them, and not for the node itself. Each array is empty, where the file leaves it out, or has `count`
+// elements.
+struct Instancing {
+    std::size_t count = 0;
+    std::vector<Float3> translations;
+    std::vector<Float4> rotations;  // unit quaternions x, y, z, w
+    std::vector<Float3> scales;
+};
+
 // A node of the default scene, parents before children. Transforms are those of the rest pose until
 // applyPose() (motion/pose.h) puts the scene into another.
 struct Node {
@@ -66,6 +76,10 @@ struct Node {
     Transform rest{};
     std::vector<double> restWeights{};  // of the mesh's morph targets: one each, whoever gives them
     std::vector<double> weights{};      // likewise, as posed
+    int instancing = -1;                // index into Scene::instancings
+    bool visible = true;                // KHR_node_visibility at rest: hides the node and all below it
+    bool shown = true;                  // it and all above it are visible, as posed
+    bool canShow = true;                // `shown` at rest, or an animation can make it so
 };
 
 struct Camera {
@@ -77,6 +91,7 @@ struct Camera {
     double znear = 0.01;  // metres
     double zfar = 0.0;    // 0 means infinite
     Matrix4 world{};      // looks along its -Z, +Y up
+    int source = -1;      // its number in the file
 };
 
 enum class LightType : std::uint8_t { Directional, Point, Spot };
@@ -92,6 +107,14 @@ struct Light {
     float outerConeAngle = 0.7853982F;
     Float3 position{};
     Float3 direction{0.0F, 0.0F, -1.0F};  // unit, the way the light travels
+    int source = -1;                      // its number in the file
+    bool shown = true;                    // its node is, as posed
+    // Whether it has an intensity at rest, or an animation can give it one.
+    bool canShine = false;
+
+    bool shines() const {
+        return shown && intensity > 0.0F && (color[0] > 0.0F || color[1] > 0.0F || color[2] > 0.0F);
+    }
 };
 
 enum class Wrap : std::uint8_t { Repeat, ClampToEdge, MirroredRepeat };
@@ -162,6 +185,18 @@ struct SourceFile {
     std::uint64_t hash = 0;  // XXH3, 64 bits
 };
 
+// A material whose values animations change (KHR_animation_pointer). Which features it needs is decided once
+// for all times, by two materials that stand for every value between the least and the greatest that it takes
+// at rest or in a keyframe.
+struct AnimatedMaterial {
+    int material = 0;  // index into Scene::materials
+    Material rest;     // as the file has it
+    // A value that varies is between its bounds, and none at which a feature changes nothing.
+    Material generic;
+    Material smoothest;                // the same, but as smooth as it gets
+    std::vector<std::string> changes;  // "metallicFactor 0 to 1": those that vary
+};
+
 struct Scene {
     std::string path;  // the .gltf or .glb
     std::vector<Material> materials;
@@ -172,13 +207,18 @@ struct Scene {
     std::vector<Light> lights;    // those that a node places
     std::vector<Skin> skins;      // those of nodes of the scene
     std::vector<Animation> animations;
+    std::vector<Instancing> instancings;
+    std::vector<AnimatedMaterial> animatedMaterials;
+    // As the file has them; empty where no animation changes more of them than their place.
+    std::vector<Light> restLights;
+    std::vector<Camera> restCameras;
     std::vector<Texture> textures;
     std::vector<Sampler> samplers;
     std::vector<Image> images;
     std::vector<SourceFile> files;
     std::vector<std::string> variants;  // names that KHR_materials_variants gives, in the file's order
-    std::string variant;  // the one whose materials the primitives have; empty: the default ones
-    std::vector<Diagnostic> warnings;
+    std::string variant;               // the one whose materials the primitives have; empty: the default ones
+    std::vector<Diagnostic> warnings;  // and notes
 };
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 namespace glint {
@@ -31,7 +32,7 @@ std::vector<std::string> uniqueNames(std::span<const Scene> scenes) {
 
 SceneList::SceneList(std::span<const Scene> scenes) : scenes_(scenes), names_(uniqueNames(scenes)) {
     assert(!scenes.empty());
-    const bool joins = scenes.size() > 1;
+    const bool joins = scenes.size() > 1 || !scenes.front().animatedMaterials.empty();
     std::size_t materials = 0;
     for (const Scene& scene : scenes) {
         materialRanges_.push_back({materials, scene.materials.size()});
@@ -42,7 +43,8 @@ SceneList::SceneList(std::span<const Scene> scenes) : scenes_(scenes), names_(un
             primitives_.push_back(input);
         }
         if (joins) {
-            joined_.insert(joined_.end(), scene.materials.begin(), scene.materials.end());
+            std::vector<Material> planned = planningMaterials(scene);
+            std::ranges::move(planned, std::back_inserter(joined_));
         }
         materials += scene.materials.size();
     }

@@ -40,7 +40,7 @@ public:
     // Names of the files without their folders.
     std::string fileNames() const;
 
-    // Scene by scene.
+    // Scene by scene, as planning sees them: planningMaterials().
     std::span<const Material> materials() const {
         return materials_;
     }
@@ -67,7 +67,7 @@ private:
     std::span<const Scene> scenes_;
     std::vector<std::string> names_;
     std::span<const Material> materials_;
-    std::vector<Material> joined_;  // what materials_ points at, unless there is one scene
+    std::vector<Material> joined_;  // what materials_ points at, unless one scene has it all
     std::vector<PrimitiveInputs> primitives_;
     std::vector<Range> materialRanges_;
     std::vector<Range> primitiveRanges_;

@@ -150,11 +150,13 @@ Result<int> TextureTable::chooseImage(int texture) {
         return -1;
     }
     const Json* extensions = find(json, "extensions");
+    if (extensions == nullptr || extensions->empty()) {
+        document_.note("texture-source", pointer, fmt::format("has no source; {}", kEffect));
+        return -1;
+    }
     document_.warn("texture-source", pointer,
-                   extensions != nullptr && !extensions->empty()
-                       ? fmt::format("has a source only through {}, which Glint does not support; {}",
-                                     extensions->begin().key(), kEffect)
-                       : fmt::format("has no source; {}", kEffect),
+                   fmt::format("has a source only through {}, which Glint does not support; {}",
+                               extensions->begin().key(), kEffect),
                    kStore);
     return -1;
 }

@@ -43,6 +43,38 @@ Matrix4 compose(const Double3& translation, const std::array<double, 4>& rotatio
             1};
 }
 
+Matrix4 instanceTransform(const Instancing& instancing, std::size_t index) {
+    Double3 translation{};
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
+    Double3 scale{1.0, 1.0, 1.0};
+    if (!instancing.translations.empty()) {
+        std::copy_n(instancing.translations[index].begin(), 3, translation.begin());
+    }
+    if (!instancing.rotations.empty()) {
+        std::copy_n(instancing.rotations[index].begin(), 4, rotation.begin());
+    }
+    if (!instancing.scales.empty()) {
+        std::copy_n(instancing.scales[index].begin(), 3, scale.begin());
+    }
+    return compose(translation, rotation, scale);
+}
+
+std::vector<Matrix4> placesOf(const Scene& scene, const Node& node) {
+    if (node.mesh < 0 || !node.shown) {
+        return {};
+    }
+    if (node.instancing < 0) {
+        return {node.world};
+    }
+    const Instancing& instancing = scene.instancings[static_cast<std::size_t>(node.instancing)];
+    std::vector<Matrix4> places;
+    places.reserve(instancing.count);
+    for (std::size_t i = 0; i < instancing.count; ++i) {
+        places.push_back(multiply(node.world, instanceTransform(instancing, i)));
+    }
+    return places;
+}
+
 bool fitsFloat(const Matrix4& matrix) {
     constexpr double kLargest = std::numeric_limits<float>::max();
     return std::all_of(matrix.begin(), matrix.end(),

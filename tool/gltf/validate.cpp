@@ -57,7 +57,10 @@ constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numb
 
 // Animations and skins. Samplers are checked where the animation is read, as the index is into an array of
 // its own.
-constexpr std::array kAnimationTarget{index("node", "/nodes"), text("path", true)};
+constexpr std::array kAnimationPointer{text("pointer", true)};
+constexpr std::array kAnimationExtensions{object("KHR_animation_pointer", kAnimationPointer)};
+constexpr std::array kAnimationTarget{index("node", "/nodes"), text("path", true),
+                                      object("extensions", kAnimationExtensions)};
 constexpr std::array kChannel{integer("sampler", 0.0, kMaxInt, true),
                               object("target", kAnimationTarget, true)};
 constexpr std::array kAnimationSampler{index("input", "/accessors", true),
@@ -76,7 +79,12 @@ constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("
 
 // Nodes, cameras, lights
 constexpr std::array kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights", true)};
-constexpr std::array kNodeExtensions{object("KHR_lights_punctual", kNodeLight)};
+constexpr std::array kNodeVisibility{boolean("visible")};
+constexpr std::array kInstanceRules = accessorIndices(kInstanceAttributes);
+constexpr std::array kInstancing{object("attributes", kInstanceRules, true)};
+constexpr std::array kNodeExtensions{object("KHR_lights_punctual", kNodeLight),
+                                     object("KHR_node_visibility", kNodeVisibility),
+                                     object("EXT_mesh_gpu_instancing", kInstancing)};
 constexpr std::array kNode{text("name"),
                            index("mesh", "/meshes"),
                            index("skin", "/skins"),
@@ -143,6 +151,13 @@ void forEachAccessor(const Json& root, const Use& use) {
                 }
             }
             useAccessor(primitive, "indices", true, use);
+        }
+    }
+    for (const Json& node : arrayMember(root, "nodes")) {
+        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
+            for (const char* name : kInstanceAttributes) {
+                useAccessor((*instancing)["attributes"], name, false, use);
+            }
         }
     }
     for (const Json& animation : arrayMember(root, "animations")) {

@@ -25,6 +25,8 @@ int standInBufferView(const Json& root);
 inline constexpr const char* kAttributes[] = {
     "POSITION", "NORMAL",   "TANGENT",  "TEXCOORD_0", "TEXCOORD_1", "COLOR_0",   "JOINTS_0",
     "JOINTS_1", "JOINTS_2", "JOINTS_3", "WEIGHTS_0",  "WEIGHTS_1",  "WEIGHTS_2", "WEIGHTS_3"};
+// And those of EXT_mesh_gpu_instancing.
+inline constexpr const char* kInstanceAttributes[] = {"TRANSLATION", "ROTATION", "SCALE"};
 // And those of morph targets.
 inline constexpr const char* kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT"};
 

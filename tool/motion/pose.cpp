@@ -1,5 +1,6 @@
 #include "motion/pose.h"
 
+#include "gltf/animatable.h"
 #include "gltf/transform.h"
 #include "motion/interpolate.h"
 
@@ -11,10 +12,10 @@ namespace {
 
 using gltf::Double3;
 
-// What animations set: transforms and weights of all nodes.
+// What animations set, as far as nodes place it: local transforms. The rest is that of the pose.
 struct Locals {
     std::vector<Transform> transforms;
-    std::vector<std::vector<double>> weights;
+    Pose pose;
 };
 
 Locals restOf(const Scene& scene) {
@@ -22,30 +23,59 @@ Locals restOf(const Scene& scene) {
     for (const Node& node : scene.nodes) {
         locals.transforms.push_back(node.rest);
         const bool drawn = node.mesh >= 0;
-        locals.weights.push_back(drawn ? node.restWeights : std::vector<double>());
+        locals.pose.weights.push_back(drawn ? node.restWeights : std::vector<double>());
+        locals.pose.visible.push_back(node.visible);
     }
+    for (const AnimatedMaterial& animated : scene.animatedMaterials) {
+        locals.pose.materials.push_back(animated.rest);
+    }
+    locals.pose.lights = scene.restLights;
+    locals.pose.cameras = scene.restCameras;
     return locals;
 }
 
 void applyChannel(const Animation& animation, const AnimationChannel& channel, double time, Locals& locals) {
     const AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
-    const auto node = static_cast<std::size_t>(channel.node);
+    const auto target = static_cast<std::size_t>(channel.target);
     if (channel.path == AnimationPath::Rotation) {
-        locals.transforms[node].rotation = sampleRotation(sampler, time);
+        locals.transforms[target].rotation = sampleRotation(sampler, time);
         return;
     }
     const std::vector<double> numbers = sampleNumbers(sampler, time);
-    if (channel.path == AnimationPath::Weights) {
-        locals.weights[node] = numbers;
-    } else {
-        Double3& target = channel.path == AnimationPath::Translation ? locals.transforms[node].translation
-                                                                     : locals.transforms[node].scale;
-        std::copy_n(numbers.begin(), 3, target.begin());
+    switch (channel.path) {
+        case AnimationPath::Translation:
+            std::copy_n(numbers.begin(), 3, locals.transforms[target].translation.begin());
+            break;
+        case AnimationPath::Scale:
+            std::copy_n(numbers.begin(), 3, locals.transforms[target].scale.begin());
+            break;
+        case AnimationPath::Rotation:
+            break;
+        case AnimationPath::Weights:
+            locals.pose.weights[target] = numbers;
+            break;
+        case AnimationPath::Weight:
+            locals.pose.weights[target][static_cast<std::size_t>(channel.property)] = numbers[0];
+            break;
+        case AnimationPath::Visible:
+            locals.pose.visible[target] = numbers[0] != 0.0;
+            break;
+        case AnimationPath::Material:
+            setMaterialProperty(locals.pose.materials[target], channel.property, numbers);
+            break;
+        case AnimationPath::Light:
+            setLightProperty(locals.pose.lights[target], channel.property, numbers);
+            break;
+        case AnimationPath::Camera:
+            setCameraProperty(locals.pose.cameras[target], channel.property, numbers[0]);
+            break;
     }
 }
 
 Pose poseOf(const Scene& scene, Locals locals) {
-    Pose pose;
+    Pose pose = std::move(locals.pose);
+    std::ranges::for_each(pose.lights, settleLight);
+    std::ranges::for_each(pose.cameras, settleCamera);
     pose.worlds.reserve(scene.nodes.size());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const Node& node = scene.nodes[i];
@@ -56,7 +86,6 @@ Pose poseOf(const Scene& scene, Locals locals) {
             node.parent < 0 ? matrix
                             : gltf::multiply(pose.worlds[static_cast<std::size_t>(node.parent)], matrix));
     }
-    pose.weights = std::move(locals.weights);
     return pose;
 }
 
@@ -100,15 +129,24 @@ Pose poseAt(const Scene& scene, std::span<const std::size_t> animations, double 
 }
 
 void applyPose(const Pose& pose, Scene& scene) {
+    for (std::size_t i = 0; i < pose.materials.size(); ++i) {
+        scene.materials[static_cast<std::size_t>(scene.animatedMaterials[i].material)] = pose.materials[i];
+    }
+    std::ranges::copy(pose.lights, scene.lights.begin());
+    std::ranges::copy(pose.cameras, scene.cameras.begin());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = scene.nodes[i];
         node.world = pose.worlds[i];
         node.weights = pose.weights[i];
+        node.shown =
+            pose.visible[i] && (node.parent < 0 || scene.nodes[static_cast<std::size_t>(node.parent)].shown);
         if (node.camera >= 0) {
             placeCamera(node.world, scene.cameras[static_cast<std::size_t>(node.camera)]);
         }
         if (node.light >= 0) {
-            placeLight(node.world, scene.lights[static_cast<std::size_t>(node.light)]);
+            Light& light = scene.lights[static_cast<std::size_t>(node.light)];
+            placeLight(node.world, light);
+            light.shown = node.shown;
         }
     }
 }

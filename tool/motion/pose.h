@@ -1,4 +1,5 @@
-// A scene at a time of its animations: where every node is, and how far every morph target counts.
+// A scene at a time of its animations: where every node is, how far every morph target counts, and the values
+// of materials, lights and cameras.
 #pragma once
 
 #include "gltf/scene.h"
@@ -11,8 +12,13 @@ namespace glint {
 
 struct Pose {
     std::vector<Matrix4> worlds;  // of Scene::nodes, in their order
-    std::vector<std::vector<double>>
-        weights;  // likewise: of the node's morph targets; empty where it has none
+    // By node: of its morph targets; empty where it has none.
+    std::vector<std::vector<double>> weights;
+    std::vector<bool> visible;        // by node: KHR_node_visibility of itself alone
+    std::vector<Material> materials;  // of Scene::animatedMaterials, in their order
+    // Empty where the scene has no restLights or restCameras. Places are those of the nodes.
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;
 };
 
 // As the file places everything.

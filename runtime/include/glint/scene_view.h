@@ -43,6 +43,8 @@ struct InstanceView {
     std::span<const std::array<float, 12>> joints{};
     // Of a mesh with morph targets: one a target, missing ones are 0. Empty: likewise.
     std::span<const float> morphWeights{};
+    // A hidden instance is neither drawn nor hit. One that may be shown later needs SceneView::moves.
+    bool visible = true;
 };
 
 // RGBA, first row on top, as stored: where the package reads an image as colour, it is taken to be in sRGB.
@@ -87,6 +89,13 @@ struct LightView {
     float size = 0.0F;
 };
 
+// The values of a material in the place of the package's: a gpu::MaterialRecord (shaders/interop/scene.h).
+// Its textures and samplers stay those of the package, whatever the record says; their transforms are taken.
+struct MaterialView {
+    std::uint32_t material = 0;  // as in the package's PrimitiveEntry::materialIndex
+    std::span<const std::uint8_t> record;
+};
+
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive), all meshes that instances use
     std::span<const InstanceView> instances;
@@ -95,10 +104,13 @@ struct SceneView {
     std::uint32_t packageScene = 0;  // which of the package's scenes it is
     // Whether GpuScene::update() will move it. What only that needs is there only if so.
     bool moves = false;
+    // Materials with other values than the package's, by ascending number. Where the scene moves, these are
+    // the materials that GpuScene::update() may change.
+    std::span<const MaterialView> materials{};
 };
 
-// A scene that moved: instances and lights as at upload, in their order and number, each of the same mesh or
-// type, with as many joints and weights.
+// A scene that moved: instances, lights and materials as at upload, in their order and number, each of the
+// same mesh, type or number, with as many joints and weights.
 struct MotionView {
     // What becomes of acceleration structures that no longer fit.
     enum class Builds : std::uint32_t {
@@ -109,6 +121,7 @@ struct MotionView {
     std::span<const InstanceView> instances;
     std::span<const LightView> lights;
     Builds builds = Builds::ByRule;
+    std::span<const MaterialView> materials{};  // those of the upload, in their order
 };
 
 // Where a frame is seen from, in world space, right-handed.

@@ -1,5 +1,7 @@
 #include "oracle/scene/geometry.h"
 
+#include "gltf/transform.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,32 +50,32 @@ SceneGeometry::SceneGeometry(const Scene& scene, PointIsThere isThere)
     std::vector<Triangle> triangles;
     double size = 0.0;
     for (const Node& node : scene.nodes) {
-        if (node.mesh < 0) {
-            continue;
-        }
-        const glm::dmat4 world = toMatrix(node.world);
-        for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-            Source source{&primitive, glm::dmat3(world), {}, false, {}};
-            source.normalMatrix = glm::transpose(glm::inverse(source.linear));
-            source.mirrored = glm::determinant(source.linear) < 0.0;
-            for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-                source.corners = {primitive.indices[i], primitive.indices[i + 1], primitive.indices[i + 2]};
-                if (source.mirrored) {
-                    // In glTF a negative determinant reverses the winding.
-                    std::swap(source.corners[1], source.corners[2]);
+        for (const Matrix4& place : gltf::placesOf(scene, node)) {
+            const glm::dmat4 world = toMatrix(place);
+            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                Source source{&primitive, glm::dmat3(world), {}, false, {}};
+                source.normalMatrix = glm::transpose(glm::inverse(source.linear));
+                source.mirrored = glm::determinant(source.linear) < 0.0;
+                for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+                    source.corners = {primitive.indices[i], primitive.indices[i + 1],
+                                      primitive.indices[i + 2]};
+                    if (source.mirrored) {
+                        // glTF: a negative determinant turns the winding.
+                        std::swap(source.corners[1], source.corners[2]);
+                    }
+                    Triangle triangle;
+                    triangle.material = primitive.material;
+                    triangle.doubleSided =
+                        scene.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const Vec3 local = toVec(primitive.positions[source.corners[k]]);
+                        triangle.positions[k] = Vec3(world * glm::dvec4(local, 1.0));
+                        const Vec3 extent = glm::abs(triangle.positions[k]);
+                        size = std::max({size, extent.x, extent.y, extent.z});
+                    }
+                    triangles.push_back(triangle);
+                    sources_.push_back(source);
                 }
-                Triangle triangle;
-                triangle.material = primitive.material;
-                triangle.doubleSided =
-                    scene.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const Vec3 local = toVec(primitive.positions[source.corners[k]]);
-                    triangle.positions[k] = Vec3(world * glm::dvec4(local, 1.0));
-                    const Vec3 extent = glm::abs(triangle.positions[k]);
-                    size = std::max({size, extent.x, extent.y, extent.z});
-                }
-                triangles.push_back(triangle);
-                sources_.push_back(source);
             }
         }
     }

@@ -44,6 +44,9 @@ std::vector<SceneRenderer::Direct> SceneRenderer::directLights(const LitSurface&
                                                                const Vec3& position, Path* path) const {
     std::vector<Direct> all;
     for (const Light& light : scene().lights) {
+        if (!light.shown) {
+            continue;
+        }
         const LightCap cap = lightCap(light, {}, position);
         Direct direct{surface.scattered(cap.direction) * irradianceFrom(light, position), false};
         if (path != nullptr) {

@@ -140,6 +140,35 @@ TEST(GltfMaterials, LeavesOutUvSetsBeyondTheSecond) {
     EXPECT_EQ(countWarnings(scene, "texture-uv-set"), 1U);
 }
 
+// A texture without an image is as if it were not there.
+TEST(GltfMaterials, NotesTexturesWithoutASource) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    builder.append("textures", Json::object());
+    builder.append("materials", Json::parse(R"({"normalTexture": {"index": 0}})"));
+    const Scene scene = mustImport(builder);
+    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::Normal).texture, -1);
+    EXPECT_EQ(findWarning(scene, "texture-source").severity, Severity::Note);
+    EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
+}
+
+// Required or not: one note names all of them.
+TEST(GltfMaterials, NotesExtensionsThatChangeNoPictureOnce) {
+    GltfBuilder builder;
+    builder.addTriangle();
+    builder.root["extensionsUsed"] = Json::array({"KHR_xmp_json_ld", "KHR_xmp", "EXT_structural_metadata"});
+    builder.root["extensionsRequired"] = Json::array({"KHR_xmp_json_ld"});
+    builder.root["extensions"]["KHR_xmp_json_ld"]["packets"] = Json::array({Json::object()});
+    builder.append("materials", Json::parse(R"({"extensions": {"KHR_xmp_json_ld": {"packet": 0}}})"));
+    const Scene scene = mustImport(builder);
+    ASSERT_EQ(scene.warnings.size(), 1U);
+    EXPECT_EQ(scene.warnings[0].id, "extension-no-picture");
+    EXPECT_EQ(scene.warnings[0].severity, Severity::Note);
+    EXPECT_EQ(scene.warnings[0].message,
+              "EXT_structural_metadata, KHR_xmp, KHR_xmp_json_ld change no picture and are not read");
+    EXPECT_TRUE(scene.materials.at(0).unsupportedExtensions.empty());
+}
+
 TEST(GltfMaterials, NamesUnsupportedExtensions) {
     GltfBuilder builder;
     builder.root["extensionsUsed"] = Json::array({"KHR_materials_future", "KHR_materials_unlit"});

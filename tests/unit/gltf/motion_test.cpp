@@ -58,7 +58,7 @@ TEST(GltfAnimations, AreRead) {
     EXPECT_EQ(animation.duration, 2.0);
     ASSERT_EQ(animation.channels.size(), 1U);
     EXPECT_EQ(animation.channels[0].path, AnimationPath::Translation);
-    EXPECT_EQ(animation.channels[0].node, 0);
+    EXPECT_EQ(animation.channels[0].target, 0);
     const AnimationSampler& sampler = animation.samplers.at(0);
     EXPECT_EQ(sampler.interpolation, Interpolation::Linear);
     EXPECT_EQ(sampler.width, 3U);
@@ -126,17 +126,6 @@ TEST(GltfAnimations, LeaveOutChannelsThatDriveNothing) {
     const Scene scene = outside.import();
     EXPECT_TRUE(scene.animations.at(0).channels.empty());
     EXPECT_TRUE(scene.warnings.empty());
-}
-
-TEST(GltfAnimations, WarnOnceOfPointers) {
-    Animated animated("pointer");
-    Json channel = animated.animation["channels"][0];
-    channel["target"].erase("node");
-    channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] = "/nodes/0/scale";
-    animated.animation["channels"] = {channel, channel};
-    const Scene scene = animated.import();
-    EXPECT_EQ(countWarnings(scene, "animation-pointer"), 1U);
-    EXPECT_TRUE(scene.animations.at(0).channels.empty());
 }
 
 TEST(GltfAnimations, AreChecked) {

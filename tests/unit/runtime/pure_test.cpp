@@ -1,9 +1,11 @@
 // Tests what the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
 #include "camera.h"
+#include "draw_batches.h"
 #include "instance_math.h"
 #include "plan/features.h"
 #include "requirements.h"
 #include "scene_checks.h"
+#include "scene_materials.h"
 #include "vulkan_error.h"
 
 #include <gtest/gtest.h>
@@ -15,6 +17,75 @@
 
 namespace glint {
 namespace {
+
+Draw makeDraw(std::uint32_t geometry, std::uint32_t instance, std::uint32_t primitive) {
+    Draw draw;
+    draw.geometry = geometry;
+    draw.instance = instance;
+    draw.primitive = primitive;
+    draw.vertexCount = 3 * (primitive + 1);
+    return draw;
+}
+
+// Instances of the same primitives are one call each primitive, whose records are as far apart as an instance
+// has draws.
+TEST(DrawBatchTest, InstancesThatFollowEachOtherAreJoined) {
+    std::vector<Draw> draws;
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        draws.push_back(makeDraw(2 * i, i, 0));
+        draws.push_back(makeDraw(2 * i + 1, i, 1));
+    }
+    draws.push_back(makeDraw(10, 5, 0));
+    const std::vector<DrawBatch> joined = batchDraws(draws);
+    ASSERT_EQ(joined.size(), 3U);
+    EXPECT_EQ(joined[0].geometry, 0U);
+    EXPECT_EQ(joined[1].geometry, 1U);
+    EXPECT_EQ(joined[1].stride, 2U);
+    EXPECT_EQ(joined[1].count, 5U);
+    EXPECT_EQ(joined[1].vertexCount, 6U);
+    EXPECT_EQ(joined[2].geometry, 10U);
+    EXPECT_EQ(joined[2].count, 1U);
+    // A mirrored instance, or one that is not drawn, ends a row.
+    draws[4].hidden = draws[5].hidden = true;
+    draws[8].mirrored = draws[9].mirrored = true;
+    const std::vector<DrawBatch> cut = batchDraws(draws);
+    ASSERT_EQ(cut.size(), 7U);
+    std::uint32_t drawn = 0;
+    for (const DrawBatch& batch : cut) {
+        drawn += batch.count;
+        EXPECT_NE(batch.geometry, 4U);
+    }
+    EXPECT_EQ(drawn, 9U);
+    EXPECT_TRUE(cut[4].mirrored);
+    EXPECT_TRUE(batchDraws({}).empty());
+}
+
+// Textures and samplers are the package's, whatever the host's record says.
+TEST(SceneMaterialTest, TakesValuesAndKeepsTextures) {
+    std::vector<gpu::MaterialRecord> records(3);
+    records[2].textures[4].textureIndex = 7;
+    records[2].textures[4].texels = {64.0F, 32.0F};
+    gpu::MaterialRecord given{};
+    given.roughnessFactor = 0.25F;
+    given.textures[4].textureIndex = 99;
+    given.textures[4].rowU = {1.0F, 2.0F, 3.0F};
+    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(&given), sizeof(given));
+    const std::array views{MaterialView{2, bytes}};
+    Result<std::vector<ChangingMaterial>> changing = replaceMaterials(views, records);
+    ASSERT_TRUE(changing.ok());
+    EXPECT_EQ(records[2].roughnessFactor, 0.25F);
+    EXPECT_EQ(records[2].textures[4].textureIndex, 7U);
+    EXPECT_EQ(records[2].textures[4].texels.x, 64.0F);
+    EXPECT_EQ(records[2].textures[4].rowU.z, 3.0F);
+    given.roughnessFactor = 0.5F;
+    ASSERT_TRUE(takeMaterials(views, *changing).ok());
+    EXPECT_EQ((*changing)[0].record.roughnessFactor, 0.5F);
+    for (const std::vector<MaterialView>& wrong :
+         {std::vector<MaterialView>{{3, bytes}}, {{2, bytes.first(8)}}, {{1, bytes}, {1, bytes}}}) {
+        EXPECT_EQ(replaceMaterials(wrong, records).error().id, "scene-material");
+        EXPECT_EQ(takeMaterials(wrong, *changing).error().id, "scene-material");
+    }
+}
 
 static_assert(kInputTexCoord0 == bit(Feature::TexCoord0) >> 32);
 static_assert(kInputTexCoord1 == bit(Feature::TexCoord1) >> 32);
