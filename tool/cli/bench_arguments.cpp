@@ -25,7 +25,6 @@ constexpr const char* kQuickSize = "80x45";
 bool isView(const CLI::Option& option) {
     constexpr std::string_view kViews[] = {"--size",
                                            "--camera",
-
                                            "--sun",
                                            "--environment",
                                            "--environment-rotation",
@@ -38,7 +37,8 @@ bool isView(const CLI::Option& option) {
                                            "--tracer",
                                            "--max-shaders",
                                            "--variant",
-                                           "--device"};
+                                           "--device",
+                                           "--traversal-order"};
     return std::ranges::find(kViews, option.get_name()) != std::end(kViews);
 }
 

@@ -45,6 +45,7 @@ struct RenderArguments {
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
+    std::string traversalOrder = "auto";
     PipelineArguments pipelines;
     std::string calibration;  // a device file; empty: constants that are built in
 
@@ -55,6 +56,7 @@ struct RenderArguments {
     }
 };
 
+TraversalOrder traversalOrderOf(const RenderArguments& arguments);
 package::Strategy strategyOf(const RenderArguments& arguments);
 // Absent: whichever there is.
 std::optional<package::Tracer> tracerOf(const RenderArguments& arguments);

@@ -91,7 +91,7 @@ bool isSkinned(const Scene& scene, const Node& node) {
 }  // namespace
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene, moves};
+    return {primitives, instances, images, lights, packageScene, moves, traversalOrder};
 }
 
 MotionView SceneViewData::motion() const {

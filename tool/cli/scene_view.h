@@ -21,6 +21,7 @@ struct SceneViewData {
 
     std::uint32_t packageScene = 0;  // as in SceneView
     bool moves = false;              // likewise
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
     std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
     // What the spans of primitives and instances point into.
     std::vector<std::vector<MorphTargetView>> targets;

@@ -74,6 +74,15 @@ struct LightView {
     float size = 0.0F;
 };
 
+// The order in which the driver gets the triangles of each primitive and the instances of the scene. Mesa's
+// lavapipe makes its trees by halving what it is given: without an order rays may take a hundred times as
+// long. Shaders see triangles by the number that they have in that order.
+enum class TraversalOrder : std::uint32_t {
+    Auto,     // Halving on CPUs, Input on other devices
+    Input,    // as the scene has them
+    Halving,  // so that each half of the order is small, and each half of a half
+};
+
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive), all meshes that instances use
     std::span<const InstanceView> instances;
@@ -82,6 +91,7 @@ struct SceneView {
     std::uint32_t packageScene = 0;  // which of the package's scenes it is
     // Whether GpuScene::update() will move it. What only that needs is there only if so.
     bool moves = false;
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
 };
 
 // A scene that moved: instances and lights as at upload, in their order and number, each of the same mesh or

@@ -33,6 +33,7 @@ struct TestScene {
     std::vector<InstanceView> instances;
     std::vector<Pixels> images;
     std::vector<LightView> lights;
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
 
     // Valid until a member changes.
     SceneView view();
