@@ -14,6 +14,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Nodes with fewer leaves are not worth a thread: they take about a millisecond.
 constexpr std::size_t kLeavesPerThread = 1U << 13;
 
+// Nodes with more leaves choose their key by as many of them as this: it is the exact place of the split that
+// counts there, which is found among all.
+constexpr std::size_t kSample = 1024;
+
 struct Leaf {
     LeafBox box;
     std::uint32_t id = 0;
@@ -126,14 +130,21 @@ private:
         }
     }
 
+    // The least rank of the second side, where the first has `left` leaves.
     template <Key key>
-    static void consider(std::span<const Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left,
-                         Split& best) {
+    static std::uint64_t pivotOf(std::span<const Leaf> leaves, std::span<std::uint64_t> ranks,
+                                 std::size_t left) {
         for (std::size_t i = 0; i < leaves.size(); ++i) {
             ranks[i] = rankOf<key>(leaves[i]);
         }
         std::ranges::nth_element(ranks, ranks.begin() + static_cast<std::ptrdiff_t>(left));
-        const std::uint64_t pivot = ranks[left];
+        return ranks[left];
+    }
+
+    template <Key key>
+    static void consider(std::span<const Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left,
+                         Split& best) {
+        const std::uint64_t pivot = pivotOf<key>(leaves, ranks, left);
         LeafBox boxes[2];
         for (const Leaf& leaf : leaves) {
             boxes[rankOf<key>(leaf) < pivot ? 0 : 1].extend(leaf.box);
@@ -145,29 +156,47 @@ private:
         }
     }
 
-    template <Key key>
-    static void partAt(std::span<Leaf> leaves, std::uint64_t pivot) {
-        std::ranges::partition(leaves, [&](const Leaf& leaf) { return rankOf<key>(leaf) < pivot; });
-    }
-
-    static void part(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left) {
+    static Split bestOf(std::span<const Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left) {
         Split best;
         consider<Key::X>(leaves, ranks, left, best);
         consider<Key::Y>(leaves, ranks, left, best);
         consider<Key::Z>(leaves, ranks, left, best);
         consider<Key::Size>(leaves, ranks, left, best);
+        return best;
+    }
+
+    // `pivot`: 0 where it is still to be found.
+    template <Key key>
+    static void partBy(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left,
+                       std::uint64_t pivot) {
+        const std::uint64_t bound = pivot != 0 ? pivot : pivotOf<key>(leaves, ranks, left);
+        std::ranges::partition(leaves, [&](const Leaf& leaf) { return rankOf<key>(leaf) < bound; });
+    }
+
+    static void part(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left) {
+        Split best;
+        if (leaves.size() > 2 * kSample) {
+            std::array<Leaf, kSample> sample;
+            for (std::size_t i = 0; i < kSample; ++i) {
+                sample[i] = leaves[i * leaves.size() / kSample];
+            }
+            best = bestOf(sample, ranks.first(kSample), kSample / 2);
+            best.pivot = 0;
+        } else {
+            best = bestOf(leaves, ranks, left);
+        }
         switch (best.key) {
             case Key::X:
-                partAt<Key::X>(leaves, best.pivot);
+                partBy<Key::X>(leaves, ranks, left, best.pivot);
                 break;
             case Key::Y:
-                partAt<Key::Y>(leaves, best.pivot);
+                partBy<Key::Y>(leaves, ranks, left, best.pivot);
                 break;
             case Key::Z:
-                partAt<Key::Z>(leaves, best.pivot);
+                partBy<Key::Z>(leaves, ranks, left, best.pivot);
                 break;
             case Key::Size:
-                partAt<Key::Size>(leaves, best.pivot);
+                partBy<Key::Size>(leaves, ranks, left, best.pivot);
                 break;
         }
     }
@@ -202,6 +231,11 @@ void LeafBox::extend(const std::array<float, 3>& point) {
         sides[axis] = std::min(sides[axis], point[axis]);
         sides[axis + 3] = std::min(sides[axis + 3], -point[axis]);
     }
+    // Comparisons skip a NaN.
+    const float sum = point[0] + point[1] + point[2];
+    if (!(sum - sum == 0.0F)) {
+        sides[0] = -kInfinity;
+    }
 }
 
 bool LeafBox::isVoid() const {
@@ -225,7 +259,8 @@ std::vector<std::uint32_t> halvingOrder(std::span<const LeafBox> leaves, std::ui
     std::vector<Leaf> parted;
     parted.reserve(leaves.size());
     for (const LeafBox& box : leaves) {
-        parted.push_back({box, static_cast<std::uint32_t>(parted.size())});
+        // What is void widens no node.
+        parted.push_back({box.isVoid() ? LeafBox() : box, static_cast<std::uint32_t>(parted.size())});
     }
     std::vector<std::uint64_t> ranks(leaves.size());
     Halver(parted, ranks).order(0, parted.size(), threads);

@@ -6,7 +6,6 @@
 #include "cli/temporary_folder.h"
 #include "context_state.h"
 #include "emit/compile.h"
-#include "emit/package.h"
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
