@@ -106,7 +106,6 @@ LinearImage render(const Scene& scene, TraversalOrder order) {
 TEST(Traversal, PicturesDoNotShowTheOrder) {
     const LinearImage input = render(stripes(false), TraversalOrder::Input);
     ASSERT_FALSE(input.pixels.empty());
-    EXPECT_EQ(render(stripes(false), TraversalOrder::Halving).pixels, input.pixels);
     EXPECT_EQ(render(stripes(true), TraversalOrder::Halving).pixels, input.pixels);
     // A mirror that shows sky and wall has more than a few colours.
     EXPECT_NE(input.pixels[2200], input.pixels[1100]);

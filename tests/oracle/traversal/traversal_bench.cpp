@@ -9,6 +9,7 @@
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
+#include "traversal_order.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -45,16 +46,20 @@ struct Variant {
     bool shuffled;
     TraversalOrder order;
     LeafOrder leaves;  // null: the driver's own, halvingOrder()
+    // Triangles and instances are ordered, but each mesh has one BLAS, with its geometries in sequence.
+    bool wholeMeshes = false;
 };
 
 constexpr Variant kVariants[] = {{"input", false, TraversalOrder::Input, nullptr},
                                  {"Morton", false, TraversalOrder::Halving, mortonOrder},
                                  {"SAH", false, TraversalOrder::Halving, sahOrder},
                                  {"halving", false, TraversalOrder::Halving, nullptr},
+                                 {"halving, whole meshes", false, TraversalOrder::Input, nullptr, true},
                                  {"shuffled, input", true, TraversalOrder::Input, nullptr},
                                  {"shuffled, Morton", true, TraversalOrder::Halving, mortonOrder},
                                  {"shuffled, SAH", true, TraversalOrder::Halving, sahOrder},
                                  {"shuffled, halving", true, TraversalOrder::Halving, nullptr}};
+constexpr std::size_t kHalving = 3;
 constexpr const char* kEmbree = "Embree";
 
 double quantile(std::vector<double> values, double q) {
@@ -86,6 +91,35 @@ struct Shuffled {
         }
         std::ranges::shuffle(data.instances, random);
     }
+    std::vector<std::vector<std::uint32_t>> indices;
+};
+
+// Triangles of each primitive, and instances by their meshes, in the driver's order without its BLAS for each
+// geometry.
+struct OrderedMeshes {
+    explicit OrderedMeshes(const SceneViewData& data)
+        : primitives(data.primitives),
+          instances(data.instances),
+          indices(orderedTriangles(data.primitives, {std::uint64_t{1} << 24U, 1}, halvingOrder)) {
+        std::vector<MeshPart> parts;
+        std::vector<PartInstance> placed;
+        for (std::uint32_t i = 0; i < instances.size(); ++i) {
+            MeshPart& part = parts.emplace_back();
+            const PrimitiveRange own = primitivesOf(primitives, instances[i].mesh);
+            for (std::uint32_t primitive = own.first; primitive < own.end; ++primitive) {
+                part.ranges.push_back({primitive, 0, 0});
+            }
+            placed.push_back({i, i, i});
+        }
+        const std::vector<std::uint32_t> order =
+            InstanceOrder(primitives, parts, halvingOrder).at(instances, placed);
+        instances = permuted<InstanceView>(instances, order);
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            primitives[i].indices = indices[i];
+        }
+    }
+    std::vector<PrimitiveView> primitives;
+    std::vector<InstanceView> instances;
     std::vector<std::vector<std::uint32_t>> indices;
 };
 
@@ -205,7 +239,14 @@ private:
             }
             data.traversalOrder = variant.order;
             context_.state().leafOrder = variant.leaves;
-            Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context_, *package, data.view());
+            SceneView view = data.view();
+            std::optional<OrderedMeshes> ordered;
+            if (variant.wholeMeshes) {
+                ordered.emplace(data);
+                view.primitives = ordered->primitives;
+                view.instances = ordered->instances;
+            }
+            Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context_, *package, view);
             if (!uploaded) {
                 return uploaded.error();
             }
@@ -279,7 +320,7 @@ private:
                 std::span(all).first(std::min<std::size_t>(all.size(), 128 * kTile));
             distances_.resize(rays.size());
             embree.trace(rays, distances_);
-            if (const Result<double> ms = kernel_->trace(*scenes_[3], rays); !ms) {
+            if (const Result<double> ms = kernel_->trace(*scenes_[kHalving], rays); !ms) {
                 return ms.error();
             }
             for (std::size_t i = 0; i < rays.size(); ++i) {
