@@ -25,7 +25,6 @@ struct Leaf {
 
 // What a node's leaves are parted by.
 enum class Key : std::uint8_t { X, Y, Z, Size };
-constexpr Key kKeys[] = {Key::X, Key::Y, Key::Z, Key::Size};
 
 // Orders as the float does; above 0 unless it is the NaN with all bits set.
 std::uint32_t sortable(float value) {
