@@ -9,6 +9,7 @@
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
+#include "support/halved_tree.h"
 #include "traversal_order.h"
 
 #include <CLI/CLI.hpp>
@@ -136,6 +137,7 @@ struct Measured {
     std::size_t instances = 0;
     std::map<std::string, std::array<Runs, 2>> runs;
     std::map<std::string, double> orderMs;
+    std::map<std::string, double> costs;  // halvedTreeCost() of the primitive with most triangles
     double unlike = 0.0;  // share of the rays of which device and Embree disagree by more than 1 %
 
     // Rays a second where camera rays and bounces are as many, round by round.
@@ -158,6 +160,19 @@ struct Measured {
         return result;
     }
 };
+
+// Of the driver's tree over the primitive with most triangles.
+double costOf(const SceneViewData& data, const Variant& variant) {
+    const auto largest = std::ranges::max_element(
+        data.primitives, {}, [](const PrimitiveView& primitive) { return primitive.indices.size(); });
+    std::vector<LeafBox> leaves(largest->indices.size() / 3);
+    for (std::size_t i = 0; i < 3 * leaves.size(); ++i) {
+        leaves[i / 3].extend(largest->positions[largest->indices[i]]);
+    }
+    const bool isInput = variant.order == TraversalOrder::Input && !variant.wholeMeshes;
+    const LeafOrder order = isInput ? inputOrder : variant.leaves != nullptr ? variant.leaves : halvingOrder;
+    return test::halvedTreeCost(leaves, order(leaves, 1));
+}
 
 // Compiles as little as there can be: the scene is only uploaded.
 Result<Package> packageOf(const Scene& scene) {
@@ -250,6 +265,7 @@ private:
             if (!uploaded) {
                 return uploaded.error();
             }
+            measured.costs[variant.name] = costOf(data, variant);
             measured.orderMs[variant.name] = (*uploaded)->statistics().orderMs;
             scenes_.push_back(std::move(*uploaded));
         }
@@ -380,13 +396,16 @@ std::string row(const Measured& measured) {
 // Of each variant: the slowest scene, and the geometric mean of the ratios to the order of the input.
 std::string summary(const std::vector<Measured>& all) {
     std::string text =
-        "\n| order | slowest scene, thousands | geometric mean, of input | of Embree | ordering, ms, all "
-        "scenes |\n"
-        "|---|---|---|---|---|\n";
+        "\nOf all scenes; means are geometric. *Tree*: surface of all nodes and leaves of the largest "
+        "primitive's tree.\n\n"
+        "| order | slowest scene, thousands | rays, of input | rays, of Embree | tree, of input | ordering, "
+        "ms |\n"
+        "|---|---|---|---|---|---|\n";
     for (const Variant& variant : kVariants) {
         double least = std::numeric_limits<double>::infinity();
         double toInput = 0.0;
         double toEmbree = 0.0;
+        double tree = 0.0;
         double orderMs = 0.0;
         std::string slowest;
         for (const Measured& measured : all) {
@@ -397,11 +416,13 @@ std::string summary(const std::vector<Measured>& all) {
             }
             toInput += std::log(quantile(measured.ratios(variant.name, "input"), 0.5));
             toEmbree += std::log(quantile(measured.ratios(variant.name, kEmbree), 0.5));
+            tree += std::log(measured.costs.at(variant.name) / measured.costs.at("input"));
             orderMs += measured.orderMs.at(variant.name);
         }
         const auto count = static_cast<double>(all.size());
-        text += fmt::format("| {} | {} ({}) | {:.2f} | {:.3f} | {:.0f} |\n", variant.name, thousands(least),
-                            slowest, std::exp(toInput / count), std::exp(toEmbree / count), orderMs);
+        text += fmt::format("| {} | {} ({}) | {:.2f} | {:.3f} | {:.2f} | {} |\n", variant.name,
+                            thousands(least), slowest, std::exp(toInput / count), std::exp(toEmbree / count),
+                            std::exp(tree / count), orderMs > 0.0 ? fmt::format("{:.0f}", orderMs) : "-");
     }
     return text;
 }
@@ -419,6 +440,7 @@ Json toJson(const Measured& measured) {
         }
         if (const auto order = measured.orderMs.find(name); order != measured.orderMs.end()) {
             entry["orderMs"] = order->second;
+            entry["treeCost"] = measured.costs.at(name);
         }
         variants.push_back(entry);
     }
