@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct DeviceLimits {
     PipelineCacheOwner cacheOwner;
 };
 
+struct LeafBox;
+// halvingOrder(), or what a benchmark has in its place.
+using LeafOrder = std::vector<std::uint32_t> (*)(std::span<const LeafBox> leaves, std::uint32_t threads);
+
 struct Context::State {
     State() = default;
     ~State();
@@ -64,6 +69,7 @@ struct Context::State {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     ValidationLog log;
     DeviceLimits limits;
+    LeafOrder leafOrder = nullptr;  // null: halvingOrder()
     // Shared by the renderers of this context.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };

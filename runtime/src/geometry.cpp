@@ -21,8 +21,8 @@ struct AttributeUpload {
     VkDeviceSize offset = 0;
 };
 
-std::vector<AttributeUpload> attributesOf(const PrimitiveView& view) {
-    return {{bytesOf(view.indices), &GpuPrimitive::indices},
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+    return {{bytesOf(indices), &GpuPrimitive::indices},
             {bytesOf(view.positions), &GpuPrimitive::positions},
             {bytesOf(view.normals), &GpuPrimitive::normals},
             {bytesOf(view.tangents), &GpuPrimitive::tangents},
@@ -32,14 +32,14 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view) {
 }
 
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                     const PrimitiveView& view) {
+                                     const PrimitiveView& view, std::span<const std::uint32_t> indices) {
     GpuPrimitive primitive;
     primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
     primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    std::vector<AttributeUpload> attributes = attributesOf(view);
+    std::vector<AttributeUpload> attributes = attributesOf(view, indices);
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
@@ -183,11 +183,14 @@ void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, st
 
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader,
-                                                   std::span<const PrimitiveView> primitives) {
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const std::vector<std::uint32_t>> ordered) {
     std::vector<GpuPrimitive> uploaded;
     uploaded.reserve(primitives.size());
-    for (const PrimitiveView& view : primitives) {
-        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view);
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const PrimitiveView& view = primitives[i];
+        const std::span<const std::uint32_t> indices = ordered.empty() ? view.indices : std::span(ordered[i]);
+        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view, indices);
         if (!primitive) {
             return primitive.error();
         }

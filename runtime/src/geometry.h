@@ -33,10 +33,12 @@ struct GpuPrimitive {
     std::uint32_t triangleCount = 0;
 };
 
-// Copies are queued in `uploader`. Primitives without triangles get no buffer.
+// Copies are queued in `uploader`. Primitives without triangles get no buffer. `ordered`: the indices of each
+// primitive, in another order of its triangles; empty: as the primitives have them.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader,
-                                                   std::span<const PrimitiveView> primitives);
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const std::vector<std::uint32_t>> ordered = {});
 
 // Deformed vertices of a primitive of an instance; 0 where it lacks the attribute.
 struct DeformedVertices {

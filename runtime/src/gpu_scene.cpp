@@ -4,12 +4,20 @@
 #include "pass_dependencies.h"
 #include "scene_checks.h"
 #include "textures.h"
+#include "traversal_order.h"
 
+#include <chrono>
 #include <cstring>
 #include <utility>
 
 namespace glint {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
 
 // An array of records that shaders reach by address; never empty, so that the address is one.
 template <typename T>
@@ -32,8 +40,17 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (!uploader) {
         return uploader.error();
     }
+    BlasCapacity capacity = blasCapacity(state.context);
+    std::vector<std::vector<std::uint32_t>> ordered;
+    const LeafOrder leafOrder = leafOrderFor(state.context, scene.traversalOrder);
+    if (leafOrder != nullptr) {
+        const Clock::time_point begin = Clock::now();
+        capacity = orderedCapacity(capacity);
+        ordered = orderedTriangles(scene.primitives, capacity, leafOrder);
+        state.statistics.orderMs = millisecondsSince(begin);
+    }
     Result<std::vector<GpuPrimitive>> primitives =
-        uploadPrimitives(state.context, state.pool, **uploader, scene.primitives);
+        uploadPrimitives(state.context, state.pool, **uploader, scene.primitives, ordered);
     if (!primitives) {
         return primitives.error();
     }
@@ -47,11 +64,18 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         deformer = std::move(*created);
     }
     Result<SceneLayout> laidOut =
-        layOutScene(known, scene, state.primitives, blasCapacity(state.context), state.deformed.addresses);
+        layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses);
     if (!laidOut) {
         return laidOut.error();
     }
     layout = std::move(*laidOut);
+    if (leafOrder != nullptr) {
+        const Clock::time_point begin = Clock::now();
+        state.instanceOrder = std::make_unique<InstanceOrder>(scene.primitives, layout.parts, leafOrder);
+        layout.partInstances = permuted<PartInstance>(
+            layout.partInstances, state.instanceOrder->at(scene.instances, layout.partInstances));
+        state.statistics.orderMs += millisecondsSince(begin);
+    }
     for (const gpu::GeometryRecord& geometry : layout.geometries) {
         state.shaderIds.push_back(geometry.shaderId);
     }

@@ -7,6 +7,7 @@
 #include "resources.h"
 #include "scene_materials.h"
 #include "scene_motion.h"
+#include "traversal_order.h"
 
 #include <glint/renderer.h>
 
@@ -29,6 +30,8 @@ struct GpuScene::State {
     DeformedBuffers deformed;
     std::vector<AccelerationStructure> blases;  // those that are built once
     std::vector<VkDeviceAddress> partBlases;    // by SceneLayout::parts
+    // Null where the instances of the top level come as the scene has them.
+    std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
     std::vector<std::uint32_t> shaderIds;  // of the geometry records, in their order

@@ -99,6 +99,14 @@ Decisions decide(SceneMotion& motion, std::vector<bool> deformed, bool placedCha
     return decisions;
 }
 
+// A top level that is built anew gets its instances where they are now; an update keeps the order of the last
+// build.
+void orderPlaced(SceneMotion& motion, const InstanceOrder& order, std::span<const InstanceView> instances) {
+    const std::vector<std::uint32_t> places = order.at(instances, motion.partInstances);
+    motion.partInstances = permuted<PartInstance>(motion.partInstances, places);
+    motion.placed = permuted<VkAccelerationStructureInstanceKHR>(motion.placed, places);
+}
+
 void beginLabel(const Context::State& context, VkCommandBuffer commands, const char* name) {
     if (context.vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
         VkDebugUtilsLabelEXT label{};
@@ -252,7 +260,10 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
         motion.deformer ? motion.deformer->setPose(view.instances) : std::vector<bool>(view.instances.size());
     const std::vector<Box> boxes = boxesOf(motion, view.instances);
     const Decisions decisions = decide(motion, std::move(deformed), changed, boxes, view.builds);
-    stage(state, view.instances, view.lights);
+    if (state.instanceOrder && decisions.tlas == BuildAction::Build) {
+        orderPlaced(motion, *state.instanceOrder, view.instances);
+    }
+    stage(motion, view.instances, view.lights);
     recordAll(state, commands, decisions);
     motion.statistics = countsOf(decisions);
     motion.recorded = true;

@@ -5,10 +5,11 @@
 #include "gltf/animated_values.h"
 #include "gltf/transform.h"
 #include "gpu_scene_state.h"
-#include "motion/pose.h"
+#include "leaf_order.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
+#include "support/halved_tree.h"
 
 #include <array>
 #include <cmath>
@@ -135,6 +136,55 @@ TEST(Motion, TheTopLevelFollowsItsRule) {
     moving.scene.nodes[1].world = placed(-1, -0.5, -9);
     EXPECT_EQ(moving.update(MotionView::Builds::Refit).topLevel, MotionStatistics::TopLevel::Updated);
     expectSameImage(moving.render(), renderStill(moving.scene), "updated, though it went far");
+}
+
+// On a CPU's driver the order of instances is the tree: a build takes it from where they are, an update keeps
+// it.
+TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
+    constexpr std::uint32_t kCount = 64;
+    Scene scene = emptyScene();
+    const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
+    const int mesh = addMesh(scene, makeQuad(material, {-0.4F, -0.4F, 0}, {0.8F, 0, 0}, {0, 0.8F, 0}));
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        // Neighbours in the file are far from each other, as 27 and 64 share no factor.
+        const std::uint32_t place = 27 * i % kCount;
+        addInstance(scene, mesh, placed(place % 8, place / 8, -20));
+    }
+    addCamera(scene);
+    Moving moving(std::move(scene));
+    ASSERT_TRUE(moving.ok());
+    const auto order = [&] {
+        std::vector<std::uint32_t> instances;
+        for (const PartInstance& part : moving.gpuScene->state().motion->partInstances) {
+            instances.push_back(part.instance);
+        }
+        return instances;
+    };
+    // Of the tree, as a multiple of the least.
+    const auto cost = [&] {
+        std::vector<LeafBox> leaves;
+        for (const Node& node : moving.scene.nodes) {
+            LeafBox& leaf = leaves.emplace_back();
+            for (const double corner : {-0.4, 0.4}) {
+                leaf.extend(std::array<float, 3>{static_cast<float>(node.world[12] + corner),
+                                                 static_cast<float>(node.world[13] + corner), -20.0F});
+            }
+        }
+        return test::halvedTreeCost(leaves, order()) / test::halvedTreeCost(leaves, halvingOrder(leaves, 1));
+    };
+    EXPECT_LT(cost(), 1.02);
+    const std::vector<std::uint32_t> first = order();
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        moving.scene.nodes[i].world = placed(i % 8, i / 8, -20);
+    }
+    moving.update(MotionView::Builds::Refit);
+    EXPECT_EQ(order(), first);
+    EXPECT_GT(cost(), 1.2) << "the move is no reason for another order";
+    moving.update(MotionView::Builds::Rebuild);
+    EXPECT_EQ(order(), first) << "nothing has moved since";
+    moving.scene.nodes[0].world = placed(0, 0, -20.5);
+    moving.update(MotionView::Builds::Rebuild);
+    EXPECT_LT(cost(), 1.02);
 }
 
 TEST(Motion, FlattenedInstancesHideAndComeBack) {

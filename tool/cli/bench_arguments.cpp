@@ -38,8 +38,8 @@ bool isView(const CLI::Option& option) {
                                            "--tracer",
                                            "--max-shaders",
                                            "--variant",
-                                           "--strict-paths",
-                                           "--device"};
+                                           "--device",
+                                           "--traversal-order"};
     return std::ranges::find(kViews, option.get_name()) != std::end(kViews);
 }
 

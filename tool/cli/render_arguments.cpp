@@ -68,6 +68,11 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
             "checks the order\nof hits")
         .group("Device");
+    addChoice(command, "--traversal-order", arguments.traversalOrder, {"auto", "input", "halving"},
+              "how triangles and instances come in acceleration\n"
+              "structures; input: as in the scene; halving: for drivers\n"
+              "whose trees halve what they are given; auto: halving on\na CPU, input on a GPU")
+        .group("Device");
     addPipelineOptions(command, arguments.pipelines);
 }
 
@@ -92,6 +97,12 @@ void addRenderReports(CLI::App& command, RenderArguments& arguments) {
 }
 
 }  // namespace
+
+TraversalOrder traversalOrderOf(const RenderArguments& arguments) {
+    return arguments.traversalOrder == "input"     ? TraversalOrder::Input
+           : arguments.traversalOrder == "halving" ? TraversalOrder::Halving
+                                                   : TraversalOrder::Auto;
+}
 
 package::Strategy strategyOf(const RenderArguments& arguments) {
     return strategyNamed(arguments.tracing.strategies.front());

@@ -47,6 +47,7 @@ struct RenderArguments {
     std::string coverage;
     std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
     std::string device;
+    std::string traversalOrder = "auto";
     PipelineArguments pipelines;
     std::string calibration;  // a device file; empty: constants that are built in
 
@@ -57,6 +58,7 @@ struct RenderArguments {
     }
 };
 
+TraversalOrder traversalOrderOf(const RenderArguments& arguments);
 package::Strategy strategyOf(const RenderArguments& arguments);
 // Returns nothing if any tracer will do.
 std::optional<package::Tracer> tracerOf(const RenderArguments& arguments);

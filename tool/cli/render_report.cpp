@@ -210,6 +210,7 @@ Json toJson(const RenderReport& report) {
               {"blasBytes", scene.blasBytes},
               {"blasUncompactedBytes", scene.blasUncompactedBytes},
               {"narrowedTextures", scene.narrowedTextures},
+              {"orderMs", scene.orderMs},
               {"blasBuildMs", scene.blasBuildMs},
               {"tlasBuildMs", scene.tlasBuildMs}}},
             {"pipelineCreationMs", report.pipelines.making.milliseconds},

@@ -8,6 +8,7 @@ SceneViewData sceneView(const RenderArguments& arguments, const Scene& scene) {
         data.lights.push_back(sunLight());
     }
     arguments.effectFrame.apply(data);
+    data.traversalOrder = traversalOrderOf(arguments);
     return data;
 }
 

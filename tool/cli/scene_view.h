@@ -19,17 +19,11 @@ struct SceneViewData {
     std::vector<ImageView> images;
     std::vector<LightView> lights;
 
-    std::uint32_t packageScene = 0;       // as in SceneView
-    bool moves = false;                   // likewise
-    std::vector<MaterialView> materials;  // those that animations change
-    // By instance: what places it.
-    struct Source {
-        std::size_t node = 0;       // index into Scene::nodes
-        std::size_t placement = 0;  // index into its Instancing, if it has one
-    };
-    std::vector<Source> sources;
-    // What the spans of primitives, instances and materials point into.
-    std::vector<std::vector<std::uint8_t>> materialRecords;
+    std::uint32_t packageScene = 0;  // as in SceneView
+    bool moves = false;              // likewise
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
+    std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
+    // What the spans of primitives and instances point into.
     std::vector<std::vector<MorphTargetView>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;

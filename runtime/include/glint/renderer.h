@@ -56,6 +56,7 @@ public:
         std::uint64_t blasUncompactedBytes = 0;
         // 16-bit images that are 8-bit on this device, as it can't filter or blit R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;
+        double orderMs = 0.0;      // wall clock of SceneView::traversalOrder; 0: as the scene has them
         double blasBuildMs = 0.0;  // device time
         double tlasBuildMs = 0.0;
     };

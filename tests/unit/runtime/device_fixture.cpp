@@ -25,7 +25,7 @@ SceneView TestScene::view() {
     for (const Pixels& image : images) {
         imageViews_.push_back({image.width, image.height, image.bytes, image.format, image.levels});
     }
-    return {primitiveViews_, instances, imageViews_, lights};
+    return {primitiveViews_, instances, imageViews_, lights, 0, false, traversalOrder};
 }
 
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z) {

@@ -34,6 +34,7 @@ struct TestScene {
     std::vector<InstanceView> instances;
     std::vector<Pixels> images;
     std::vector<LightView> lights;
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
 
     // The view is valid until a member changes.
     SceneView view();

@@ -1,0 +1,45 @@
+// The device's side of the benchmark: a compute shader that only traces.
+#pragma once
+
+#include "commands.h"
+#include "gpu_scene_state.h"
+#include "oracle/traversal/rays.h"
+#include "resources.h"
+#include "timer.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace glint::traversal {
+
+class TraceKernel {
+public:
+    // For scenes of this context, which must outlive it, and up to `rays` rays at a time. `layout`: of any of
+    // the scenes, which all have the same.
+    static Result<std::unique_ptr<TraceKernel>> create(Context& context, VkDescriptorSetLayout layout,
+                                                       std::size_t rays);
+
+    // Device milliseconds. distances() then has each ray's nearest hit, negative where there is none, from
+    // either side of a triangle.
+    Result<double> trace(GpuScene& scene, std::span<const Ray> rays);
+    std::span<const float> distances() const;
+
+private:
+    TraceKernel(Context::State& context, CommandRunner runner, Timer timer)
+        : context_(context), pool_(context), runner_(std::move(runner)), timer_(std::move(timer)) {}
+
+    Status createPipeline(VkDescriptorSetLayout layout);
+
+    Context::State& context_;
+    MemoryPool pool_;
+    CommandRunner runner_;
+    Timer timer_;
+    Buffer rays_;
+    Buffer distances_;
+    UniquePipelineLayout layout_;
+    UniquePipeline pipeline_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace glint::traversal

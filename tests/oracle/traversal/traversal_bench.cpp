@@ -1,0 +1,553 @@
+// bench_traversal: rays a second on the first Vulkan device by the order of triangles and instances, for
+// scenes as they are and shuffled, and what Embree makes of the same rays on as many threads. Each round
+// measures everything once, one after the other, so that what else the machine does slows all alike.
+#include "cli/camera.h"
+#include "cli/scene_view.h"
+#include "cli/temporary_folder.h"
+#include "context_state.h"
+#include "emit/compile.h"
+#include "gltf/import.h"
+#include "oracle/traversal/orders.h"
+#include "oracle/traversal/trace_kernel.h"
+#include "support/halved_tree.h"
+#include "traversal_order.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+
+namespace {
+
+using namespace glint;
+using namespace glint::traversal;
+using Json = nlohmann::json;
+
+struct Arguments {
+    std::vector<std::string> scenes;
+    std::int64_t rounds = 7;
+    double runMs = 60.0;
+    std::string json;
+    std::string markdown;
+};
+
+// An order of a scene's leaves that is measured.
+struct Variant {
+    const char* name;
+    bool shuffled;
+    TraversalOrder order;
+    LeafOrder leaves;  // null: the driver's own, halvingOrder()
+    // Triangles and instances are ordered, but each mesh has one BLAS, with its geometries in sequence.
+    bool wholeMeshes = false;
+};
+
+constexpr Variant kVariants[] = {{"input", false, TraversalOrder::Input, nullptr},
+                                 {"Morton", false, TraversalOrder::Halving, mortonOrder},
+                                 {"SAH", false, TraversalOrder::Halving, sahOrder},
+                                 {"halving", false, TraversalOrder::Halving, nullptr},
+                                 {"halving, whole meshes", false, TraversalOrder::Input, nullptr, true},
+                                 {"shuffled, input", true, TraversalOrder::Input, nullptr},
+                                 {"shuffled, Morton", true, TraversalOrder::Halving, mortonOrder},
+                                 {"shuffled, SAH", true, TraversalOrder::Halving, sahOrder},
+                                 {"shuffled, halving", true, TraversalOrder::Halving, nullptr}};
+constexpr std::size_t kHalving = 3;
+constexpr const char* kEmbree = "Embree";
+
+double quantile(std::vector<double> values, double q) {
+    std::ranges::sort(values);
+    const double place = q * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+// Indices and instances in a random order, which spans of `data` point to afterwards.
+struct Shuffled {
+    explicit Shuffled(SceneViewData& data) {
+        std::mt19937_64 random(3);
+        for (PrimitiveView& primitive : data.primitives) {
+            std::vector<std::array<std::uint32_t, 3>> triangles;
+            for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+                triangles.push_back(
+                    {primitive.indices[i], primitive.indices[i + 1], primitive.indices[i + 2]});
+            }
+            std::ranges::shuffle(triangles, random);
+            std::vector<std::uint32_t>& own = indices.emplace_back();
+            for (const auto& corners : triangles) {
+                own.insert(own.end(), corners.begin(), corners.end());
+            }
+        }
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            data.primitives[i].indices = indices[i];
+        }
+        std::ranges::shuffle(data.instances, random);
+    }
+    std::vector<std::vector<std::uint32_t>> indices;
+};
+
+// Triangles of each primitive, and instances by their meshes, in the driver's order without its BLAS for each
+// geometry.
+struct OrderedMeshes {
+    explicit OrderedMeshes(const SceneViewData& data)
+        : primitives(data.primitives),
+          instances(data.instances),
+          indices(orderedTriangles(data.primitives, {std::uint64_t{1} << 24U, 1}, halvingOrder)) {
+        std::vector<MeshPart> parts;
+        std::vector<PartInstance> placed;
+        for (std::uint32_t i = 0; i < instances.size(); ++i) {
+            MeshPart& part = parts.emplace_back();
+            const PrimitiveRange own = primitivesOf(primitives, instances[i].mesh);
+            for (std::uint32_t primitive = own.first; primitive < own.end; ++primitive) {
+                part.ranges.push_back({primitive, 0, 0});
+            }
+            placed.push_back({i, i, i});
+        }
+        const std::vector<std::uint32_t> order =
+            InstanceOrder(primitives, parts, halvingOrder).at(instances, placed);
+        instances = permuted<InstanceView>(instances, order);
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            primitives[i].indices = indices[i];
+        }
+    }
+    std::vector<PrimitiveView> primitives;
+    std::vector<InstanceView> instances;
+    std::vector<std::vector<std::uint32_t>> indices;
+};
+
+// Rays that a run takes, and rays a second of its rounds.
+struct Runs {
+    std::size_t rays = 0;
+    std::vector<double> rates;
+};
+
+// What is measured of one scene: by the variant's name, camera rays and bounces.
+struct Measured {
+    std::string name;
+    std::size_t triangles = 0;  // of all instances
+    std::size_t instances = 0;
+    std::map<std::string, std::array<Runs, 2>> runs;
+    std::map<std::string, double> orderMs;
+    std::map<std::string, double> costs;  // halvedTreeCost() of the primitive with most triangles
+    double unlike = 0.0;  // share of the rays of which device and Embree disagree by more than 1 %
+
+    // Rays a second where camera rays and bounces are as many, round by round.
+    std::vector<double> rates(const std::string& variant) const {
+        std::vector<double> both;
+        const auto& [camera, bounces] = runs.at(variant);
+        for (std::size_t i = 0; i < camera.rates.size(); ++i) {
+            both.push_back(2.0 / (1.0 / camera.rates[i] + 1.0 / bounces.rates[i]));
+        }
+        return both;
+    }
+    double rate(const std::string& variant) const {
+        return quantile(rates(variant), 0.5);
+    }
+    // Of the rates in each round.
+    std::vector<double> ratios(const std::string& of, const std::string& to) const {
+        std::vector<double> result = rates(of);
+        const std::vector<double> base = rates(to);
+        std::ranges::transform(result, base, result.begin(), std::divides());
+        return result;
+    }
+};
+
+// Of the driver's tree over the primitive with most triangles.
+double costOf(const SceneViewData& data, const Variant& variant) {
+    const auto largest = std::ranges::max_element(
+        data.primitives, {}, [](const PrimitiveView& primitive) { return primitive.indices.size(); });
+    std::vector<LeafBox> leaves(largest->indices.size() / 3);
+    for (std::size_t i = 0; i < 3 * leaves.size(); ++i) {
+        leaves[i / 3].extend(largest->positions[largest->indices[i]]);
+    }
+    const bool isInput = variant.order == TraversalOrder::Input && !variant.wholeMeshes;
+    const LeafOrder order = isInput ? inputOrder : variant.leaves != nullptr ? variant.leaves : halvingOrder;
+    return test::halvedTreeCost(leaves, order(leaves, 1));
+}
+
+// Compiles as little as there can be: the scene is only uploaded.
+Result<Package> packageOf(const Scene& scene) {
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = MergePolicy::All;
+    settings.plan.maxShaders = 1;
+    const Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    if (!compiled) {
+        return compiled.error();
+    }
+    const Result<TemporaryFolder> folder = TemporaryFolder::create();
+    if (!folder) {
+        return folder.error();
+    }
+    const std::filesystem::path path = folder->path() / "package";
+    if (Status written = writePackage(*compiled, path); !written) {
+        return written.error();
+    }
+    return Package::load(path);
+}
+
+class SceneBench {
+public:
+    SceneBench(Context& context, const Arguments& arguments) : context_(context), arguments_(arguments) {}
+
+    // Nothing where the scene has no triangles that a ray could meet.
+    Result<std::optional<Measured>> run(const std::filesystem::path& file) {
+        ImportOptions import;
+        import.decodeImages = true;
+        const Result<Scene> scene = importScene(file, import);
+        if (!scene) {
+            return scene.error();
+        }
+        SceneViewData data = makeSceneView(*scene);
+        for (InstanceView& instance : data.instances) {
+            instance.joints = {};
+            instance.morphWeights = {};
+        }
+        const std::vector<Triangle> triangles = worldTriangles(data.view());
+        if (triangles.empty()) {
+            return std::optional<Measured>();
+        }
+        const EmbreeScene embree(triangles);
+        const Result<CameraChoice> camera = chooseCamera(*scene, data, "auto", 16.0 / 9.0);
+        if (!camera) {
+            return camera.error();
+        }
+        rays_[0] = cameraRays(camera->view, 640, 360);
+        rays_[1] = embree.bounces(rays_[0]);
+        if (rays_[1].size() < kTile) {
+            return std::optional<Measured>();
+        }
+        Measured measured;
+        measured.name = file.parent_path().filename().string();
+        measured.triangles = triangles.size();
+        measured.instances = data.instances.size();
+        if (Status done = upload(*scene, data, measured); !done) {
+            return done.error();
+        }
+        if (Status done = measure(embree, measured); !done) {
+            return done.error();
+        }
+        scenes_.clear();
+        return std::optional<Measured>(std::move(measured));
+    }
+
+private:
+    Status upload(const Scene& scene, SceneViewData& data, Measured& measured) {
+        const Result<Package> package = packageOf(scene);
+        if (!package) {
+            return package.error();
+        }
+        scenes_.clear();
+        std::optional<Shuffled> shuffled;
+        for (const Variant& variant : kVariants) {
+            if (variant.shuffled && !shuffled) {
+                shuffled.emplace(data);
+            }
+            data.traversalOrder = variant.order;
+            context_.state().leafOrder = variant.leaves;
+            SceneView view = data.view();
+            std::optional<OrderedMeshes> ordered;
+            if (variant.wholeMeshes) {
+                ordered.emplace(data);
+                view.primitives = ordered->primitives;
+                view.instances = ordered->instances;
+            }
+            Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context_, *package, view);
+            if (!uploaded) {
+                return uploaded.error();
+            }
+            measured.costs[variant.name] = costOf(data, variant);
+            measured.orderMs[variant.name] = (*uploaded)->statistics().orderMs;
+            scenes_.push_back(std::move(*uploaded));
+        }
+        Result<std::unique_ptr<TraceKernel>> kernel = TraceKernel::create(
+            context_, scenes_.front()->state().setLayout.get(), std::max(rays_[0].size(), rays_[1].size()));
+        if (!kernel) {
+            return kernel.error();
+        }
+        kernel_ = std::move(*kernel);
+        return okStatus();
+    }
+
+    // Milliseconds of the first `count` rays of a kind; `scene`: null for Embree.
+    Result<double> trace(const EmbreeScene& embree, GpuScene* scene, std::size_t kind, std::size_t count) {
+        const std::span<const Ray> rays = std::span(rays_[kind]).first(count);
+        if (scene != nullptr) {
+            return kernel_->trace(*scene, rays);
+        }
+        distances_.resize(count);
+        return embree.trace(rays, distances_);
+    }
+
+    Status measure(const EmbreeScene& embree, Measured& measured) {
+        const auto run = [&](const char* name, GpuScene* scene, bool first) -> Status {
+            for (std::size_t kind = 0; kind < rays_.size(); ++kind) {
+                Runs& runs = measured.runs[name][kind];
+                if (first) {
+                    // As many rays as take the time of a run: slow orders would take minutes otherwise.
+                    runs.rays = std::min<std::size_t>(rays_[kind].size(), 16 * kTile);
+                    for (int i = 0; i < 3; ++i) {
+                        const Result<double> ms = trace(embree, scene, kind, runs.rays);
+                        if (!ms) {
+                            return ms.error();
+                        }
+                        const double wanted = static_cast<double>(runs.rays) * arguments_.runMs / *ms;
+                        runs.rays = std::clamp<std::size_t>(static_cast<std::size_t>(wanted), 4 * kTile,
+                                                            rays_[kind].size());
+                    }
+                    continue;
+                }
+                const Result<double> ms = trace(embree, scene, kind, runs.rays);
+                if (!ms) {
+                    return ms.error();
+                }
+                runs.rates.push_back(1e3 * static_cast<double>(runs.rays) / *ms);
+            }
+            return okStatus();
+        };
+        for (std::int64_t round = -1; round < arguments_.rounds; ++round) {
+            for (std::size_t i = 0; i < scenes_.size(); ++i) {
+                if (Status done = run(kVariants[i].name, scenes_[i].get(), round < 0); !done) {
+                    return done;
+                }
+            }
+            if (Status done = run(kEmbree, nullptr, round < 0); !done) {
+                return done;
+            }
+        }
+        return compare(embree, measured);
+    }
+
+    // Whether both trace the same: else the figures would not be of the same work.
+    Status compare(const EmbreeScene& embree, Measured& measured) {
+        std::size_t unlike = 0;
+        std::size_t count = 0;
+        for (const std::vector<Ray>& all : rays_) {
+            const std::span<const Ray> rays =
+                std::span(all).first(std::min<std::size_t>(all.size(), 128 * kTile));
+            distances_.resize(rays.size());
+            embree.trace(rays, distances_);
+            if (const Result<double> ms = kernel_->trace(*scenes_[kHalving], rays); !ms) {
+                return ms.error();
+            }
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const float found = kernel_->distances()[i];
+                unlike += std::abs(found - distances_[i]) > 0.01F * std::abs(distances_[i]) ? 1 : 0;
+            }
+            count += rays.size();
+        }
+        measured.unlike = static_cast<double>(unlike) / static_cast<double>(count);
+        return okStatus();
+    }
+
+    Context& context_;
+    const Arguments& arguments_;
+    std::array<std::vector<Ray>, 2> rays_;
+    std::vector<std::unique_ptr<GpuScene>> scenes_;  // by kVariants
+    std::unique_ptr<TraceKernel> kernel_;
+    std::vector<float> distances_;
+};
+
+std::string thousands(double rate) {
+    return fmt::format("{:.0f}", rate / 1e3);
+}
+
+std::string spread(const std::vector<double>& values) {
+    return fmt::format("{:.2f} ({:.2f} to {:.2f})", quantile(values, 0.5), quantile(values, 0.25),
+                       quantile(values, 0.75));
+}
+
+std::string head(const Context& context, const Arguments& arguments) {
+    std::string text = fmt::format(
+        "{}, {}; {} threads; {} rounds. Thousands of rays a second, medians; *ratio*: of the rounds, median "
+        "and "
+        "quartiles.\n\n| scene | triangles | instances |",
+        context.deviceName(), context.driverName(), std::thread::hardware_concurrency(), arguments.rounds);
+    std::string rule = "|---|---|---|";
+    for (const Variant& variant : kVariants) {
+        text += fmt::format(" {} |", variant.name);
+        rule += "---|";
+    }
+    return text +
+           " Embree | halving to input | shuffled to not, halving | halving to Embree | ordering, ms |\n" +
+           rule + "---|---|---|---|---|\n";
+}
+
+std::string row(const Measured& measured) {
+    std::string text = fmt::format("| {} | {} | {} |", measured.name, measured.triangles, measured.instances);
+    for (const Variant& variant : kVariants) {
+        text += fmt::format(" {} |", thousands(measured.rate(variant.name)));
+    }
+    return text + fmt::format(" {} | {} | {} | {} | {:.1f} |\n", thousands(measured.rate(kEmbree)),
+                              spread(measured.ratios("halving", "input")),
+                              spread(measured.ratios("shuffled, halving", "halving")),
+                              spread(measured.ratios("halving", kEmbree)), measured.orderMs.at("halving"));
+}
+
+// Of each variant: the slowest scene, and the geometric mean of the ratios to the order of the input.
+std::string summary(const std::vector<Measured>& all) {
+    std::string text =
+        "\nOf all scenes; means are geometric. *Tree*: surface of all nodes and leaves of the largest "
+        "primitive's tree.\n\n"
+        "| order | slowest scene, thousands | rays, of input | rays, of Embree | tree, of input | ordering, "
+        "ms |\n"
+        "|---|---|---|---|---|---|\n";
+    for (const Variant& variant : kVariants) {
+        double least = std::numeric_limits<double>::infinity();
+        double toInput = 0.0;
+        double toEmbree = 0.0;
+        double tree = 0.0;
+        double orderMs = 0.0;
+        std::string slowest;
+        for (const Measured& measured : all) {
+            const double rate = measured.rate(variant.name);
+            if (rate < least) {
+                least = rate;
+                slowest = measured.name;
+            }
+            toInput += std::log(quantile(measured.ratios(variant.name, "input"), 0.5));
+            toEmbree += std::log(quantile(measured.ratios(variant.name, kEmbree), 0.5));
+            tree += std::log(measured.costs.at(variant.name) / measured.costs.at("input"));
+            orderMs += measured.orderMs.at(variant.name);
+        }
+        const auto count = static_cast<double>(all.size());
+        text += fmt::format("| {} | {} ({}) | {:.2f} | {:.3f} | {:.2f} | {} |\n", variant.name,
+                            thousands(least), slowest, std::exp(toInput / count), std::exp(toEmbree / count),
+                            std::exp(tree / count), orderMs > 0.0 ? fmt::format("{:.0f}", orderMs) : "-");
+    }
+    return text;
+}
+
+Json toJson(const Measured& measured) {
+    Json variants = Json::array();
+    for (const auto& [name, kinds] : measured.runs) {
+        Json entry{{"variant", name}};
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            const std::vector<double>& rates = kinds[kind].rates;
+            entry[kind == 0 ? "camera" : "bounces"] = {{"rays", kinds[kind].rays},
+                                                       {"median", quantile(rates, 0.5)},
+                                                       {"low", quantile(rates, 0.25)},
+                                                       {"high", quantile(rates, 0.75)}};
+        }
+        if (const auto order = measured.orderMs.find(name); order != measured.orderMs.end()) {
+            entry["orderMs"] = order->second;
+            entry["treeCost"] = measured.costs.at(name);
+        }
+        variants.push_back(entry);
+    }
+    return {{"scene", measured.name},
+            {"triangles", measured.triangles},
+            {"instances", measured.instances},
+            {"unlike", measured.unlike},
+            {"variants", variants}};
+}
+
+Status benchAll(const Arguments& arguments) {
+    const Result<std::unique_ptr<Context>> context = Context::createHeadless();
+    if (!context) {
+        return context.error();
+    }
+    SceneBench bench(**context, arguments);
+    std::vector<Measured> all;
+    std::string markdown = head(**context, arguments);
+    fmt::print("{}", markdown);
+    Json report{{"device", (*context)->deviceName()},
+                {"driver", (*context)->driverName()},
+                {"threads", std::thread::hardware_concurrency()},
+                {"rounds", arguments.rounds},
+                {"unit", "rays a second"},
+                {"scenes", Json::array()}};
+    for (const std::string& scene : arguments.scenes) {
+        Result<std::optional<Measured>> measured = bench.run(scene);
+        if (!measured) {
+            std::fprintf(stderr, "%s: left out: %s\n", scene.c_str(), toString(measured.error()).c_str());
+            continue;
+        }
+        if (!*measured) {
+            std::fprintf(stderr, "%s: left out: no ray meets a triangle\n", scene.c_str());
+            continue;
+        }
+        if ((*measured)->unlike > 0.01) {
+            std::fprintf(stderr, "%s: device and Embree disagree on %.1f %% of the rays\n", scene.c_str(),
+                         100.0 * (*measured)->unlike);
+        }
+        const std::string text = row(**measured);
+        fmt::print("{}", text);
+        std::fflush(stdout);
+        markdown += text;
+        report["scenes"].push_back(toJson(**measured));
+        all.push_back(std::move(**measured));
+    }
+    if (all.empty()) {
+        return makeError("bench", "", "no scene was measured", "give scenes, or set GLINT_MODELS");
+    }
+    const std::string text = summary(all);
+    fmt::print("{}", text);
+    if (!arguments.markdown.empty()) {
+        std::ofstream(arguments.markdown) << markdown << text;
+    }
+    if (!arguments.json.empty()) {
+        std::ofstream(arguments.json) << report.dump(1) << "\n";
+    }
+    return okStatus();
+}
+
+// Every .gltf and .glb in folders of features/ and large/.
+std::vector<std::string> scenesOf(const std::filesystem::path& models) {
+    std::vector<std::string> found;
+    for (const char* const group : {"features", "large"}) {
+        const std::filesystem::path folder = models / group;
+        if (!std::filesystem::is_directory(folder)) {
+            continue;
+        }
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension == ".gltf" || extension == ".glb") {
+                found.push_back(entry.path().string());
+            }
+        }
+    }
+    std::ranges::sort(found);
+    return found;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        Arguments arguments;
+        CLI::App app("Rays a second by the order of triangles and instances; prints Markdown.");
+        app.add_option("SCENE", arguments.scenes,
+                       "Scenes; default: all of the folder GLINT_MODELS, else of ../shared/models");
+        app.add_option("--rounds", arguments.rounds, "Rounds")
+            ->check(CLI::Range(1, 1000))
+            ->capture_default_str();
+        app.add_option("--run-ms", arguments.runMs, "Milliseconds of a run, about")
+            ->check(CLI::Range(1, 10000))
+            ->capture_default_str();
+        app.add_option("--json", arguments.json, "Also writes this file, with camera rays and bounces apart");
+        app.add_option("--markdown", arguments.markdown, "Also writes the tables into this file");
+        CLI11_PARSE(app, argc, argv);
+        if (arguments.scenes.empty()) {
+            const char* const models = std::getenv("GLINT_MODELS");
+            arguments.scenes = scenesOf(models != nullptr ? models : "../shared/models");
+        }
+        if (const Status status = benchAll(arguments); !status) {
+            std::fprintf(stderr, "%s\n", toString(status.error()).c_str());
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_traversal: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
