@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 // Nodes with fewer leaves are not worth a thread: they take about a millisecond.
 constexpr std::size_t kLeavesPerThread = 1U << 13;
@@ -207,7 +207,7 @@ private:
 }  // namespace
 
 LeafBox::LeafBox() {
-    sides.fill(kInfinity);
+    sides.fill(kUnbounded);
 }
 
 LeafBox::LeafBox(const Box& box) : LeafBox() {
@@ -233,7 +233,7 @@ void LeafBox::extend(const std::array<float, 3>& point) {
     // Comparisons skip a NaN.
     const float sum = point[0] + point[1] + point[2];
     if (!(sum - sum == 0.0F)) {
-        sides[0] = -kInfinity;
+        sides[0] = -kUnbounded;
     }
 }
 

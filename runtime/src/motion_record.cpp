@@ -263,7 +263,7 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
     if (state.instanceOrder && decisions.tlas == BuildAction::Build) {
         orderPlaced(motion, *state.instanceOrder, view.instances);
     }
-    stage(motion, view.instances, view.lights);
+    stage(state, view.instances, view.lights);
     recordAll(state, commands, decisions);
     motion.statistics = countsOf(decisions);
     motion.recorded = true;

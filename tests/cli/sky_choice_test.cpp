@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr Matrix4 kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr SurfacePoint kFloor{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 
 LightView light(LightView::Type type, float intensity) {
@@ -79,7 +79,7 @@ Primitive square() {
 Node placed(double x, double z) {
     Node node;
     node.mesh = 0;
-    node.world = kIdentity;
+    node.world = kUnmoved;
     node.world[0] = x;
     node.world[10] = z;
     return node;

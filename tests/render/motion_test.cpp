@@ -6,6 +6,7 @@
 #include "gltf/transform.h"
 #include "gpu_scene_state.h"
 #include "leaf_order.h"
+#include "motion/pose.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"

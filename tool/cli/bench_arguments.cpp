@@ -38,6 +38,7 @@ bool isView(const CLI::Option& option) {
                                            "--tracer",
                                            "--max-shaders",
                                            "--variant",
+                                           "--strict-paths",
                                            "--device",
                                            "--traversal-order"};
     return std::ranges::find(kViews, option.get_name()) != std::end(kViews);

@@ -1,6 +1,7 @@
 #include "cli/camera.h"
 
 #include "base/suggest.h"
+#include "base/vectors.h"
 #include "motion/deform.h"
 #include "motion/pose.h"
 
@@ -14,20 +15,6 @@
 namespace glint {
 
 namespace {
-
-using Double3 = std::array<double, 3>;
-
-double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Double3 scaled(const Double3& a, double factor) {
-    return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
 
 Double3 sum(const Double3& a, const Double3& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};

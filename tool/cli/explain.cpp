@@ -190,7 +190,7 @@ std::string toText(const Planned& planned, int material, Detail detail) {
     for (const std::string& change : changesOf(planned.scenes, material)) {
         rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
     }
-    return text + formatFields(rows);
+    return text + formatFields(rows, detail);
 }
 
 // Returns an empty text if the scene has no variants.

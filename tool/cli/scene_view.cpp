@@ -106,7 +106,7 @@ Matrix4 worldOf(const Scene& scene, const Node& node, std::size_t placement) {
 }  // namespace
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene, moves, traversalOrder};
+    return {primitives, instances, images, lights, packageScene, moves, materials, traversalOrder};
 }
 
 MotionView SceneViewData::motion() const {

@@ -22,8 +22,15 @@ struct SceneViewData {
     std::uint32_t packageScene = 0;  // as in SceneView
     bool moves = false;              // likewise
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    std::vector<std::size_t> nodes;  // by instance: index into Scene::nodes
-    // What the spans of primitives and instances point into.
+    std::vector<MaterialView> materials;  // those that animations change
+    // By instance: what places it.
+    struct Source {
+        std::size_t node = 0;       // index into Scene::nodes
+        std::size_t placement = 0;  // index into its Instancing, if it has one
+    };
+    std::vector<Source> sources;
+    // The data to which the spans of primitives, instances and materials point.
+    std::vector<std::vector<std::uint8_t>> materialRecords;
     std::vector<std::vector<MorphTargetView>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;

@@ -1,5 +1,6 @@
 #include "cli/sky_choice.h"
 
+#include "base/vectors.h"
 #include "image/tone.h"
 #include "motion/deform.h"
 #include "motion/pose.h"
@@ -16,23 +17,10 @@ namespace glint {
 
 namespace {
 
-using Double3 = std::array<double, 3>;
 using Corners = std::array<Double3, 3>;
 
 Double3 difference(const Double3& a, const Double3& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Double3 scaled(const Double3& a, double factor) {
-    return {a[0] * factor, a[1] * factor, a[2] * factor};
 }
 
 Double3 widened(const std::array<float, 3>& a) {

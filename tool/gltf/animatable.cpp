@@ -97,7 +97,7 @@ constexpr MaterialProperty kFactors[] = {
 };
 constexpr int kFactorCount = static_cast<int>(std::size(kFactors));
 
-constexpr LightProperty kLights[] = {
+constexpr LightProperty kLightValues[] = {
     {"color", 3, 0.0, kMax, [](Light& light) { return light.color.data(); }},
     {"intensity", 1, 0.0, kMax, [](Light& light) { return &light.intensity; }},
     {"range", 1, 0.0, kMax, [](Light& light) { return &light.range; }},
@@ -213,7 +213,7 @@ std::optional<int> findMaterialProperty(std::string_view name) {
 }
 
 std::optional<int> findLightProperty(std::string_view name) {
-    return findByName(kLights, name);
+    return findByName(kLightValues, name);
 }
 
 std::optional<int> findCameraProperty(std::string_view name) {
@@ -237,7 +237,7 @@ std::size_t materialPropertyWidth(int property) {
 }
 
 std::size_t lightPropertyWidth(int property) {
-    return kLights[property].width;
+    return kLightValues[property].width;
 }
 
 void setMaterialProperty(Material& material, int property, std::span<const double> values) {
@@ -251,9 +251,9 @@ void setMaterialProperty(Material& material, int property, std::span<const doubl
 }
 
 void setLightProperty(Light& light, int property, std::span<const double> values) {
-    float* const numbers = kLights[property].first(light);
+    float* const numbers = kLightValues[property].first(light);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        numbers[i] = static_cast<float>(settled(kLights[property], values[i]));
+        numbers[i] = static_cast<float>(settled(kLightValues[property], values[i]));
     }
 }
 

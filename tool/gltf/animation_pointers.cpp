@@ -94,32 +94,33 @@ std::string nameOf(Tokens tokens) {
     return fmt::format("{}", fmt::join(tokens, "/"));
 }
 
-class Resolver {
+class PointerResolver {
 public:
-    Resolver(const Document& document, const Scene& scene, const NodeNumbers& numbers, Tokens tokens)
+    PointerResolver(const Document& document, const Scene& scene, const NodeNumbers& numbers, Tokens tokens)
         : json_(document.json()), scene_(scene), numbers_(numbers), tokens_(tokens) {}
 
     PointerTarget resolve() const {
         if (tokens_[0] == "extensions" && tokens_.size() >= 3 && tokens_[1] == "KHR_lights_punctual" &&
             tokens_[2] == "lights") {
-            return element(3, &Resolver::light);
+            return element(3, &PointerResolver::light);
         }
         if (tokens_[0] == "nodes") {
-            return element(1, &Resolver::node);
+            return element(1, &PointerResolver::node);
         }
         if (tokens_[0] == "meshes") {
-            return element(1, &Resolver::mesh);
+            return element(1, &PointerResolver::mesh);
         }
         if (tokens_[0] == "materials") {
-            return element(1, &Resolver::material);
+            return element(1, &PointerResolver::material);
         }
-        return tokens_[0] == "cameras" ? element(1, &Resolver::camera) : unknown();
+        return tokens_[0] == "cameras" ? element(1, &PointerResolver::camera) : unknown();
     }
 
 private:
     // The index at tokens_[place] goes into the array of the tokens before it; `resolve` sees the rest.
     PointerTarget element(std::size_t place,
-                          PointerTarget (Resolver::*resolve)(std::size_t index, Tokens rest) const) const {
+                          PointerTarget (PointerResolver::*resolve)(std::size_t index, Tokens rest)
+                              const) const {
         if (tokens_.size() <= place + 1) {
             return unknown();
         }
@@ -266,7 +267,7 @@ PointerTarget resolvePointer(const Document& document, const Scene& scene, const
     if (!tokens) {
         return wrong("is no JSON pointer");
     }
-    return Resolver(document, scene, numbers, *tokens).resolve();
+    return PointerResolver(document, scene, numbers, *tokens).resolve();
 }
 
 }  // namespace glint::gltf

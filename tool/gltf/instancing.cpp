@@ -1,5 +1,6 @@
 #include "gltf/instancing.h"
 
+#include "base/vectors.h"
 #include "gltf/accessor.h"
 #include "gltf/transform.h"
 #include "gltf/validate.h"
@@ -19,12 +20,7 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kExport = "export the instances again";
-
-template <std::size_t N>
-bool isFinite(const std::array<float, N>& value) {
-    return std::ranges::all_of(value, [](float number) { return std::isfinite(number); });
-}
+constexpr const char* kExportInstances = "export the instances again";
 
 class InstanceReader {
 public:
@@ -65,13 +61,13 @@ private:
         if (elements->components != N) {
             return document_.error("attribute-type", where,
                                    fmt::format("has {} components, not {}", elements->components, N),
-                                   kExport);
+                                   kExportInstances);
         }
         if (count_ && *count_ != elements->count) {
             return document_.error("attribute-count", where,
                                    fmt::format("has {} elements, another attribute of the node has {}",
                                                elements->count, *count_),
-                                   kExport);
+                                   kExportInstances);
         }
         count_ = elements->count;
         values.resize(elements->count);
@@ -85,7 +81,8 @@ private:
         }
         if (damaged > 0) {
             document_.warn("attribute-not-finite", where,
-                           fmt::format("{} elements are NaN or infinite; 0 is used", damaged), kExport);
+                           fmt::format("{} elements are NaN or infinite; 0 is used", damaged),
+                           kExportInstances);
         }
         return okStatus();
     }
@@ -108,7 +105,7 @@ private:
         if (off > 0) {
             document_.warn("node-rotation", pointer_ + "/ROTATION",
                            fmt::format("{} elements are no unit quaternions; their direction is used", off),
-                           kExport);
+                           kExportInstances);
         }
     }
 

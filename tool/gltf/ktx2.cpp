@@ -44,9 +44,9 @@ constexpr std::uint8_t kTransferSrgb = 2;
 constexpr std::uint8_t kPremultiplied = 1;
 
 // Little-endian numbers at places that were found to lie in the file.
-class Reader {
+class Ktx2Reader {
 public:
-    explicit Reader(ByteView bytes) : bytes_(bytes) {}
+    explicit Ktx2Reader(ByteView bytes) : bytes_(bytes) {}
 
     bool has(std::uint64_t offset, std::uint64_t length) const {
         return offset <= bytes_.size() && length <= bytes_.size() - offset;
@@ -81,7 +81,7 @@ struct Header {
 
 // Each of these says what is wrong, or nothing.
 
-std::string checkShape(const Reader& file, Header& header) {
+std::string checkShape(const Ktx2Reader& file, Header& header) {
     const std::uint32_t format = file.word(12);
     if (format != 0) {
         return fmt::format(
@@ -120,7 +120,7 @@ std::string nameOf(Model model) {
 }
 
 // The data format descriptor.
-std::string checkFormat(const Reader& file, Header& header, Ktx2& image) {
+std::string checkFormat(const Ktx2Reader& file, Header& header, Ktx2& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
     if (start < kHeaderBytes || !file.has(start, length) || (length != kOneSample && length != kTwoSamples) ||
@@ -173,7 +173,7 @@ std::string checkFormat(const Reader& file, Header& header, Ktx2& image) {
 }
 
 // The key and value data: pairs of text, each with its length before it, at multiples of 4 bytes.
-std::string checkMetadata(const Reader& file, Ktx2& image) {
+std::string checkMetadata(const Ktx2Reader& file, Ktx2& image) {
     std::uint64_t place = file.word(56);
     const std::uint64_t length = file.word(60);
     if (length == 0) {
@@ -222,7 +222,7 @@ std::uint64_t blocksOf(const Header& header, std::uint32_t level) {
 }
 
 // The code books of ETC1S data, and where the data of each level lie in it.
-std::string checkGlobalData(const Reader& file, const Header& header) {
+std::string checkGlobalData(const Ktx2Reader& file, const Header& header) {
     const std::uint64_t start = file.longWord(64);
     const std::uint64_t length = file.longWord(72);
     std::uint64_t needed = kEtc1sHeaderBytes + kEtc1sImageBytes * header.levels;
@@ -251,7 +251,7 @@ std::string checkGlobalData(const Reader& file, const Header& header) {
     return "";
 }
 
-std::string checkLevels(const Reader& file, const Header& header) {
+std::string checkLevels(const Ktx2Reader& file, const Header& header) {
     for (std::uint32_t level = 0; level < header.levels; ++level) {
         const std::uint64_t entry = kHeaderBytes + kLevelBytes * level;
         const std::uint64_t start = file.longWord(entry);
@@ -274,7 +274,7 @@ std::string checkLevels(const Reader& file, const Header& header) {
 }  // namespace
 
 std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
-    const Reader file(bytes);
+    const Ktx2Reader file(bytes);
     // Every file has one level, which the index names.
     if (!file.has(0, kHeaderBytes + kLevelBytes) ||
         bytes.size() > std::numeric_limits<std::uint32_t>::max()) {

@@ -1,5 +1,7 @@
 #include "gltf/repair.h"
 
+#include "base/vectors.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,12 +14,6 @@ namespace {
 
 constexpr const char* kRepairHint = "repair the mesh, or export it again";
 
-using Double3 = std::array<double, 3>;
-
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Double3 widen(const Float3& v) {
     return {v[0], v[1], v[2]};
 }
@@ -25,11 +21,6 @@ Double3 widen(const Float3& v) {
 Double3 subtract(const Float3& a, const Float3& b) {
     return {static_cast<double>(a[0]) - b[0], static_cast<double>(a[1]) - b[1],
             static_cast<double>(a[2]) - b[2]};
-}
-
-template <std::size_t N>
-bool isFinite(const std::array<float, N>& v) {
-    return std::all_of(v.begin(), v.end(), [](float x) { return std::isfinite(x); });
 }
 
 // Unit length; nothing for zero and what is not finite. Doubles hold the squares of all floats, and products

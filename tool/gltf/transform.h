@@ -1,6 +1,7 @@
 // 4 x 4 transforms in double precision, column-major as in glTF.
 #pragma once
 
+#include "base/vectors.h"
 #include "gltf/scene.h"
 
 #include <array>
@@ -8,8 +9,6 @@
 #include <vector>
 
 namespace glint::gltf {
-
-using Double3 = std::array<double, 3>;
 
 Matrix4 identity();
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);

@@ -89,6 +89,13 @@ struct LightView {
     float size = 0.0F;
 };
 
+// The values of a material in the place of the package's: a gpu::MaterialRecord (shaders/interop/scene.h).
+// Its textures and samplers stay those of the package, whatever the record says; their transforms are taken.
+struct MaterialView {
+    std::uint32_t material = 0;  // as in the package's PrimitiveEntry::materialIndex
+    std::span<const std::uint8_t> record;
+};
+
 // The order in which the driver gets the triangles of each primitive and the instances of the scene. Mesa's
 // lavapipe makes its trees by halving what it is given: without an order rays may take a hundred times as
 // long. Shaders see triangles by the number that they have in that order.
@@ -106,6 +113,9 @@ struct SceneView {
     std::uint32_t packageScene = 0;  // which of the package's scenes it is
     // Whether GpuScene::update() will move it. What only that needs is there only if so.
     bool moves = false;
+    // Materials with other values than the package's, by ascending number. Where the scene moves, these are
+    // the materials that GpuScene::update() may change.
+    std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
 };
 

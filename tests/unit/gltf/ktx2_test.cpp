@@ -18,7 +18,7 @@
 namespace glint::test {
 namespace {
 
-const ImportOptions kDecode{.decodeImages = true};
+const ImportOptions kDecodeKtx2{.decodeImages = true};
 constexpr std::size_t kLevelIndex = 80;
 
 Bytes readKtx2File(const std::string& name) {
@@ -82,7 +82,7 @@ protected:
     }
 
     static Image decode(const std::string& name) {
-        const Result<Scene> scene = import(basisuScene(readKtx2File(name)), kDecode);
+        const Result<Scene> scene = import(basisuScene(readKtx2File(name)), kDecodeKtx2);
         if (!scene || scene->images.size() != 1) {
             ADD_FAILURE() << name << ": " << (scene ? "no image" : toString(scene.error()));
             return {};
@@ -127,7 +127,7 @@ TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
         GltfBuilder builder = basisuScene(bytes);
         builder.root["bufferViews"][0]["byteOffset"] = padding;
         builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
-        const Result<Scene> scene = import(builder, kDecode);
+        const Result<Scene> scene = import(builder, kDecodeKtx2);
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         EXPECT_TRUE(isNear(pixelAt(scene->images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
     }
@@ -155,7 +155,7 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<Scene> scene = import(builder, kDecode);
+    const Result<Scene> scene = import(builder, kDecodeKtx2);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     ASSERT_EQ(scene->images.size(), 1U);
     EXPECT_EQ(scene->images[0].pointer, "/images/0");
@@ -315,7 +315,7 @@ TEST_F(GltfKtx2, OtherUseThanTheFileSaysIsAWarning) {
         if (!asColor) {
             builder.root["materials"][0] = {{"normalTexture", {{"index", 0}}}};
         }
-        const Result<Scene> scene = import(builder, kDecode);
+        const Result<Scene> scene = import(builder, kDecodeKtx2);
         EXPECT_TRUE(scene.ok()) << toString(scene.error());
         return scene ? findWarning(*scene, "ktx2-metadata").message : std::string();
     };
@@ -334,7 +334,7 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     }
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     const auto expectError = [&] {
-        const Result<Scene> scene = import(builder, kDecode);
+        const Result<Scene> scene = import(builder, kDecodeKtx2);
         ASSERT_FALSE(scene.ok());
         EXPECT_EQ(scene.error().id, "texture-basisu");
         EXPECT_TRUE(scene.error().where.ends_with("#/textures/0"));
@@ -347,7 +347,7 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     expectError();
 
     builder.root.erase("extensionsRequired");
-    const Result<Scene> fallback = import(builder, kDecode);
+    const Result<Scene> fallback = import(builder, kDecodeKtx2);
     ASSERT_TRUE(fallback.ok()) << toString(fallback.error());
     ASSERT_EQ(fallback->images.size(), 1U);
     EXPECT_EQ(fallback->images[0].pointer, "/images/1");
@@ -358,7 +358,7 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
 TEST(GltfBasisu, ExplainsKtxInTheGuiseOfPng) {
     Bytes start = readKtx2File("etc1s");
     start.resize(100);
-    const Result<Scene> scene = import(sceneWithImage(start), kDecode);
+    const Result<Scene> scene = import(sceneWithImage(start), kDecodeKtx2);
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().id, "image-decode");
     EXPECT_NE(scene.error().message.find("KTX2"), std::string::npos) << scene.error().message;

@@ -9,7 +9,7 @@
 namespace glint::test {
 namespace {
 
-Scene mustImport(const GltfBuilder& builder) {
+Scene importMotion(const GltfBuilder& builder) {
     Result<Scene> scene = import(builder);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
@@ -43,7 +43,7 @@ struct Animated {
     }
     Scene import() {
         builder.root["animations"] = {animation};
-        return mustImport(builder);
+        return importMotion(builder);
     }
     GltfBuilder builder;
     Json animation;
@@ -80,7 +80,7 @@ TEST(GltfAnimations, TakeEveryInterpolationAndIntegers) {
          {"channels",
           {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}},
            {{"sampler", 1}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     const Animation& animation = scene.animations.at(0);
     ASSERT_EQ(animation.samplers.size(), 2U);
     EXPECT_EQ(animation.samplers[0].interpolation, Interpolation::Step);
@@ -166,7 +166,7 @@ GltfBuilder skinned(const std::vector<std::vector<float>>& weights) {
 const std::vector<float> kHalves{0.5F, 0.5F, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
 
 TEST(GltfSkins, AreRead) {
-    const Scene scene = mustImport(skinned({kHalves}));
+    const Scene scene = importMotion(skinned({kHalves}));
     EXPECT_TRUE(scene.warnings.empty());
     ASSERT_EQ(scene.skins.size(), 1U);
     EXPECT_EQ(scene.nodes.at(0).skin, 0);
@@ -181,13 +181,13 @@ TEST(GltfSkins, AreRead) {
 
 TEST(GltfSkins, JoinSetsAndNormaliseWeights) {
     const std::vector<float> quarters(12, 0.125F);
-    const Scene joined = mustImport(skinned({quarters, quarters}));
+    const Scene joined = importMotion(skinned({quarters, quarters}));
     EXPECT_EQ(primitiveOf(joined).influences.count, 8U);
     EXPECT_EQ(countWarnings(joined, "skin-weights"), 0U);
-    const Scene scaled = mustImport(skinned({{0.5F, 0.5F, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}}));
+    const Scene scaled = importMotion(skinned({{0.5F, 0.5F, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}}));
     EXPECT_EQ(primitiveOf(scaled).influences.weights, (std::vector<float>{0.5F, 0.5F, 1, 0, 1, 0}));
     EXPECT_EQ(countWarnings(scaled, "skin-weights"), 1U);
-    const Scene broken = mustImport(skinned({{NAN, 1, 0, 0, -1, 1, 0, 0, INFINITY, 1, 0, 0}}));
+    const Scene broken = importMotion(skinned({{NAN, 1, 0, 0, -1, 1, 0, 0, INFINITY, 1, 0, 0}}));
     EXPECT_EQ(primitiveOf(broken).influences.count, 1U);
     EXPECT_EQ(primitiveOf(broken).influences.joints, (std::vector<std::uint16_t>{1, 1, 1}));
 }
@@ -199,7 +199,7 @@ TEST(GltfSkins, ReadNormalisedWeightsOf16Bits) {
         std::vector<std::uint16_t>{32768, 32767, 0, 0, 65535, 0, 0, 0, 0, 65535, 0, 0}, 4, true);
     attributes["JOINTS_0"] =
         builder.addAccessor(std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     EXPECT_NEAR(primitiveOf(scene).influences.weights.at(0), 32768.0F / 65535.0F, 1e-7F);
     EXPECT_TRUE(scene.warnings.empty());
 }
@@ -235,7 +235,7 @@ TEST(GltfSkins, AreChecked) {
 TEST(GltfSkins, AreLeftOutWhereAJointIsNotInTheScene) {
     GltfBuilder builder = skinned({kHalves});
     builder.root["scenes"] = {{{"nodes", {0, 1}}}};
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     EXPECT_EQ(countWarnings(scene, "skin-joint-outside"), 1U);
     EXPECT_EQ(scene.nodes.at(0).skin, -1);
     EXPECT_TRUE(scene.skins.empty());
@@ -243,7 +243,7 @@ TEST(GltfSkins, AreLeftOutWhereAJointIsNotInTheScene) {
 
 TEST(GltfSkins, WarnOfMoreSetsThanAreRead) {
     const std::vector<std::vector<float>> sets(5, std::vector<float>(12, 0.05F));
-    const Scene scene = mustImport(skinned(sets));
+    const Scene scene = importMotion(skinned(sets));
     EXPECT_EQ(countWarnings(scene, "skin-influences"), 1U);
     EXPECT_EQ(primitiveOf(scene).influences.count, 16U);
 }
@@ -256,7 +256,7 @@ TEST(GltfMorphs, AreReadWithTheirWeights) {
     primitive["targets"] = {{{"POSITION", lift}}, {{"POSITION", shift}}};
     builder.root["meshes"][0]["weights"] = {0.25, 1};
     builder.root["nodes"].push_back({{"mesh", 0}, {"weights", {0, 0.5}}});
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     EXPECT_TRUE(scene.warnings.empty());
     const Primitive& read = scene.meshes.at(0).primitives.at(0);
     ASSERT_EQ(read.targets.size(), 2U);
@@ -283,7 +283,7 @@ TEST(GltfMorphs, ReadSparseDifferences) {
                                        {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                        {"values", {{"bufferView", values}}}}}});
     primitive["targets"] = {{{"POSITION", accessor}}};
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     EXPECT_EQ(primitiveOf(scene).targets.at(0).positions,
               (std::vector<Float3>{{0, 0, 0}, {0, 0, 0}, {7, 8, 9}}));
 }
@@ -299,13 +299,13 @@ TEST(GltfMorphs, AreChecked) {
     EXPECT_EQ(errorId(builder), "index-range");
     primitive["targets"] = {{{"POSITION", builder.addAccessor(std::vector<float>(9, NAN), 3)}}};
     builder.root["meshes"][0]["weights"] = {1, 2, 3};
-    const Scene scene = mustImport(builder);
+    const Scene scene = importMotion(builder);
     EXPECT_EQ(countWarnings(scene, "attribute-not-finite"), 1U);
     EXPECT_EQ(primitiveOf(scene).targets.at(0).positions.at(0), Float3{});
     EXPECT_EQ(countWarnings(scene, "morph-weights"), 1U);
     EXPECT_EQ(scene.nodes.at(0).weights, std::vector<double>{1});
     primitive["targets"] = {{{"NORMAL", builder.addAccessor(std::vector<float>(9, 0.0F), 3)}}};
-    EXPECT_EQ(countWarnings(mustImport(builder), "morph-attribute"), 1U);
+    EXPECT_EQ(countWarnings(importMotion(builder), "morph-attribute"), 1U);
 }
 
 // Each node has weights of its own: a file of 60 KB could ask for gigabytes.

@@ -16,7 +16,7 @@ namespace {
 
 using namespace glint;
 
-constexpr FeatureMask kBase = bit(Feature::Normals);
+constexpr FeatureMask kClusterBase = bit(Feature::Normals);
 
 // Calls use(partition) for every partition of n keys into at most `most` clusters.
 template <typename Use>
@@ -38,7 +38,7 @@ void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int
 std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
     std::vector<WeightedKey> keys;
     for (int i = 0; i < count; ++i) {
-        FeatureMask mask = kBase;
+        FeatureMask mask = kClusterBase;
         for (const Feature feature : {Feature::Clearcoat, Feature::Sheen, Feature::BaseColorTexture,
                                       Feature::NormalTexture, Feature::DoubleSided, Feature::Unlit}) {
             mask |= random() % 3 == 0 ? bit(feature) : 0;
