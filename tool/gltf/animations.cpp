@@ -155,7 +155,7 @@ private:
         }
         if (target.verdict == PointerTarget::Verdict::Wrong) {
             document_.warn("animation-pointer", where,
-                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why), kExport);
+                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why), kExportAnimation);
             return;
         }
         const int sampler =

@@ -1,5 +1,6 @@
 #include "gltf/expected_hits.h"
 
+#include "base/vectors.h"
 #include "gltf/transform.h"
 
 #include <algorithm>
@@ -10,15 +11,7 @@ namespace glint {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+using Vector = Double3;
 
 Vector column(const Matrix4& matrix, std::size_t index) {
     return {matrix[4 * index], matrix[4 * index + 1], matrix[4 * index + 2]};

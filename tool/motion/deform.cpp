@@ -1,12 +1,12 @@
 #include "motion/deform.h"
 
+#include "base/vectors.h"
+
 #include <algorithm>
 
 namespace glint {
 
 namespace {
-
-using Double3 = std::array<double, 3>;
 
 Double3 transformed(const Matrix4& matrix, const Double3& point) {
     Double3 result{};

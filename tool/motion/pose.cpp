@@ -10,7 +10,6 @@ namespace glint {
 
 namespace {
 
-using gltf::Double3;
 
 // What animations set, as far as nodes place it: local transforms. The rest is that of the pose.
 struct Locals {
