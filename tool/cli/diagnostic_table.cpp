@@ -21,8 +21,8 @@ constexpr DiagnosticInfo kTable[] = {
      "The keyframes of an animation are not well formed; what they drive is not played."},
     {"animation-missing", kError, "`glint render` was asked to play an animation, but the scene has none."},
     {"animation-pointer", kNote | kWarning,
-     "The target of a `KHR_animation_pointer` is not animated: the pointer is wrong, or Glint has no such "
-     "data."},
+     "The target of a `KHR_animation_pointer` is not animated: the pointer is wrong, or Glint does not have "
+     "that data."},
     {"animation-unknown", kError, "The scene has no such animation."},
     {"asset-version", kError,
      "The file has a version of glTF that Glint does not read, or names no version."},
@@ -45,7 +45,7 @@ constexpr DiagnosticInfo kTable[] = {
      "`glint lint`: a module has more texture fetches than `--max-texture-fetches`."},
     {"buffer-data", kError, "A buffer is the fallback of compressed data, and something reads it."},
     {"buffer-external", kWarning | kError,
-     "The file leaves the data of a buffer to others; a warning where a primitive reads it, which is left "
+     "A buffer has no data in the file and names none; a warning where a primitive needs it and is left "
      "out."},
     {"buffer-size", kError, "A buffer is shorter than it says, or larger than the device takes."},
     {"buffer-view-range", kError, "A buffer view reaches beyond its buffer."},
@@ -126,8 +126,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"json-syntax", kError, "The scene is not valid JSON."},
     {"json-type", kError, "A member has the wrong type."},
     {"ktx2-metadata", kWarning,
-     "A KTX2 image says what `KHR_texture_basisu` does not allow, or is used as something else than it "
-     "says."},
+     "The header of a KTX2 image breaks a rule of `KHR_texture_basisu`, or contradicts the use of the "
+     "texture."},
     {"light-range", kWarning, "A value of a light is outside of its range."},
     {"light-type", kError, "A light's type is unknown."},
     {"lint-path", kError, "`glint lint`: there is nothing to read at a path."},
@@ -161,7 +161,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"ninja-name", kError, "`glint compile --plan-only`: a path can't be written to a file for Ninja."},
     {"node-cycle", kError, "A node is its own ancestor."},
     {"node-instances", kNote | kWarning,
-     "The instances of a node have attributes that Glint does not read, or are drawn as one."},
+     "The instances of a node have attributes that Glint does not read, or follow a skin and are drawn as "
+     "one mesh."},
     {"node-matrix", kWarning, "A node has a matrix and another transform."},
     {"node-parents", kError, "A node has two parents."},
     {"node-rotation", kWarning, "A node's rotation is not a unit quaternion."},
@@ -228,7 +229,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-index", kError, "An index of the scene leads nowhere."},
     {"scene-light", kError, "The runtime was given an invalid light."},
     {"scene-material", kError,
-     "The runtime was given values of a material that the package lacks, or in another form."},
+     "The runtime was given values of a material that the package does not have, or that have another form."},
     {"scene-missing", kError, "There is no scene to compile."},
     {"scene-motion", kError,
      "The runtime was given a pose that is not finite, or that does not belong to the uploaded scene."},
@@ -266,7 +267,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"temporary-folder", kError, "There is no folder for temporary files."},
     {"texture-basisu", kNote | kError,
      "A texture is KTX2, which this build does not decode; a note where another image takes its place."},
-    {"texture-source", kNote | kWarning, "A texture has no image, or none that Glint reads."},
+    {"texture-source", kNote | kWarning, "A texture has no image, or no image that Glint reads."},
     {"texture-uv-set", kWarning, "A texture uses a UV set above 1."},
     {"timings-pending", kError, "The runtime was asked for timings before the device was done."},
     {"timings-unavailable", kError, "The device's queue has no timestamps."},
@@ -274,7 +275,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"trace-from-hit", kWarning, "`glint lint`: a hit shader traces a ray."},
     {"tracer", kError, "The compiler was given an invalid set of tracers."},
     {"triangle-incomplete", kWarning, "The last vertices of a primitive make no triangle."},
-    {"uri-unsafe", kError, "A URI leads out of the scene's folder."},
+    {"uri-unsafe", kError,
+     "A URI, or with `--strict-paths` a symbolic link, leads out of the scene's folder."},
     {"validation", kWarning | kError, "`glint render --validate`: the validation layers have messages."},
     {"validation-layer", kError, "The validation layers are not installed."},
     {"variant-unknown", kError, "The scene has no such variant."},
