@@ -54,7 +54,7 @@ def main():
                 for order in ORDERS:
                     stats = folder / "stats.json"
                     run(options.glint, "render", path, "-o", folder / "image.exr", "--package", package, "--strategy",
-                        "uber", "--tracer", options.tracer, "--size", options.size, "--spp", 4, "--traversal-order",
+                        "uber", "--tracer", options.tracer, "--size", options.size, "--spp", 1, "--traversal-order",
                         order, "--stats", stats)
                     report = json.loads(stats.read_text())
                     row = rows.setdefault((scene, kind, order), {"frame": [], "build": [], "order": []})
