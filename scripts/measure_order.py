@@ -47,7 +47,8 @@ def main():
             for kind, path in (("as it is", scene), ("shuffled", folder / f"shuffled{number}" / scene.name)):
                 package = folder / f"package{number}{kind[0]}"
                 tracer = "all" if options.tracer == "auto" else options.tracer
-                run(options.glint, "compile", path, "-o", package, "--strategy", "uber", "--tracer", tracer)
+                run(options.glint, "compile", path, "-o", package, "--strategy", "uber", "--effects",
+                    "all", "--tracer", tracer)
                 copies.append((scene.stem, kind, path, package))
         for _ in range(options.rounds):
             for scene, kind, path, package in copies:
