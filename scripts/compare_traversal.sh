@@ -2,7 +2,7 @@
 # Renders every scene of a folder with its triangles and instances in the order of the file and in the driver's, and says
 # where the pictures differ by a bit. Exit 1 if any does.
 #   scripts/compare_traversal.sh [SCENE...]      default: all of GLINT_MODELS, else of ../shared/models
-# GLINT: the program (default: build/release/bin/glint). GLINT_RENDER: more options of `glint render`.
+# All effects are on, so that rays of each kind are compared. GLINT: the program (default: build/release/bin/glint). GLINT_RENDER: more options of `glint render`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -18,7 +18,7 @@ trap 'rm -rf "$folder"' EXIT
 different=0
 for scene in "${scenes[@]}"; do
     name=$(basename "$(dirname "$scene")")/$(basename "$scene")
-    if ! "$glint" compile "$scene" -o "$folder/package" --strategy visibility > "$folder/log" 2>&1; then
+    if ! "$glint" compile "$scene" -o "$folder/package" --strategy visibility --effects all > "$folder/log" 2>&1; then
         echo "$name: left out: $(tail -n 1 "$folder/log")"
         continue
     fi

@@ -47,14 +47,15 @@ def main():
             for kind, path in (("as it is", scene), ("shuffled", folder / f"shuffled{number}" / scene.name)):
                 package = folder / f"package{number}{kind[0]}"
                 tracer = "all" if options.tracer == "auto" else options.tracer
-                run(options.glint, "compile", path, "-o", package, "--strategy", "uber", "--tracer", tracer)
+                run(options.glint, "compile", path, "-o", package, "--strategy", "uber", "--effects",
+                    "all", "--tracer", tracer)
                 copies.append((scene.stem, kind, path, package))
         for _ in range(options.rounds):
             for scene, kind, path, package in copies:
                 for order in ORDERS:
                     stats = folder / "stats.json"
                     run(options.glint, "render", path, "-o", folder / "image.exr", "--package", package, "--strategy",
-                        "uber", "--tracer", options.tracer, "--size", options.size, "--spp", 4, "--traversal-order",
+                        "uber", "--tracer", options.tracer, "--size", options.size, "--spp", 1, "--traversal-order",
                         order, "--stats", stats)
                     report = json.loads(stats.read_text())
                     row = rows.setdefault((scene, kind, order), {"frame": [], "build": [], "order": []})
