@@ -9,7 +9,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // Samples a visible GGX normal with a warped disc: Heitz, "Sampling the GGX Distribution of Visible Normals"
 // (2018).
@@ -19,9 +19,9 @@ dvec3 visibleNormal(const dvec3& v, const dvec2& alpha, double u1, double u2) {
     const dvec3 t1 = across > 0.0 ? dvec3(-stretched.y, stretched.x, 0.0) / across : dvec3(1.0, 0.0, 0.0);
     const dvec3 t2 = glm::cross(stretched, t1);
     const double radius = std::sqrt(u1);
-    const double x = radius * std::cos(2.0 * kPi * u2);
+    const double x = radius * std::cos(2.0 * kHalfTurn * u2);
     const double half = 0.5 * (1.0 + stretched.z);
-    const double y = (1.0 - half) * std::sqrt(1.0 - x * x) + half * radius * std::sin(2.0 * kPi * u2);
+    const double y = (1.0 - half) * std::sqrt(1.0 - x * x) + half * radius * std::sin(2.0 * kHalfTurn * u2);
     const dvec3 n = x * t1 + y * t2 + std::sqrt(std::max(0.0, 1.0 - x * x - y * y)) * stretched;
     return glm::normalize(dvec3(alpha.x * n.x, alpha.y * n.y, std::max(n.z, 1e-12)));
 }
@@ -36,7 +36,7 @@ double visibleNormalDensity(const dvec3& v, const dvec3& h, const dvec2& alpha) 
     const double slopeY = h.y / (h.z * alpha.y);
     const double slopes = 1.0 + slopeX * slopeX + slopeY * slopeY;
     const double cosine4 = h.z * h.z * h.z * h.z;
-    const double distribution = 1.0 / (kPi * alpha.x * alpha.y * cosine4 * slopes * slopes);
+    const double distribution = 1.0 / (kHalfTurn * alpha.x * alpha.y * cosine4 * slopes * slopes);
     const double viewX = alpha.x * v.x;
     const double viewY = alpha.y * v.y;
     // G₁ / (n·v), with n·v multiplied in.
@@ -116,7 +116,7 @@ dvec3 Quadrature::sample(const Place& place, double u1, double u2) {
 }
 
 double Quadrature::density(const dvec3& light) const {
-    double sum = std::abs(light.z) / kPi;
+    double sum = std::abs(light.z) / kHalfTurn;
     for (const Place& place : places_) {
         sum += density(place, light);
     }
@@ -134,7 +134,7 @@ dvec3 Quadrature::integrate(const std::function<dvec3(const dvec3&)>& f, int poi
         const dvec2 u = golden(i);
         for (const double side : {1.0, -1.0}) {
             const double radius = std::sqrt(u.x);
-            const double phi = 2.0 * kPi * u.y;
+            const double phi = 2.0 * kHalfTurn * u.y;
             add({radius * std::cos(phi), radius * std::sin(phi), side * std::sqrt(1.0 - u.x)});
         }
         for (const Place& place : places_) {

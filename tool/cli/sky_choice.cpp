@@ -71,13 +71,16 @@ Double3 areaVector(const Corners& corners) {
     return cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
 }
 
-// Calls `visit` with the corners of each triangle of all instances that has an area, in a fixed order; the
+// Calls `visit` with the corners of each triangle of all visible instances that has an area, in a fixed order; the
 // corners are counter-clockwise as seen from the front.
 void visitTriangles(const Scene& scene, const SceneViewData& view,
                     const std::function<void(const Corners&, double area)>& visit) {
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const InstanceView& instance = view.instances[i];
-        const Node& node = scene.nodes[view.nodes[i]];
+        if (!instance.visible) {
+            continue;
+        }
+        const Node& node = scene.nodes[view.sources[i].node];
         const bool mirrored = handedness(instance.objectToWorld) < 0.0;
         for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
             const std::vector<Double3> positions = worldPositions(scene, node, instance, primitive);

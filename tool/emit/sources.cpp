@@ -119,7 +119,7 @@ Result<std::string> interopDeclarations() {
     return flatten("interop", root, findEmbedded, FlattenSide::Cpp);
 }
 
-std::uint64_t interopHash() {
+std::uint64_t interopSourceHash() {
     std::string all;
     for (const BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kInteropFolder)) {

@@ -33,6 +33,6 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
 Result<std::string> interopDeclarations();
 
 // Returns a hash of the names and texts of shaders/interop.
-std::uint64_t interopHash();
+std::uint64_t interopSourceHash();
 
 }  // namespace glint

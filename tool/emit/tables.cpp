@@ -225,7 +225,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.effects = plan.effects.effects;
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
-    header.interopHash = static_cast<std::uint32_t>(interopHash());
+    header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
     return writer.finish(header);
 }
 

@@ -117,9 +117,9 @@ public:
     }
 
 private:
-    // The index at tokens_[place] goes into the array of the tokens before it; `resolve` sees the rest.
+    // The index at tokens_[place] goes into the array of the tokens before it; `member` sees the rest.
     PointerTarget element(std::size_t place,
-                          PointerTarget (PointerResolver::*resolve)(std::size_t index, Tokens rest)
+                          PointerTarget (PointerResolver::*member)(std::size_t index, Tokens rest)
                               const) const {
         if (tokens_.size() <= place + 1) {
             return unknown();
@@ -132,7 +132,7 @@ private:
         if (array == nullptr || !array->is_array() || *index >= array->size()) {
             return wrong("leads to an element that the file does not have");
         }
-        return (this->*resolve)(*index, tokens_.subspan(place + 1));
+        return (this->*member)(*index, tokens_.subspan(place + 1));
     }
 
     // Whether the object that holds the property is in the file (a property with a default is then defined).

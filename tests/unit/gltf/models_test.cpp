@@ -1,6 +1,7 @@
 // Scenes by others: each imports, or ends in a diagnostic that says why.
 #include "support/models.h"
 
+#include "gltf/basisu.h"
 #include "gltf/import.h"
 #include "plan/plan.h"
 

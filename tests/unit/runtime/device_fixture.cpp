@@ -25,7 +25,11 @@ SceneView TestScene::view() {
     for (const Pixels& image : images) {
         imageViews_.push_back({image.width, image.height, image.bytes, image.format, image.levels});
     }
-    return {primitiveViews_, instances, imageViews_, lights, 0, false, traversalOrder};
+    return {.primitives = primitiveViews_,
+            .instances = instances,
+            .images = imageViews_,
+            .lights = lights,
+            .traversalOrder = traversalOrder};
 }
 
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z) {
