@@ -7,10 +7,6 @@
 namespace glint::oracle {
 namespace {
 
-Vec3 toVec(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
 // glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular.
 struct Base {
     Vec3 diffuse;

@@ -145,8 +145,8 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial());
     file.addQuad(white, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
-    constexpr Vec3 kCenter(0, 1.2, 0);
-    file.addSphere(white, kCenter, 0.4, 96);
+    constexpr Vec3 kBallCenter(0, 1.2, 0);
+    file.addSphere(white, kBallCenter, 0.4, 96);
     file.addCamera({0.2, 1.2, 3.0}, {-0.2, 0.0, 0.0}, 18);
     const Vec3 toSun = glm::normalize(Vec3(0.3, 1.0, 0.2));
     file.addLight({{"type", "directional"}, {"intensity", kPi}}, toSun, {0, 0, 0});
@@ -154,7 +154,7 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
     const World world(scene);
     const LightSizes sizes{0.0, kSunDegrees * kPi / 180.0};
     const auto closed = truths(scene, world, {5, 4}, [&](const Hit& hit, Random&) {
-        const Vec3 toCenter = kCenter - hit.position;
+        const Vec3 toCenter = kBallCenter - hit.position;
         const double distance = glm::length(toCenter);
         const double apart = std::acos(std::min(glm::dot(toCenter, toSun) / distance, 1.0));
         const double share = shareBesidesCap(0.5 * sizes.sunDiameter, std::asin(0.4 / distance), apart);

@@ -191,8 +191,9 @@ protected:
         expectSameImage(image, reference_, what + " against " + first_);
     }
 
-private:
     std::vector<Key> keys_;  // of the last package
+
+private:
     LinearImage reference_;
     std::string first_;
 };

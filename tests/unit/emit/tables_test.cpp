@@ -202,7 +202,7 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     EXPECT_EQ(reader.header.strategies, settings.strategies);
     EXPECT_EQ(reader.header.alphaTested, 1U);
     EXPECT_EQ(reader.header.caseCount, compiled.plan.cases.size());
-    EXPECT_EQ(reader.header.interopHash, static_cast<std::uint32_t>(interopHash()));
+    EXPECT_EQ(reader.header.interopHash, static_cast<std::uint32_t>(interopSourceHash()));
 
     const auto strings = reader.read<char>(SectionKind::Strings);
     const auto text = [&](package::StringRef ref) {
