@@ -10,7 +10,7 @@ namespace glint {
 
 namespace {
 
-Diagnostic nameError(const std::string& name, const char* why) {
+Diagnostic ninjaNameError(const std::string& name, const char* why) {
     return makeError("ninja-name", name, fmt::format("can't be written to a file for Ninja: it has {}", why),
                      "rename it, or give another path");
 }
@@ -62,12 +62,12 @@ std::optional<Diagnostic> findImpossible(const NinjaPlan& plan) {
     all.insert(all.end(), plan.package.begin(), plan.package.end());
     for (const std::string& text : all) {
         if (text.find_first_of("\r\n") != std::string::npos) {
-            return nameError(text, "a line break");
+            return ninjaNameError(text, "a line break");
         }
     }
     for (const std::string& path : paths) {
         if (path.find('|') != std::string::npos) {
-            return nameError(path, "a |");
+            return ninjaNameError(path, "a |");
         }
     }
     return std::nullopt;

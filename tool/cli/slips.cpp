@@ -24,7 +24,7 @@ std::vector<std::string> commandNames(const CLI::App& app) {
 }
 
 // Returns null if there is no command of that name.
-const CLI::App* findCommand(const CLI::App& app, const std::string& name) {
+const CLI::App* commandNamed(const CLI::App& app, const std::string& name) {
     for (const CLI::App* command : commandsOf(app)) {
         if (command->get_name() == name) {
             return command;
@@ -115,7 +115,7 @@ std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> a
         return app.get_option_no_throw(name) != nullptr ? std::nullopt
                                                         : std::optional<Slip>({"", unknownOption(app, name)});
     }
-    const CLI::App* command = findCommand(app, first);
+    const CLI::App* command = commandNamed(app, first);
     if (command == nullptr) {
         return Slip{"", "unknown command \"" + first + "\"" + suggestion(first, commandNames(app))};
     }

@@ -70,7 +70,7 @@ Result<Names> inspectFolder(const fs::path& folder) {
     return names;
 }
 
-bool holds(const fs::path& path, const Bytes& bytes) {
+bool holdsBytes(const fs::path& path, const Bytes& bytes) {
     std::error_code error;
     if (!fs::is_regular_file(fs::symlink_status(path, error)) || fs::file_size(path, error) != bytes.size() ||
         error) {
@@ -81,7 +81,7 @@ bool holds(const fs::path& path, const Bytes& bytes) {
 }
 
 bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
-    const auto unchanged = [&](const PackageFile& file) { return holds(folder / file.name, file.bytes); };
+    const auto unchanged = [&](const PackageFile& file) { return holdsBytes(folder / file.name, file.bytes); };
     const auto isPart = [&](const std::string& name) {
         return std::ranges::find(package.files, name, &PackageFile::name) != package.files.end();
     };
@@ -115,7 +115,7 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
         if (error) {
             return outputError(target, error.message());
         }
-        if (holds(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
+        if (holdsBytes(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
             continue;
         }
         if (Status status = writeStaged(target, file.bytes); !status) {
@@ -174,7 +174,7 @@ Status updateFolder(const CompiledPackage& package, const Names& earlier, const 
     std::vector<std::string> leaving;
     Names kept;
     for (const PackageFile& file : package.files) {
-        if (holds(folder / file.name, file.bytes)) {
+        if (holdsBytes(folder / file.name, file.bytes)) {
             kept.insert(file.name);
         } else {
             changed.push_back(&file);

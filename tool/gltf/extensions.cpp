@@ -61,7 +61,7 @@ std::set<std::string> unreadOf(const Document& document) {
     return names;
 }
 
-std::string hintFor(std::string_view name) {
+std::string extensionHint(std::string_view name) {
     if (name == "MSFT_texture_dds" || name == "EXT_texture_avif") {
         return "store the textures as PNG, JPEG or WebP";
     }
@@ -89,7 +89,7 @@ bool requiresExtension(const Document& document, std::string_view name) {
 Diagnostic unsupportedExtension(const Document& document, std::string_view name, std::string_view pointer) {
     return document.error("extension-unsupported", pointer,
                           fmt::format("needs the extension {}, which Glint does not support", name),
-                          hintFor(name));
+                          extensionHint(name));
 }
 
 Status checkExtensions(Document& document) {

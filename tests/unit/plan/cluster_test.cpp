@@ -35,7 +35,7 @@ void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int
     }
 }
 
-std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
+std::vector<WeightedKey> randomClusterKeys(std::mt19937& random, int count) {
     std::vector<WeightedKey> keys;
     for (int i = 0; i < count; ++i) {
         FeatureMask mask = kClusterBase;
@@ -55,11 +55,11 @@ std::vector<WeightedKey> randomKeys(std::mt19937& random, int count) {
     return keys;
 }
 
-// Returns the distinct keys of randomKeys(), ascending, as planning has them.
+// Returns the distinct keys of randomClusterKeys(), ascending, as planning has them.
 std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
     std::map<FeatureMask, double> weights;
     while (weights.size() < count) {
-        for (const WeightedKey& key : randomKeys(random, 16)) {
+        for (const WeightedKey& key : randomClusterKeys(random, 16)) {
             if (weights.size() < count) {
                 weights[key.mask] = key.share + 1e-3;
             }
@@ -85,7 +85,7 @@ TEST(Cluster, IsNearTheBestOfAllPartitions) {
     constexpr int kScenes = 60;
     double ratios = 0.0;
     for (int i = 0; i < kScenes; ++i) {
-        const std::vector<WeightedKey> keys = randomKeys(random, 7);
+        const std::vector<WeightedKey> keys = randomClusterKeys(random, 7);
         const int budget = 1 + static_cast<int>(random() % 7);
         const std::vector<Cluster> merged = agglomerate(oneEach(keys.size()), keys, budget);
         const std::vector<Cluster> clusters = moveKeys(merged, keys, budget);
@@ -108,7 +108,7 @@ TEST(Cluster, IsNearTheBestOfAllPartitions) {
 TEST(Cluster, TakesTheCheapestPairEachTime) {
     std::mt19937 random(20250319);
     for (int i = 0; i < 20; ++i) {
-        const std::vector<WeightedKey> keys = randomKeys(random, 24);
+        const std::vector<WeightedKey> keys = randomClusterKeys(random, 24);
         std::vector<Cluster> expected = oneEach(keys.size());
         for (int left = 23; left >= 3; --left) {
             double least = std::numeric_limits<double>::infinity();

@@ -144,10 +144,11 @@ TEST_F(UploadTest, PartsBySidednessAndRecordsByInstance) {
     EXPECT_EQ(statistics.triangles, 14U);
     EXPECT_GT(statistics.blasBytes, 0U);
     EXPECT_GE(statistics.blasUncompactedBytes, statistics.blasBytes);
-    const std::vector<Draw>& draws = uploaded->state().draws;
-    ASSERT_EQ(draws.size(), 7U);
-    EXPECT_FALSE(draws[0].doubleSided);
-    EXPECT_TRUE(draws[1].doubleSided && draws[2].doubleSided);
+    // No two instances of a mesh follow each other, so that each geometry is drawn by a call of its own.
+    const std::vector<DrawBatch>& batches = uploaded->state().batches;
+    ASSERT_EQ(batches.size(), 7U);
+    EXPECT_FALSE(batches[0].doubleSided);
+    EXPECT_TRUE(batches[1].doubleSided && batches[2].doubleSided);
 }
 
 TEST_F(UploadTest, NothingToBuildIsNoError) {
@@ -203,7 +204,11 @@ TEST_F(UploadTest, LargeMeshesAreSplit) {
         limits.accelerationStructure.maxGeometryCount = geometries;
         const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
         EXPECT_EQ(uploaded->statistics().triangles, 6U);
-        EXPECT_EQ(uploaded->state().draws.size(), uploaded->statistics().geometries);
+        std::uint32_t drawn = 0;
+        for (const DrawBatch& batch : uploaded->state().batches) {
+            drawn += batch.count;
+        }
+        EXPECT_EQ(drawn, uploaded->statistics().geometries);
         return std::pair(uploaded->statistics().blasCount, uploaded->statistics().geometries);
     };
     EXPECT_EQ(count(6, 3), std::pair(1U, 3U));
