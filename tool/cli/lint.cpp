@@ -178,7 +178,7 @@ int lint(const Console& console, const LintArguments& arguments) {
     if (console.isJson()) {
         console.result(toJson(report));
     } else {
-        console.print(toText(report));
+        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     return report.count(Severity::Error) > 0 ? kExitFailed : kExitDone;
 }

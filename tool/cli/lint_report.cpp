@@ -121,10 +121,11 @@ Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where) {
             finding.hint};
 }
 
-std::string toText(const LintReport& report) {
+std::string toText(const LintReport& report, Detail detail) {
     const auto isNamed = [](const LintedModule& module) { return !module.file.name.empty(); };
     const auto isEstimated = [](const LintedModule& module) { return module.malioc.has_value(); };
-    const bool hasNames = std::ranges::any_of(report.modules, isNamed);
+    // The file's name has the shader's in it, and alone leaves it room.
+    const bool hasNames = detail == Detail::Whole && std::ranges::any_of(report.modules, isNamed);
     const bool hasCycles = std::ranges::any_of(report.modules, isEstimated);
     std::vector<std::vector<std::string>> rows{
         {"file", "stage", "instructions", "fetches", "queries", "traces", "functions", "errors", "warnings"}};
@@ -149,7 +150,7 @@ std::string toText(const LintReport& report) {
         }
         rows.push_back(std::move(row));
     }
-    return formatTable(rows) + summaryOf(report);
+    return formatTable(rows, detail) + summaryOf(report);
 }
 
 Json toJson(const LintReport& report) {

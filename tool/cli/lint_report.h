@@ -4,6 +4,7 @@
 #include "cli/lint_files.h"
 #include "cli/lint_malioc.h"
 #include "cli/report.h"
+#include "cli/table.h"
 #include "spirv/lint.h"
 
 #include <optional>
@@ -34,7 +35,8 @@ struct LintReport {
 // Returns "file.spv: error: in main (word 214): message; hint [rule]".
 Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where);
 
-std::string toText(const LintReport& report);
+// Names of modules are shown with Detail::Whole only, because their files are named after them.
+std::string toText(const LintReport& report, Detail detail);
 // Returns the JSON that docs/lint.md describes.
 Json toJson(const LintReport& report);
 
