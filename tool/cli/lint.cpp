@@ -186,7 +186,7 @@ int lint(const Console& console, const LintArguments& arguments) {
 void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const std::string& what) {
     auto& option = addInteger(command, flag, budget.limit, 0, std::numeric_limits<std::int32_t>::max(), "");
     option.description(
-        fmt::format("report an error above N {} in a module (0 to 2147483647,\n"
+        fmt::format("report an error above N {} in a module (from 0;\n"
                     "default: no limit)",
                     what));
     option.group("Budgets");
