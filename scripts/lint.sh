@@ -31,16 +31,17 @@ tidy_project() {
     mkdir -p build/lint/scenes
     cp examples/cmake-consumer/scene/* build/lint/scenes/
     cp build/lint/scenes/cubes.gltf build/lint/scenes/copy.gltf
-    cmake -S "$folder" -B "$build" -G Ninja -DGlint_DIR="$PWD/build/release" -DSCENES="$PWD/build/lint/scenes" \
+    cmake -S "$folder" -B "$build" -G Ninja -DGlint_DIR="$PWD/build/tidy" -DSCENES="$PWD/build/lint/scenes" \
         -DCMAKE_CXX_STANDARD=20 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON --no-warn-unused-cli >/dev/null &&
         cmake --build "$build" &&
         tidy "$build" "$@"
 }
 
 printf 'lint: clang-tidy\n'
-cmake --preset release >/dev/null
-# Generated sources must be there before anything that includes them can be read.
-cmake --build --preset release
+# Each file by itself, as clang-tidy reads it: this shows as well that every file includes what it uses. Generated
+# sources must be there before anything that includes them can be read.
+cmake --preset release -B build/tidy -DGLINT_UNITY=OFF >/dev/null
+cmake --build build/tidy
 if [[ $# -gt 0 ]]; then
     sources=("$@")
 else
@@ -54,7 +55,7 @@ for source in "${sources[@]}"; do
         consumers+=("$source")
     elif [[ $source == examples/cmake-consumer/* ]]; then
         programs+=("$source")
-    elif ! grep -qF "/$source\"" build/release/compile_commands.json; then
+    elif ! grep -qF "/$source\"" build/tidy/compile_commands.json; then
         printf 'lint: %s: not part of this build, left out\n' "$source"
     else
         own+=("$source")
@@ -63,7 +64,7 @@ done
 
 failed=0
 if [[ ${#own[@]} -gt 0 ]]; then
-    tidy build/release "${own[@]}" || failed=1
+    tidy build/tidy "${own[@]}" || failed=1
 fi
 if [[ ${#consumers[@]} -gt 0 ]]; then
     tidy_project tests/install/consumer "${consumers[@]}" || failed=1

@@ -71,8 +71,8 @@ Double3 areaVector(const Corners& corners) {
     return cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
 }
 
-// Calls `visit` with the corners of each triangle of all visible instances that has an area, in a fixed order; the
-// corners are counter-clockwise as seen from the front.
+// Calls `visit` with the corners of each triangle of all visible instances that has an area, in a fixed
+// order; the corners are counter-clockwise as seen from the front.
 void visitTriangles(const Scene& scene, const SceneViewData& view,
                     const std::function<void(const Corners&, double area)>& visit) {
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
