@@ -117,9 +117,10 @@ public:
 
 private:
     static void orderFew(std::span<Leaf> leaves) {
-        const auto sound =
-            std::ranges::stable_partition(leaves, [](const Leaf& leaf) { return leaf.box.isVoid(); });
-        if (sound.size() != leaves.size()) {
+        // Not std::ranges, whose subrange Clang 14 can't read in libstdc++ 12.
+        const auto sound = std::stable_partition(leaves.begin(), leaves.end(),
+                                                 [](const Leaf& leaf) { return leaf.box.isVoid(); });
+        if (sound != leaves.begin()) {
             return;
         }
         if (leaves.size() == 3) {
@@ -169,7 +170,8 @@ private:
     static void partBy(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left,
                        std::uint64_t pivot) {
         const std::uint64_t bound = pivot != 0 ? pivot : pivotOf<key>(leaves, ranks, left);
-        std::ranges::partition(leaves, [&](const Leaf& leaf) { return rankOf<key>(leaf) < bound; });
+        std::partition(leaves.begin(), leaves.end(),
+                       [&](const Leaf& leaf) { return rankOf<key>(leaf) < bound; });
     }
 
     static void part(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left) {
