@@ -124,11 +124,15 @@ Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where) {
 std::string toText(const LintReport& report, Detail detail) {
     const auto isNamed = [](const LintedModule& module) { return !module.file.name.empty(); };
     const auto isEstimated = [](const LintedModule& module) { return module.malioc.has_value(); };
-    // The file's name has the shader's in it, and alone leaves it room.
+    // Files are named after their shaders, so the short table has their names alone.
     const bool hasNames = detail == Detail::Whole && std::ranges::any_of(report.modules, isNamed);
     const bool hasCycles = std::ranges::any_of(report.modules, isEstimated);
     std::vector<std::vector<std::string>> rows{
-        {"file", "stage", "instructions", "fetches", "queries", "traces", "functions", "errors", "warnings"}};
+        {"file", "instructions", "fetches", "queries", "traces", "errors", "warnings"}};
+    if (detail == Detail::Whole) {
+        rows[0] = {"file",   "stage",     "instructions", "fetches", "queries",
+                   "traces", "functions", "errors",       "warnings"};
+    }
     if (hasNames) {
         rows[0].insert(rows[0].begin(), "module");
     }
@@ -142,7 +146,13 @@ std::string toText(const LintReport& report, Detail detail) {
         }
         // All files of a package are in its folder, so the file's name is enough.
         row.push_back(isNamed(module) ? module.file.path.filename().string() : module.file.path.string());
-        std::ranges::move(countsOf(module), std::back_inserter(row));
+        std::vector<std::string> counts = countsOf(module);
+        if (detail == Detail::Short) {
+            // The file's name says the stage as well.
+            counts.erase(counts.begin());
+            counts.pop_back();
+        }
+        std::ranges::move(counts, std::back_inserter(row));
         row.push_back(nonZero(countIn(module.findings, Severity::Error)));
         row.push_back(nonZero(countIn(module.findings, Severity::Warning)));
         if (hasCycles) {
