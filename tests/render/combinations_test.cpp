@@ -26,6 +26,7 @@ using namespace glint;
 using namespace glint::testing;
 
 struct Room {
+    unsigned number;
     const char* name;
     Scene (*make)();
     AlphaPolicy alpha;
@@ -55,9 +56,11 @@ constexpr package::ShadowPlacement kPlacements[] = {package::ShadowPlacement::In
                                                     package::ShadowPlacement::Deferred};
 constexpr unsigned kOrderings = static_cast<unsigned>(package::Ordering::Count);
 constexpr unsigned kBinnings = 3;
+constexpr unsigned kRooms = 2;
 
 // One picture of the sweep.
 struct Combination {
+    unsigned room;
     MergePolicy merge;
     package::ShadowPlacement shadows;
     Way way;
@@ -67,17 +70,23 @@ struct Combination {
 
 std::vector<Combination> allCombinations() {
     std::vector<Combination> all;
-    for (const MergePolicy merge : kPolicies) {
-        for (const package::ShadowPlacement shadows : kPlacements) {
-            for (const Way& way : waysOf(package::kAllTracers)) {
-                const bool orders = (package::kOrderedStrategies & way.strategy) != 0;
-                for (unsigned ordering = 0; ordering < (orders ? kOrderings : 1U); ++ordering) {
-                    for (unsigned binning = 0; binning < kBinnings; ++binning) {
-                        all.push_back(
-                            {merge, shadows, way,
-                             orders ? std::optional(static_cast<package::Ordering>(ordering)) : std::nullopt,
-                             static_cast<Binning>(binning)});
-                    }
+    // Adds the orderings and binnings of one way.
+    const auto addWay = [&](unsigned room, MergePolicy merge, package::ShadowPlacement shadows,
+                            const Way& way) {
+        const bool orders = (package::kOrderedStrategies & way.strategy) != 0;
+        for (unsigned i = 0; i < (orders ? kOrderings : 1U) * kBinnings; ++i) {
+            std::optional<package::Ordering> ordering;
+            if (orders) {
+                ordering = static_cast<package::Ordering>(i / kBinnings);
+            }
+            all.push_back({room, merge, shadows, way, ordering, static_cast<Binning>(i % kBinnings)});
+        }
+    };
+    for (unsigned room = 0; room < kRooms; ++room) {
+        for (const MergePolicy merge : kPolicies) {
+            for (const package::ShadowPlacement shadows : kPlacements) {
+                for (const Way& way : waysOf(package::kAllTracers)) {
+                    addWay(room, merge, shadows, way);
                 }
             }
         }
@@ -93,7 +102,8 @@ std::vector<Pair> pairsOf(const Combination& combination) {
                                                 {1, static_cast<unsigned>(combination.shadows)},
                                                 {2, static_cast<unsigned>(combination.way.strategy)},
                                                 {3, static_cast<unsigned>(combination.way.tracer)},
-                                                {4, static_cast<unsigned>(combination.binning)}};
+                                                {4, static_cast<unsigned>(combination.binning)},
+                                                {6, combination.room}};
     if (combination.ordering) {
         values.push_back({5, static_cast<unsigned>(*combination.ordering)});
     }
@@ -220,7 +230,8 @@ TEST_P(Combinations, GiveOneImage) {
                 expectMergedByHits(loaded.compiled().plan);
             }
             for (const Combination& combination : combinations) {
-                if (combination.merge == merge && combination.shadows == shadows) {
+                if (combination.room == GetParam().number && combination.merge == merge &&
+                    combination.shadows == shadows) {
                     expectReference(loaded, scene, combination);
                 }
             }
@@ -258,8 +269,8 @@ TEST_P(Combinations, PackedHitsAreClose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Combinations,
-                         ::testing::Values(Room{"Materials", roomOfMaterials, AlphaPolicy::Opaque},
-                                           Room{"Fence", roomWithFence, AlphaPolicy::Tested}),
+                         ::testing::Values(Room{0, "Materials", roomOfMaterials, AlphaPolicy::Opaque},
+                                           Room{1, "Fence", roomWithFence, AlphaPolicy::Tested}),
                          [](const auto& room) { return std::string(room.param.name); });
 
 }  // namespace
