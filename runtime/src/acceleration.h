@@ -34,7 +34,7 @@ struct BlasCapacity {
 };
 
 struct BlasInput {
-    std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
+    std::vector<BlasGeometry> geometries;  // not empty; within blasCapacity()
     bool dataAccess = false;               // shaders read the positions of hit triangles from this BLAS
     bool updatable = false;                // built fast and refitted; not compacted
 };

@@ -95,7 +95,7 @@ std::array<double, 2> shiftOf(std::uint32_t seed) {
 }  // namespace
 
 gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed) {
-    // These are 1/g and 1/g², where g is the real root of x³ = x + 1.
+    // The constants are 1/g and 1/g², where g is the real root of x³ = x + 1.
     constexpr double kAlpha = 0.7548776662466927;
     constexpr double kBeta = 0.5698402909980532;
     // Rounding to float may give 0.5, which is outside the range.

@@ -12,7 +12,7 @@ class CommandRunner {
 public:
     static Result<CommandRunner> create(Context::State& context);
 
-    // Starts a recording; nothing may be in flight.
+    // Starts a recording. No earlier commands of this runner may be in flight.
     Result<VkCommandBuffer> begin();
     // Ends the recording, submits it and waits until the device has completed it.
     Status submitAndWait();

@@ -41,7 +41,7 @@ namespace {
 // This keeps textures sharp down to a cosine of 1 / 16.
 constexpr float kMaxAnisotropy = 16.0F;
 
-// Error "vulkan-call".
+// Fills the limit `multiprocessors`. Error "vulkan-call".
 Status queryMultiprocessors(Context::State& state) {
     DeviceReport report;
     if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {

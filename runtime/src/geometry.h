@@ -74,7 +74,7 @@ struct PartInstance {
     std::uint32_t customIndex = 0;  // index of its first geometry record
 };
 
-// A draw of the raster pass.
+// A draw of the raster pass. It shows one geometry record.
 struct Draw {
     std::uint32_t geometry = 0;  // GeometryRecord index
     std::uint32_t vertexCount = 0;

@@ -35,7 +35,7 @@ struct GpuScene::State {
     std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
-    std::vector<std::uint32_t> shaderIds;  // of the geometry records, in their order
+    std::vector<std::uint32_t> shaderIds;  // one for each geometry record
     Buffer instances;
     Buffer materials;
     Buffer lights;

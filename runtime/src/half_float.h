@@ -1,4 +1,4 @@
-// 16-bit floats.
+// Conversion to 16-bit floats.
 #pragma once
 
 #include <cstdint>

@@ -50,7 +50,7 @@ constexpr RequiredFeature kRayPipelineFeatures[] = {
 
 #undef GLINT_FEATURE
 
-// What each tracer needs in addition to what every device must have.
+// The requirements of each tracer in addition to those of every device.
 struct TracerNeeds {
     package::Tracer tracer;
     const char* extension;

@@ -15,7 +15,7 @@ namespace glint {
 // Requirements").
 inline constexpr const char* kPositionFetchExtension = "VK_KHR_ray_tracing_position_fetch";
 
-// What a physical device reports: features in a DeviceRequirements chain, limits and extensions.
+// The report of a physical device: features in a DeviceRequirements chain, limits and extensions.
 struct DeviceReport {
     std::uint32_t apiVersion = 0;
     std::vector<std::string> extensions;

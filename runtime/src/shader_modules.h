@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// Error "vulkan-call".
+// Makes a module from SPIR-V words. Error "vulkan-call".
 Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words);
 
 // Describes a stage whose entry point is "main".
@@ -23,7 +23,7 @@ struct PipelineCreation {
     VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
 };
 
-// Error "vulkan-call".
+// Makes a compute pipeline from SPIR-V words. Error "vulkan-call".
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation);
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,

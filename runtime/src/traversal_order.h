@@ -42,7 +42,7 @@ public:
 
 private:
     LeafOrder order_;
-    std::vector<Box> boxes_;  // by part: the box of the file, in the mesh's space
+    std::vector<Box> boxes_;                               // by part: the undeformed box in the mesh's space
     std::vector<std::unique_ptr<MotionBounds>> deformed_;  // by part; null unless an instance deforms it
 };
 

@@ -47,7 +47,9 @@ public:
     Package& operator=(Package&&) noexcept;
     ~Package();
 
+    // Whether the package has the modules of a strategy.
     bool supports(package::Strategy strategy) const;
+    // Whether masked geometry must be built non-opaque, so that rays run alpha tests.
     bool alphaTested() const;
     // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
     // modules the package has.
@@ -61,19 +63,23 @@ public:
     // With ShadingPrecision::Half shaders also compute in 16-bit float. The device then needs
     // DeviceHandles::shaderFloat16.
     package::ShadingPrecision precision() const;
+    // Returns the number of shader IDs, retired ones included.
     std::uint32_t caseCount() const;
     // Returns the number of buckets of a visibility buffer: bucket 0 holds misses, bucket 1 + shader ID holds
     // hits.
     std::uint32_t bucketCount() const;
 
+    // These spans are valid as long as the package. Cases are indexed by shader ID.
     std::span<const package::CaseEntry> cases() const;
     std::span<const package::ModuleEntry> modules() const;
     // Returns the number of scenes, which is at least 1.
     std::uint32_t sceneCount() const;
     // Scenes are in the order in which the compiler got them. `index` must be below sceneCount().
     PackageScene scene(std::uint32_t index) const;
+    // Returns the index of the scene with this name, or no value if there is none.
     std::optional<std::uint32_t> findScene(std::string_view name) const;
 
+    // Returns a text of the package. It is empty if `ref` is outside of the package's strings.
     std::string_view string(package::StringRef ref) const;
     // Returns the SPIR-V words of a module. The span is empty if the package lacks the module.
     std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;

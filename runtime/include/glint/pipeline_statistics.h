@@ -1,5 +1,4 @@
-// What a driver reports about the pipelines that it made, in the terms of
-// VK_KHR_pipeline_executable_properties.
+// A driver's report about the pipelines that it made, in the terms of VK_KHR_pipeline_executable_properties.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

@@ -40,8 +40,10 @@ struct MotionStatistics {
 class GpuScene {
 public:
     // Uploads the scene, builds its BLASes (for fast tracing, compacted), then the TLAS, and waits for the
-    // queue. The spans of `scene` are not kept. Errors: attributes that disagree with the package, more than
-    // 2^24 geometry records, a mesh or structure above a limit of the device.
+    // queue. The spans of `scene` are not kept. Errors: "scene-package" (the package has no such scene, or
+    // the attributes disagree with it), "position-fetch" and "half-precision" (the device was created without
+    // what the package needs), "scene-geometries" (more than 2^24 geometry records), other "scene-" errors
+    // for a scene that is not well formed, "tlas-limit", and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
                                                     const SceneView& scene);
     ~GpuScene();
@@ -104,7 +106,7 @@ private:
 
 struct RendererOptions {
     package::Strategy strategy = package::kStrategyVisibility;
-    std::uint32_t width = 1280;
+    std::uint32_t width = 1280;  // pixels
     std::uint32_t height = 720;
     // No value chooses ray queries if package and device support them, else the ray tracing pipeline.
     std::optional<package::Tracer> tracer{};
@@ -289,6 +291,10 @@ struct LinearImage {
 // outlive it.
 class Renderer {
 public:
+    // Makes all pipelines, images and buffers and waits for the device. Errors: "renderer-options" (not
+    // exactly one strategy, tracer or ordering), "package-strategy" and "package-tracer" (the package lacks
+    // it), "device-tracer" and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size"
+    // (no pixels, or more than the device supports), and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();
