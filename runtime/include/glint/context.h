@@ -105,7 +105,7 @@ public:
     // feature or extension that the physical device lacks), and those of loading Vulkan's functions.
     static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
     // Makes an instance, a device and a queue without a surface. Errors: "validation-layer",
-    // "device-missing", "device-features".
+    // "device-missing", "device-features", and those of the loader and of Vulkan's calls.
     static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
 
     ~Context();
