@@ -1,4 +1,4 @@
-// Structures and scratch, and the top level.
+// Acceleration structures, their scratch memory, and the top level.
 #include "acceleration.h"
 
 #include "commands.h"
@@ -52,7 +52,7 @@ Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDevic
 
 namespace {
 
-// Instances into a device buffer, aligned to 16 bytes by the device's rules for buffers of this usage.
+// Uploads instances into a device buffer. The device's rules for buffers of this usage align it to 16 bytes.
 Result<Buffer> uploadInstances(Context::State& context, MemoryPool& pool,
                                std::span<const VkAccelerationStructureInstanceKHR> instances) {
     Result<Buffer> buffer = createBuffer(

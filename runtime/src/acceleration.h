@@ -1,4 +1,4 @@
-// Building acceleration structures.
+// Functions that build acceleration structures.
 #pragma once
 
 #include "memory.h"
@@ -11,7 +11,7 @@
 
 namespace glint {
 
-// Members are destroyed in reverse: the structure before its buffer.
+// Members are destroyed in reverse order: the structure before its buffer.
 struct AccelerationStructure {
     Buffer buffer;
     UniqueAccelerationStructure handle;
@@ -23,24 +23,24 @@ struct BlasGeometry {
     VkDeviceAddress positions = 0;  // three floats each
     VkDeviceAddress indices = 0;
     std::uint32_t vertexCount = 0;
-    std::uint32_t triangleCount = 0;  // not 0
+    std::uint32_t triangleCount = 0;  // must not be 0
     bool opaque = true;
 };
 
-// What one BLAS may hold.
+// The most that one BLAS may hold.
 struct BlasCapacity {
     std::uint64_t triangles = 0;
     std::uint64_t geometries = 0;
 };
 
 struct BlasInput {
-    std::vector<BlasGeometry> geometries;  // not empty, within blasCapacity()
-    bool dataAccess = false;               // shaders read the positions of hit triangles from it
-    bool updatable = false;                // built fast and refitted, not compacted
+    std::vector<BlasGeometry> geometries;  // not empty; within blasCapacity()
+    bool dataAccess = false;               // shaders read the positions of hit triangles from this BLAS
+    bool updatable = false;                // built fast and refitted; not compacted
 };
 
-// What one BLAS of this device may hold: its limits, and no structure or scratch above maxStorageBufferRange,
-// as mobile drivers bind both as storage buffers.
+// Returns what one BLAS of this device may hold. It follows from the device's limits; also, no structure and
+// no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage buffers.
 BlasCapacity blasCapacity(const Context::State& context);
 
 struct BlasStatistics {
@@ -49,32 +49,32 @@ struct BlasStatistics {
     double buildMs = 0.0;
 };
 
-// Builds and compacts all inputs, in batches that bound scratch and transient memory; waits for the device.
-// `pool` must outlive the result. Errors: those of buffers and submissions.
+// Builds and compacts all inputs and waits for the device. It works in batches that bound scratch and
+// transient memory. `pool` must outlive the result. Errors: those of buffers and submissions.
 Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
                                                        std::span<const BlasInput> inputs,
                                                        BlasStatistics& statistics);
 
-// Builds a TLAS, which may be of no instances; waits for the device. Error "tlas-limit".
+// Builds a TLAS and waits for the device. `instances` may be empty. Error "tlas-limit".
 Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
                                         std::span<const VkAccelerationStructureInstanceKHR> instances,
                                         double& buildMs);
 
-// A top level in Vulkan's terms: `instances` is the address of their array, 0 where sizes are asked for.
-// `info` points at `geometry`: it is set again after a move.
+// A top level in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only.
+// `info` points at `geometry`, so it must be set again after a move.
 struct TlasBuild {
     VkAccelerationStructureGeometryKHR geometry{};
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     VkAccelerationStructureBuildSizesInfoKHR sizes{};
 };
-// Error "tlas-limit".
+// Fills `build`. Error "tlas-limit".
 Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
                     bool updatable, TlasBuild& build);
 
-// For both: a structure of `bytes`, not yet built.
+// Creates a structure of `bytes` that is not built yet, for bottom and top levels.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                                               VkAccelerationStructureTypeKHR type);
-// A scratch buffer; `address` is aligned as the device wants it.
+// A scratch buffer. `address` has the alignment that the device asks for.
 struct Scratch {
     Buffer buffer;
     VkDeviceAddress address = 0;

@@ -1,4 +1,4 @@
-// Bottom levels: sizes, batches, compaction.
+// Bottom levels: their sizes, their batches and their compaction.
 #include "acceleration.h"
 #include "blas_build.h"
 #include "commands.h"
@@ -10,7 +10,8 @@
 namespace glint {
 namespace {
 
-// What one batch may take beside the structures that stay: scratch, and structures before compaction.
+// The memory that one batch may use in addition to the structures that stay: scratch, and structures before
+// compaction.
 constexpr VkDeviceSize kBatchScratchBytes = VkDeviceSize{64} << 20;
 constexpr VkDeviceSize kBatchStructureBytes = VkDeviceSize{256} << 20;
 
@@ -23,7 +24,7 @@ constexpr MemoryDependency kBuildToAll{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTUR
                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                        VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
 
-// Builds one batch, in transient memory, and its compacted copies.
+// Builds one batch in transient memory, then makes its compacted copies.
 class BatchBuilder {
 public:
     BatchBuilder(Context::State& context, MemoryPool& pool, std::span<BlasBuild> builds)
@@ -165,9 +166,9 @@ private:
     UniqueQueryPool queries_;
 };
 
-// The end of the batch that starts at `first`: one build at least.
+// Returns the end of the batch that starts at `first`. A batch has at least one build.
 std::size_t batchEnd(const Context::State& context, std::span<const BlasBuild> builds, std::size_t first) {
-    // Drivers that bind scratch as a storage buffer have its limit, too.
+    // Some drivers bind scratch as a storage buffer, so it must respect the limit of those.
     const VkDeviceSize scratchLimit =
         std::min<VkDeviceSize>(kBatchScratchBytes, context.limits.core.maxStorageBufferRange);
     VkDeviceSize scratch = builds[first].scratchBytes;
@@ -185,7 +186,7 @@ std::size_t batchEnd(const Context::State& context, std::span<const BlasBuild> b
 }  // namespace
 
 BlasCapacity blasCapacity(const Context::State& context) {
-    // More than any mesh needs in one piece, and few enough that no driver's 32-bit sum of bytes overflows.
+    // No mesh needs more in one piece, and it is few enough that no driver's 32-bit sum of bytes overflows.
     constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 24;
     const VkPhysicalDeviceAccelerationStructurePropertiesKHR& limits = context.limits.accelerationStructure;
     const VkDeviceSize range = context.limits.core.maxStorageBufferRange;

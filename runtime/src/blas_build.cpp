@@ -3,14 +3,15 @@
 namespace glint {
 namespace {
 
-// VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_DATA_ACCESS_KHR, which Vulkan headers before 1.3.249 lack.
+// This is VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_DATA_ACCESS_KHR, which Vulkan headers before 1.3.249 lack.
 constexpr VkBuildAccelerationStructureFlagsKHR kAllowDataAccess = 0x800;
 
-// Traced often and built once: built for tracing, then compacted.
+// Flags of structures that are built once and traced often: the build optimises tracing, and compaction
+// follows.
 constexpr VkBuildAccelerationStructureFlagsKHR kStatic =
     VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
     VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-// Built or refitted each frame; its size may not change.
+// Flags of structures that are built or refitted each frame. Their size may not change.
 constexpr VkBuildAccelerationStructureFlagsKHR kUpdatable =
     VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR |
     VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;

@@ -22,7 +22,7 @@ gpu::vec3 scaled(const Float3& v, float factor) {
     return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
-// The row that takes a point to dot(axis, point - position) * factor.
+// Returns the row that takes a point to dot(axis, point - position) * factor.
 gpu::vec4 rowAlong(const Float3& axis, const Float3& position, float factor) {
     return {axis[0] * factor, axis[1] * factor, axis[2] * factor, -dot(axis, position) * factor};
 }
@@ -32,12 +32,13 @@ gpu::vec4 add(const gpu::vec4& a, const gpu::vec4& b, float factor) {
 }
 
 bool isUnit(const Float3& v) {
-    // Four digits: enough for a view, and more than normalising in single precision loses.
+    // Four digits are enough for a view, and the tolerance is above what normalising in single precision
+    // loses.
     return std::abs(dot(v, v) - 1.0F) < 1e-3F;
 }
 
-// The row of clip z, given the row of the distance along the view: z / w is 1 at the near plane, 0 at the
-// far one.
+// Returns the row of clip z, given the row of the distance along the view. z / w is 1 at the near plane and 0
+// at the far one.
 gpu::vec4 depthRow(const CameraView& camera, const gpu::vec4& distance) {
     const float range = camera.far - camera.near;
     if (camera.orthographic) {
@@ -81,7 +82,8 @@ Status checkCamera(const CameraView& camera) {
 
 namespace {
 
-// Two numbers in [0, 1) of a seed, 0 of the seed 0: the finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+// Returns two numbers in [0, 1) that depend on a seed; both are 0 for the seed 0. It uses the finaliser of
+// SplitMix64 (Steele, Lea and Flood 2014).
 std::array<double, 2> shiftOf(std::uint32_t seed) {
     std::uint64_t bits = std::uint64_t{seed} * 0x9E3779B97F4A7C15ULL;
     bits = (bits ^ bits >> 30U) * 0xBF58476D1CE4E5B9ULL;
@@ -93,10 +95,10 @@ std::array<double, 2> shiftOf(std::uint32_t seed) {
 }  // namespace
 
 gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed) {
-    // 1/g and 1/g², g the real root of x³ = x + 1.
+    // The constants are 1/g and 1/g², where g is the real root of x³ = x + 1.
     constexpr double kAlpha = 0.7548776662466927;
     constexpr double kBeta = 0.5698402909980532;
-    // Rounding to float may give 0.5, which is outside.
+    // Rounding to float may give 0.5, which is outside the range.
     const std::array<double, 2> shift = shiftOf(seed);
     const auto offset = [&](double step, double start) {
         const double value = 0.5 + start + step * sampleIndex;
@@ -130,7 +132,7 @@ void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t hei
     const gpu::vec4 w = camera.orthographic ? one : distance;
     const gpu::vec4 x = rowAlong(right, camera.position, 1.0F / camera.halfWidth);
     const gpu::vec4 y = rowAlong(camera.up, camera.position, -1.0F / camera.halfHeight);
-    // The raster samples pixel centres: shift the picture against the jitter.
+    // The raster pass samples pixel centres, so the picture is shifted against the jitter.
     constants.worldToClip[0] = add(x, w, -2.0F * jitter.x / static_cast<float>(width));
     constants.worldToClip[1] = add(y, w, -2.0F * jitter.y / static_cast<float>(height));
     constants.worldToClip[2] = depthRow(camera, distance);

@@ -73,7 +73,7 @@ Status CommandRunner::submitAndWait() {
     if (result != VK_SUCCESS) {
         return vulkanError("vkQueueSubmit2", result);
     }
-    // Without a time limit: a driver ends work that hangs, and a CPU device may take long.
+    // There is no time limit: a driver ends work that hangs, and a CPU device may take long.
     result = vk.WaitForFences(context_->handles.device, 1, &fence, VK_TRUE,
                               std::numeric_limits<std::uint64_t>::max());
     if (result != VK_SUCCESS) {

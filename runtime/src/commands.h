@@ -1,4 +1,4 @@
-// Recording, submitting and waiting; barriers.
+// Recording, submission and waiting, and barriers.
 #pragma once
 
 #include "device_handle.h"
@@ -7,14 +7,14 @@
 
 namespace glint {
 
-// One command buffer that is recorded, submitted and waited for, again and again.
+// One command buffer that is recorded, submitted and waited for, over and over.
 class CommandRunner {
 public:
     static Result<CommandRunner> create(Context::State& context);
 
-    // Starts a recording; nothing may be in flight.
+    // Starts a recording. No earlier commands of this runner may be in flight.
     Result<VkCommandBuffer> begin();
-    // Ends the recording, submits it and waits until the device has done it.
+    // Ends the recording, submits it and waits until the device has completed it.
     Status submitAndWait();
 
 private:
@@ -25,7 +25,7 @@ private:
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
 
-// A dependency over all memory.
+// A dependency that covers all memory.
 struct MemoryDependency {
     VkPipelineStageFlags2 fromStages = 0;
     VkAccessFlags2 fromAccess = 0;
@@ -36,7 +36,7 @@ struct MemoryDependency {
 void recordDependency(const Context::State& context, VkCommandBuffer commands,
                       const MemoryDependency& dependency);
 
-// Moves mips [firstMip, firstMip + mipCount) of a colour or depth image from one layout to another.
+// Moves the mips [firstMip, firstMip + mipCount) of a colour or depth image from one layout to another.
 struct ImageTransition {
     VkImage image = VK_NULL_HANDLE;
     VkImageLayout from = VK_IMAGE_LAYOUT_UNDEFINED;

@@ -38,10 +38,10 @@ Context::State::~State() {
 
 namespace {
 
-// Sharp down to a cosine of 1 / 16.
+// This keeps textures sharp down to a cosine of 1 / 16.
 constexpr float kMaxAnisotropy = 16.0F;
 
-// Error "vulkan-call".
+// Fills the limit `multiprocessors`. Error "vulkan-call".
 Status queryMultiprocessors(Context::State& state) {
     DeviceReport report;
     if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
@@ -86,7 +86,8 @@ void queryLimits(Context::State& state) {
     limits.maxBufferBytes = vulkan13.maxBufferSize;
     limits.maxTextures = vulkan12.maxPerStageDescriptorUpdateAfterBindSampledImages;
     limits.maxSamplers = vulkan12.maxPerStageDescriptorUpdateAfterBindSamplers;
-    // Mesa's lavapipe (25.0) has the feature, but given gradients it reads the level of the longer one.
+    // Mesa's lavapipe (25.0) has the feature, but with explicit gradients it reads the level of the longer
+    // one.
     if (state.handles.samplerAnisotropy && vulkan12.driverID != VK_DRIVER_ID_MESA_LLVMPIPE) {
         limits.samplerAnisotropy = std::min(kMaxAnisotropy, limits.core.maxSamplerAnisotropy);
     }

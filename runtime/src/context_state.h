@@ -1,4 +1,4 @@
-// What the runtime's own sources see of a Context.
+// The part of a Context that the runtime's own sources see.
 #pragma once
 
 #include "pipeline_cache.h"
@@ -15,7 +15,7 @@
 
 namespace glint {
 
-// Messages of the validation layer; the driver may report from several threads.
+// Collects the messages of the validation layer. The driver may report from several threads.
 class ValidationLog {
 public:
     void add(std::string message);
@@ -26,7 +26,7 @@ private:
     std::vector<std::string> messages_;
 };
 
-// Limits that uploads and renderers check against.
+// The limits that uploads and renderers check against.
 struct DeviceLimits {
     VkPhysicalDeviceLimits core{};
     VkPhysicalDeviceMemoryProperties memory{};
@@ -34,12 +34,12 @@ struct DeviceLimits {
     VkDeviceSize maxBufferBytes = 0;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayPipeline{};  // zeros where it is not enabled
-    std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
+    std::uint32_t maxTextures = 0;  // how many sampled images one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
-    float samplerAnisotropy = 1.0F;        // that texture samplers are made with; 1: none
+    float samplerAnisotropy = 1.0F;        // anisotropy of texture samplers; 1: none
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
     bool filteredFloats = false;           // R32G32B32A32_SFLOAT can be filtered
-    std::uint32_t timestampValidBits = 0;  // of the queue family; 0: no timestamps
+    std::uint32_t timestampValidBits = 0;  // valid bits of the queue family's timestamps; 0: it has none
     std::uint32_t subgroupSize = 0;        // lanes
     VkSubgroupFeatureFlags subgroupOperations = 0;
     std::uint32_t multiprocessors = 0;  // 0: the device does not say
@@ -50,7 +50,7 @@ struct DeviceLimits {
 };
 
 struct LeafBox;
-// halvingOrder(), or what a benchmark has in its place.
+// The function that orders leaves: halvingOrder(), or a replacement in a benchmark.
 using LeafOrder = std::vector<std::uint32_t> (*)(std::span<const LeafBox> leaves, std::uint32_t threads);
 
 struct Context::State {
@@ -59,7 +59,7 @@ struct Context::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
-    // Null where the caller gave its own vkGetInstanceProcAddr. Declared first: closed last.
+    // Null if the caller gave its own vkGetInstanceProcAddr. It is declared first, so that it is closed last.
     std::shared_ptr<VulkanLibrary> library;
     InstanceTable instance;
     DeviceTable vk;
@@ -70,15 +70,15 @@ struct Context::State {
     ValidationLog log;
     DeviceLimits limits;
     LeafOrder leafOrder = nullptr;  // null: halvingOrder()
-    // Shared by the renderers of this context.
+    // The renderers of this context share this cache.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };
 
-// Fills what follows from the handles: device functions, limits, pipeline cache.
+// Fills the fields that follow from the handles: device functions, limits, pipeline cache.
 Status finishContext(Context::State& state);
 
-// Stages of the passes that are not raster passes: compute, and those of ray tracing pipelines where the
-// device has them.
+// Returns the stages of the passes that are not raster passes: compute, and the stages of ray tracing
+// pipelines if the device has them.
 VkShaderStageFlags passStages(const Context::State& state);
 
 }  // namespace glint

@@ -17,10 +17,10 @@ VkDeviceSize aligned(VkDeviceSize bytes) {
     return (bytes + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-// Arrays one after the other, each aligned.
+// Packs arrays one after the other, each of them aligned.
 class Packing {
 public:
-    // Returns the offset of what was added; nothing is added for nothing.
+    // Returns the offset of the added array. An empty array adds nothing.
     template <typename T>
     VkDeviceSize add(const std::vector<T>& values) {
         const VkDeviceSize offset = bytes_.size();
@@ -40,7 +40,8 @@ private:
 using Difference = std::array<float, 3>;
 using Member = std::span<const Difference> MorphTargetView::*;
 
-// Target by target; zeros for those that lack the attribute; empty where all do.
+// Joins the differences target by target. Targets that lack the attribute get zeros. The result is empty if
+// all of them lack it.
 std::vector<Difference> joined(const PrimitiveView& view, Member member) {
     const bool any = std::ranges::any_of(
         view.targets, [&](const MorphTargetView& target) { return !(target.*member).empty(); });
@@ -60,7 +61,7 @@ bool moves(const PrimitiveView& view, const InstanceView& instance) {
     return !view.indices.empty() && (follows || morphs);
 }
 
-// Addresses of deformed attributes in a buffer that has room for all that the primitive has.
+// Returns the addresses of deformed attributes in a buffer that has room for all attributes of the primitive.
 gpu::DeformRecord placeTargets(const GpuPrimitive& primitive, VkDeviceAddress address) {
     gpu::DeformRecord record{};
     record.vertexCount = primitive.vertexCount;

@@ -1,4 +1,4 @@
-// Skins and morphs meshes on the device: the vertices of each deformed instance, in buffers of its own.
+// Skins and morphs meshes on the device. Each deformed instance has its vertices in buffers of its own.
 #pragma once
 
 #include "geometry.h"
@@ -17,12 +17,11 @@
 
 namespace glint {
 
-// Whether the instance's vertices move, by joints or by weights; its mesh may still have primitives that do
-// not.
+// Whether joints or weights move the instance's vertices. Its mesh may also have primitives that do not move.
 bool isDeformed(const InstanceView& instance);
 bool hasDeformedInstance(const SceneView& scene);
 
-// Where the vertices of deformed primitives end up.
+// The buffers that receive the vertices of deformed primitives.
 struct DeformedBuffers {
     std::vector<Buffer> buffers;
     DeformedAddresses addresses;
@@ -30,24 +29,24 @@ struct DeformedBuffers {
 
 class Deformer {
 public:
-    // Queues copies in `uploader`, which must finish before recordDeform(). `target` is filled and must, like
-    // `targetPool` and `primitives`, outlive the Deformer. The pose is that of the scene's instances. Error
-    // "scene-package": the package has no pass that deforms.
+    // Queues copies in `uploader`, which must finish before recordDeform(). Fills `target`. `target`,
+    // `targetPool` and `primitives` must outlive the Deformer. The first pose is that of the scene's
+    // instances. Error "scene-package": the package has no pass that deforms.
     static Result<std::unique_ptr<Deformer>> create(Context::State& context, const Package& package,
                                                     const SceneView& scene,
                                                     std::span<const GpuPrimitive> primitives,
                                                     Uploader& uploader, MemoryPool& targetPool,
                                                     DeformedBuffers& target);
 
-    // Writes the instances' pose to memory that the host sees; nothing of an earlier recordPose() may be in
+    // Writes the instances' pose to memory that the host sees. Nothing of an earlier recordPose() may be in
     // flight. Returns for each instance of the scene whether its vertices move.
     std::vector<bool> setPose(std::span<const InstanceView> instances);
     // Records the copy of the pose to the device.
     void recordPose(VkCommandBuffer commands) const;
-    // Records the pass, for the instances that `moved` marks; the pose must be visible to compute shaders.
+    // Records the pass for the instances that `moved` marks. The pose must be visible to compute shaders.
     void recordDeform(VkCommandBuffer commands, const std::vector<bool>& moved) const;
 
-    // Its own: the target's are not among them.
+    // Adds the Deformer's own memory, without that of the target.
     void addMemory(std::vector<MemoryItem>& items) const;
     VkDeviceSize allocatedBytes() const {
         return pool_.bytes();
@@ -56,7 +55,7 @@ public:
 private:
     explicit Deformer(Context::State& context) : context_(&context), pool_(context) {}
 
-    // A primitive's differences and influences on the device.
+    // A primitive's morph differences and joint influences on the device.
     struct Source {
         Buffer buffer;
         VkDeviceAddress targetPositions = 0;
@@ -64,14 +63,14 @@ private:
         VkDeviceAddress targetTangents = 0;
         VkDeviceAddress joints = 0;
         VkDeviceAddress jointWeights = 0;
-        std::uint32_t influences = 0;  // a vertex
+        std::uint32_t influences = 0;  // influences of each vertex
     };
-    // Where an instance's joints and weights are in the pose buffer.
+    // The place of an instance's joints and weights in the pose buffer.
     struct Slot {
         std::uint32_t instance = 0;
-        VkDeviceSize joints = 0;  // offset, bytes
+        VkDeviceSize joints = 0;  // offset in bytes
         VkDeviceSize weights = 0;
-        std::size_t weightCount = 0;  // as many as the primitive of the mesh with most targets has
+        std::size_t weightCount = 0;  // the largest number of targets among the mesh's primitives
     };
     struct Dispatch {
         std::uint32_t instance = 0;
@@ -88,8 +87,8 @@ private:
     MemoryPool pool_;
     UniquePipelineLayout layout_;
     UniquePipeline pipeline_;
-    std::map<std::uint32_t, Source> sources_;  // by index into SceneView::primitives
-    std::vector<Slot> slots_;                  // of deformed instances
+    std::map<std::uint32_t, Source> sources_;  // keyed by index into SceneView::primitives
+    std::vector<Slot> slots_;                  // one for each deformed instance
     Buffer pose_;
     Buffer staging_;
     Buffer records_;

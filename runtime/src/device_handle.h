@@ -1,4 +1,4 @@
-// Owners of device objects.
+// Types that own device objects.
 #pragma once
 
 #include "context_state.h"
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// A device object that is destroyed by the function `Destroy` of the table. The Context outlives it.
+// A device object that the function `Destroy` of the table destroys. The Context must outlive it.
 template <typename Handle, auto Destroy>
 class DeviceHandle {
 public:

@@ -1,4 +1,4 @@
-// What physical devices report.
+// Queries what physical devices report.
 #include "requirements.h"
 #include "vulkan_error.h"
 
@@ -30,7 +30,7 @@ Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, Devi
     return okStatus();
 }
 
-// Below Vulkan 1.3 the chains of queryFeatures() are not defined: the version is then all that is reported.
+// Below Vulkan 1.3 the chains of queryFeatures() are not defined, so the report then has the version only.
 void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
     VkPhysicalDeviceVulkan11Properties subgroup{};
     subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
@@ -68,7 +68,8 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     if (Status status = queryExtensions(table, device, report); !status) {
         return status;
     }
-    // A structure of an extension that the device lacks is left alone by it: start from nothing.
+    // A device leaves structures of extensions that it lacks untouched, so the query starts from cleared
+    // features.
     clearFeatures(report);
     if (report.apiVersion >= DeviceRequirements::kApiVersion) {
         queryFeatures(table, device, report);
@@ -79,7 +80,7 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
 
 namespace {
 
-// Fills `report` through the system's loader; names what is missing for that.
+// Fills `report` through the system's loader. Returns what is missing for that.
 std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
     if (device == VK_NULL_HANDLE) {
         return {"a physical device"};
@@ -88,7 +89,7 @@ std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report
     if (!library) {
         return {"a Vulkan loader (libvulkan.so.1)"};
     }
-    // The loader exports these functions for any instance; the handle says which driver answers.
+    // The loader exports these functions for any instance, and the handle decides which driver answers.
     InstanceTable table;
 #define GLINT_LOAD(name)                                                         \
     table.name = reinterpret_cast<PFN_vk##name>((*library)->symbol("vk" #name)); \

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// One past the last draw of the instance whose draws begin at `first`.
+// Returns one past the last draw of the instance whose draws begin at `first`.
 std::size_t endOfInstance(std::span<const Draw> draws, std::size_t first) {
     std::size_t end = first + 1;
     while (end < draws.size() && draws[end].instance == draws[first].instance) {

@@ -1,4 +1,4 @@
-// Draws of the raster pass that one call makes: many instances of a primitive.
+// Batches of the raster pass: one call draws many instances of a primitive.
 #pragma once
 
 #include "geometry.h"
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Instance i shows the GeometryRecord geometry + i * stride.
+// Instance i of the batch shows the GeometryRecord geometry + i * stride.
 struct DrawBatch {
     std::uint32_t geometry = 0;
     std::uint32_t stride = 0;
@@ -19,8 +19,9 @@ struct DrawBatch {
     bool mirrored = false;
 };
 
-// Batches of draws whose instances follow each other with the same primitives, in the order of their first
-// draws; hidden draws are in none. `draws` are those of SceneLayout: instance by instance. Pure; O(draws).
+// Joins draws into batches whose instances follow each other and have the same primitives. Batches are in the
+// order of their first draws. Hidden draws are left out. `draws` are those of SceneLayout, instance by
+// instance. Pure; O(draws).
 std::vector<DrawBatch> batchDraws(std::span<const Draw> draws);
 
 }  // namespace glint

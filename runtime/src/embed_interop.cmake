@@ -1,5 +1,5 @@
-# Writes OUTPUT: the text of the interop headers in FOLDER, as a C++ string. The compiler puts the hash of the same text
-# into packages (tool/emit): each header's name, a line feed, its contents, in order of name.
+# Writes the text of the interop headers in FOLDER to OUTPUT, as a C++ string. The text has each header's name, a line
+# feed and its contents, in the order of names. The compiler puts the hash of the same text into packages (tool/emit).
 file(GLOB headers RELATIVE "${FOLDER}" "${FOLDER}/interop/*.h")
 list(SORT headers)
 set(code "// Made by embed_interop.cmake from the interop headers. Do not edit.\n#include \"interop_hash.h\"\n\n")

@@ -1,4 +1,4 @@
-// Environment: the map and its levels on the device.
+// Environment: the map and its levels of roughness on the device.
 #include "environment_state.h"
 #include "half_float.h"
 #include "map_filter.h"
@@ -40,7 +40,8 @@ Texels toHalves(const RadianceMap& level, float scale) {
     return toBytes(texels);
 }
 
-// A power of two, so that it costs no digits: 1 unless something is brighter than half floats are.
+// Returns a power of two, so that scaling loses no digits. It is 1 unless the map is brighter than the
+// largest half float.
 float halfScale(const RadianceMap& map) {
     float largest = 0.0F;
     for (const Radiance& radiance : map.texels) {
@@ -60,7 +61,7 @@ Status createSampler(Environment::State& state) {
     info.minFilter = VK_FILTER_LINEAR;
     info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
     info.maxLod = VK_LOD_CLAMP_NONE;
-    // Round the horizon without a seam; the poles are edges.
+    // The map wraps around the horizon without a seam, and the poles are edges.
     info.addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
     info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;

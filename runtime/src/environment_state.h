@@ -1,4 +1,4 @@
-// What the renderer sees of an Environment.
+// The part of an Environment that the renderer sees.
 #pragma once
 
 #include "resources.h"
@@ -8,15 +8,15 @@
 
 namespace glint {
 
-// Members are destroyed in reverse: the pool's memory last.
+// Members are destroyed in reverse order: the pool's memory last.
 struct Environment::State {
     explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
 
     Context::State& context;
     MemoryPool pool;
-    DeviceImage map;  // a mip a level; layout SHADER_READ_ONLY_OPTIMAL
+    DeviceImage map;  // one mip for each level; layout SHADER_READ_ONLY_OPTIMAL
     UniqueSampler sampler;
-    float scale = 1.0F;  // radiance of a texel's 1
+    float scale = 1.0F;  // radiance that a texel value of 1 stands for
     SkyHarmonics harmonics{};
     Statistics statistics;
 };

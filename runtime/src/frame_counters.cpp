@@ -1,4 +1,4 @@
-// What the device counted in a frame.
+// Reads the counters of a frame.
 #include "readback.h"
 #include "renderer_state.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using Counters = std::array<std::uint32_t, gpu::kCounterCount>;
 
-// The shaders' numbers are those of the table.
+// The shaders' constants must equal those of the table.
 static_assert(gpu::kEffectShadow == package::kEffectShadow);
 static_assert(gpu::kEffectAmbientOcclusion == package::kEffectAmbientOcclusion);
 static_assert(gpu::kEffectReflection == package::kEffectReflection);
@@ -50,7 +50,7 @@ EffectCounters countersOf(const Counters& values, package::Effect effect) {
     return counters;
 }
 
-// Of a round that is read back at `bytes`.
+// Adds the counters of a round that was read back at `bytes`.
 void addRound(const std::uint8_t* bytes, const FrameSize& size, std::uint32_t effects,
               FrameCounters& counters) {
     std::array<std::uint32_t, 2> lists{};

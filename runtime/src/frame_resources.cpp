@@ -16,13 +16,14 @@ VkDeviceSize listRays(const FrameSize& size) {
 
 namespace {
 
-// Elements of the longest list: hits, each bucket with all but one slot of its last group empty.
+// Returns the number of elements of the longest list. It is that of hits, where each bucket may leave all but
+// one slot of its last group empty.
 VkDeviceSize listSlots(const FrameSize& size) {
     return listRays(size) + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
 }
 
-// Rays of a dispatch that is one-dimensional, as lists are. One over an image is no wider, and its height is
-// within the limits of images, which are below those of dispatches.
+// Returns the largest number of rays in a one-dimensional dispatch, as lists use. A dispatch over an image is
+// no wider, and its height is within the limits of images, which are below those of dispatches.
 std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
     const std::uint64_t width =
         std::uint64_t{limits.core.maxComputeWorkGroupCount[0]} * limits.core.maxComputeWorkGroupSize[0];
@@ -46,7 +47,7 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
                          "use 1 x 1 to " + std::to_string(maxWidth) + " x " + std::to_string(maxHeight));
     }
     const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
-    // There is a sample for every pixel and effect, and 32 bits number them.
+    // There is a sample for every pixel and effect, and 32 bits number the samples.
     if (samples > std::numeric_limits<std::uint32_t>::max() ||
         samples * sizeof(gpu::EffectSample) > context.limits.maxBufferBytes) {
         return makeError("render-size", "",
@@ -84,7 +85,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
             info.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         }
         if (binding == gpu::kBindingAccumulated) {
-            info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // so that the caller can draw it
+            info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // the caller can draw it
         }
         Result<DeviceImage> image = createImage(context, frame.pool, info);
         if (!image) {
@@ -110,15 +111,15 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-    // Nothing where no effect sends rays.
+    // These numbers are 0 if no effect sends rays.
     const VkDeviceSize samples = VkDeviceSize{size.width} * size.height * size.sampleCount;
     const VkDeviceSize rays = listRays(size);
     const VkDeviceSize hits = size.ordered ? rays : 0;
     const VkDeviceSize slots = size.ordered ? listSlots(size) : 0;
-    // A bit a hit, in whole words.
+    // There is one bit for each hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
-    // Up to the end of the last tile that may be read.
+    // The keys end at the end of the last tile that may be read.
     const VkDeviceSize keys =
         hits > 0 ? hits + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
     const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
@@ -234,7 +235,7 @@ void fillSet(Context::State& context, const FrameResources& frame) {
     }
 }
 
-// Into the layouts that they keep, and black.
+// Moves images into the layouts that they keep, and clears them to black.
 Status clearImages(Context::State& context, const FrameResources& frame) {
     Result<CommandRunner> runner = CommandRunner::create(context);
     if (!runner) {

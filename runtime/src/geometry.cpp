@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// Vectors of four floats are aligned to their size, which any device is content with.
+// Vectors of four floats get an alignment of their size, which suits every device.
 constexpr VkDeviceSize kAttributeAlignment = 16;
 constexpr VkDeviceSize kTriangleIndexBytes = 3 * sizeof(std::uint32_t);
 // Custom indices have 24 bits.
@@ -46,7 +46,7 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
         bytes +=
             (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
     }
-    // Addresses of a buffer are aligned for its usage; the slack makes them so for attributes, too.
+    // The addresses of a buffer are aligned for its usage only. The slack aligns them for attributes too.
     Result<Buffer> buffer =
         createBuffer(context, pool, bytes + kAttributeAlignment,
                      VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
@@ -89,10 +89,10 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     return record;
 }
 
-// Parts of each mesh that has triangles: indices into SceneLayout::parts.
+// The parts of each mesh that has triangles, as indices into SceneLayout::parts.
 using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
 
-// Appends the triangles of a primitive to `ranges`, and begins a new part where one is full.
+// Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
 void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
                   std::vector<std::vector<TriangleRange>>& ranges) {
     const auto room = [&]() -> std::uint64_t {
@@ -106,7 +106,7 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
         return capacity.triangles - held;
     };
     for (std::uint32_t first = 0; first < triangleCount;) {
-        // A primitive that fits into a part of its own is not torn.
+        // A primitive that fits into one part is not split.
         if (room() < std::min<std::uint64_t>(triangleCount - first, capacity.triangles)) {
             ranges.emplace_back();
         }
@@ -116,7 +116,7 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
     }
 }
 
-// Appends the parts of a mesh, which `instance` alone has if it is given; returns their indices.
+// Appends the parts of a mesh and returns their indices. If `instance` is given, it alone uses these parts.
 std::vector<std::uint32_t> partition(const PackageScene& known, const SceneView& scene,
                                      std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
                                      std::uint32_t mesh, std::optional<std::uint32_t> instance,
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> partition(const PackageScene& known, const SceneView&
     return indices;
 }
 
-// Parts that instances share: of every mesh but those that all their instances deform.
+// Makes the parts that instances share. A mesh gets such parts unless all its instances deform it.
 PartsOfMesh sharedParts(const PackageScene& known, const SceneView& scene,
                         std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
                         const std::vector<bool>& deforms, std::vector<MeshPart>& parts) {
@@ -225,10 +225,10 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
         } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
             parts = shared->second;
         }
-        // An instance that is not visible is left out. A flattened one has no place in a TLAS, whose
-        // transforms must be invertible. It is not drawn either: a surface that the camera sees and
-        // reflections don't would be worse than none. One that moves may be whole again in the next frame: it
-        // keeps its place, hidden.
+        // An instance that is not visible is left out. A flattened one can't be in a TLAS, whose transforms
+        // must be invertible. It is not drawn either: a surface that the camera sees and reflections don't
+        // would be worse than none. In a scene that moves, such an instance keeps its place but is hidden,
+        // because it may be whole again in the next frame.
         const bool hidden = !instance.visible || !isInvertible(instance.objectToWorld);
         if (hidden && !scene.moves) {
             continue;

@@ -1,4 +1,4 @@
-// GpuScene: the order of an upload.
+// GpuScene: the steps of an upload.
 #include "gpu_scene_state.h"
 #include "instance_math.h"
 #include "pass_dependencies.h"
@@ -19,7 +19,8 @@ double millisecondsSince(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-// An array of records that shaders reach by address; never empty, so that the address is one.
+// Uploads an array of records that shaders reach by address. The buffer is never empty, so that its address
+// is valid.
 template <typename T>
 Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
     Result<Buffer> buffer =
@@ -32,7 +33,7 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
-// `deformer` is made where an instance changes its shape.
+// Makes `deformer` if an instance changes its shape.
 Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
                   std::unique_ptr<Deformer>& deformer) {
     const PackageScene known = package.scene(scene.packageScene);
@@ -119,7 +120,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     return (*uploader)->finish();
 }
 
-// The vertices of the scene's pose, before anything is built of them.
+// Computes the vertices of the scene's first pose, before structures are built from them.
 Status deformOnce(Context::State& context, const Deformer& deformer, std::size_t instances) {
     Result<CommandRunner> runner = CommandRunner::create(context);
     if (!runner) {
@@ -157,7 +158,7 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
     return input;
 }
 
-// Those that stay as they are, compacted; what moves is built by createMotion().
+// Builds and compacts the bottom levels that stay as they are. createMotion() builds those that move.
 Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
                          const SceneLayout& layout, bool dataAccess, std::vector<BlasInput>& refitted) {
     std::vector<BlasInput> inputs;
@@ -213,13 +214,13 @@ VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstan
     VkAccelerationStructureInstanceKHR instance{};
     static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
     std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
-    // An instance mask of 8 bits, a custom index of 24: layOutScene() has seen that it fits.
+    // A custom index has 24 bits and the mask 8. layOutScene() has checked that the index fits.
     instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
-    // Shader binding tables, where they have records, have one for each geometry record.
+    // A shader binding table that has hit records has one for each geometry record.
     instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
     instance.mask = 0xFF;
-    // Facing is determined in object space, so that a mirroring transform changes nothing, and the default
-    // is glTF's: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
+    // Facing is determined in object space, so that a mirroring transform changes nothing. The default agrees
+    // with glTF: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
     instance.flags = doubleSided ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU : 0U;
     instance.accelerationStructureReference = blas;
     return instance;

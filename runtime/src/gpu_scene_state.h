@@ -1,4 +1,4 @@
-// What the renderer sees of a GpuScene.
+// The part of a GpuScene that the renderer sees.
 #pragma once
 
 #include "acceleration.h"
@@ -17,10 +17,11 @@
 
 namespace glint {
 
-// Structures that the array of set 0 has room for: the scene, and what a host application adds.
+// The number of structures that the array of set 0 has room for: the scene's, and those that a host
+// application adds.
 inline constexpr std::uint32_t kTlasCapacity = 4;
 
-// Members are destroyed in reverse: the pool's memory last.
+// Members are destroyed in reverse order: the pool's memory last.
 struct GpuScene::State {
     explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
 
@@ -28,13 +29,13 @@ struct GpuScene::State {
     MemoryPool pool;
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
-    std::vector<AccelerationStructure> blases;  // those that are built once
-    std::vector<VkDeviceAddress> partBlases;    // by SceneLayout::parts
-    // Null where the instances of the top level come as the scene has them.
+    std::vector<AccelerationStructure> blases;  // the BLASes that are built once
+    std::vector<VkDeviceAddress> partBlases;    // indexed as SceneLayout::parts
+    // Null if the top level has its instances in the scene's own order.
     std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
-    std::vector<std::uint32_t> shaderIds;  // of the geometry records, in their order
+    std::vector<std::uint32_t> shaderIds;  // one for each geometry record
     Buffer instances;
     Buffer materials;
     Buffer lights;
@@ -44,15 +45,17 @@ struct GpuScene::State {
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    std::vector<Draw> draws;  // empty where the scene stays: its batches are enough
+    std::vector<Draw> draws;  // empty if the scene does not move: its batches are enough
     std::vector<DrawBatch> batches;
-    // Materials that an update changes, as the device has them. Empty where the scene stays.
+    // The materials that an update may change, with their values on the device. Empty if the scene does not
+    // move.
     std::vector<ChangingMaterial> changing;
     Statistics statistics;
-    std::unique_ptr<SceneMotion> motion;  // null: the scene stays as it is
+    std::unique_ptr<SceneMotion> motion;  // null if the scene does not move
 };
 
-// Layout, pool and set 0, filled from the state's structures, textures and samplers.
+// Creates the layout, the pool and set 0. The set is filled from the state's structures, textures and
+// samplers.
 Status createSceneSet(GpuScene::State& state);
 
 }  // namespace glint

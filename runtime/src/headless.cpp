@@ -1,4 +1,4 @@
-// A device of Glint's own: instance, validation, choice of the physical device.
+// A headless device that Glint makes: the instance, validation, and the choice of the physical device.
 #include "context_state.h"
 #include "requirements.h"
 #include "vulkan_error.h"
@@ -26,7 +26,7 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // Without GENERAL: there the loader talks of other drivers' files.
+    // GENERAL is left out, because its messages from the loader are about other drivers' files.
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
     info.pfnUserCallback = collectMessage;
     info.pUserData = &log;
@@ -77,7 +77,7 @@ Status createInstance(const GlobalTable& table, Validation validation, Context::
         layers.push_back(kValidationLayer);
     }
     if (validation == Validation::Synchronization) {
-        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);  // of the layer
+        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);  // an extension of the layer
     }
     if (labels) {
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -152,8 +152,8 @@ Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& sta
     return devices;
 }
 
-// The first device with that name and all features; the error says of each device what is wrong with it.
-// Of that device the tracers are left that it has.
+// Returns the first device that has that name and all features. The error says for each device what is wrong
+// with it. Leaves in `tracers` those that the chosen device supports.
 Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const HeadlessOptions& options,
                                       std::uint32_t& tracers) {
     const std::string& wanted = options.deviceName;
@@ -213,7 +213,7 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
     const auto found = std::ranges::find_if(families, [](const VkQueueFamilyProperties& family) {
         return (family.queueFlags & kNeeded) == kNeeded;
     });
-    // chooseDevice() has seen that there is one.
+    // chooseDevice() has checked that there is such a family.
     return static_cast<std::uint32_t>(found - families.begin());
 }
 
@@ -282,7 +282,8 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         if (Status status = queryDevice(state->instance, *device, report); !status) {
             return status.error();
         }
-        // Where it is supported, so is its feature (Vulkan 1.3 specification, "Feature Requirements").
+        // A device that supports the extension supports its feature too (Vulkan 1.3 specification, "Feature
+        // Requirements").
         state->handles.pipelineStatistics =
             hasExtension(report, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     }

@@ -40,13 +40,14 @@ bool isInvertible(const Rows& objectToWorld) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Double3 axis = column(objectToWorld, i);
         const double length = std::sqrt(dot(axis, axis));
-        // Bounds the inverse of a plain scale: 1e-30 of a metre, 1e30 back.
+        // This bounds the inverse of a plain scale: a factor of 1e-30 has the inverse 1e30.
         if (length < 1e-30) {
             return false;
         }
         box *= length;
     }
-    // Of a unit cube with these edges, the share of its volume: bounds what a shear adds to the inverse.
+    // The ratio of both is the volume that the columns would span if their lengths were 1. It bounds what a
+    // shear adds to the inverse.
     return volume > 1e-12 * box;
 }
 
@@ -63,7 +64,7 @@ gpu::InstanceRecord makeInstanceRecord(const Rows& objectToWorld) {
             largest = std::max(largest, std::abs(value));
         }
     }
-    // Only the direction counts: a power of two, which rounds nothing, brings the largest to [1, 2).
+    // Only the direction matters. A power of two brings the largest component to [1, 2) without rounding.
     const double scale = largest > 0.0 ? std::exp2(-std::floor(std::log2(largest))) : 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         record.normalToWorld[i] = {static_cast<float>(sign * scale * cofactors[i][0]),

@@ -1,4 +1,4 @@
-// Transforms and lights as the device has them. Pure functions.
+// Pure functions that convert transforms and lights to the device's records.
 #pragma once
 
 #include "interop/scene.h"
@@ -9,20 +9,20 @@
 
 namespace glint {
 
-// Three rows of four.
+// A transform in three rows of four.
 using Rows = std::array<float, 12>;
 
 inline gpu::vec3 toVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 
-// Whether the linear part has an inverse that floats can hold: finite, and not flattened.
+// Whether the linear part has an inverse that floats can hold, that is, it is finite and not flattened.
 bool isInvertible(const Rows& objectToWorld);
 
-// The matrices and flags of an instance; finite whenever objectToWorld is.
+// Makes the matrices and flags of an instance. They are finite whenever objectToWorld is.
 gpu::InstanceRecord makeInstanceRecord(const Rows& objectToWorld);
 
-// KHR_lights_punctual, "Inner and Outer Cone Angles": the recommended scale and offset.
+// Uses the scale and offset that KHR_lights_punctual recommends in "Inner and Outer Cone Angles".
 gpu::LightRecord makeLightRecord(const LightView& light);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Which layouts this runtime was built with.
+// The layouts that this runtime was built with, as text and hash.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,10 @@
 
 namespace glint {
 
-// The interop headers of the build, one after the other.
+// Returns the interop headers of the build, one after the other.
 std::string_view interopText();
 
-// What PackageHeader::interopHash is for packages whose shaders share these layouts.
+// Returns the PackageHeader::interopHash of packages whose shaders share these layouts.
 std::uint32_t interopHash();
 
 }  // namespace glint

@@ -11,11 +11,11 @@ namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
-// Nodes with fewer leaves are not worth a thread: they take about a millisecond.
+// Nodes with fewer leaves take about a millisecond, which is not worth a thread.
 constexpr std::size_t kLeavesPerThread = 1U << 13;
 
-// Nodes with more leaves choose their key by as many of them as this: it is the exact place of the split that
-// counts there, which is found among all.
+// Nodes with more leaves choose their key by a sample of this many. For such nodes the exact place of the
+// split matters more, and it is found among all leaves.
 constexpr std::size_t kSample = 1024;
 
 struct Leaf {
@@ -23,16 +23,17 @@ struct Leaf {
     std::uint32_t id = 0;
 };
 
-// What a node's leaves are parted by.
+// The key by which a node's leaves are parted.
 enum class Key : std::uint8_t { X, Y, Z, Size };
 
-// Orders as the float does; above 0 unless it is the NaN with all bits set.
+// Returns bits that order as the floats do. They are above 0 unless the float is the NaN with all bits set.
 std::uint32_t sortable(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
 }
 
-// The rank by the key above the leaf's number, so that no two leaves are equal. Void leaves come first.
+// Returns the rank by the key in the upper bits and the leaf's number in the lower ones, so that no two
+// leaves are equal. Void leaves come first.
 template <Key key>
 std::uint64_t rankOf(const Leaf& leaf) {
     const std::array<float, 6>& sides = leaf.box.sides;
@@ -41,7 +42,7 @@ std::uint64_t rankOf(const Leaf& leaf) {
     }
     float value = 0.0F;
     if constexpr (key == Key::Size) {
-        // The largest come first, so that they share nodes and don't widen all others.
+        // The largest leaves come first, so that they share nodes and don't widen all others.
         value = (sides[0] + sides[3]) + (sides[1] + sides[4]) + (sides[2] + sides[5]);
     } else {
         constexpr auto kAxis = static_cast<std::size_t>(key);
@@ -59,11 +60,11 @@ LeafBox united(const Leaf& a, const Leaf& b) {
 // A way to part the leaves of a node.
 struct Split {
     Key key = Key::X;
-    std::uint64_t pivot = 0;  // the least rank of the second side
+    std::uint64_t pivot = 0;  // the lowest rank of the second side
     double cost = std::numeric_limits<double>::infinity();
 };
 
-// The best pair of three leaves comes first.
+// Puts the best pair of three leaves first.
 void orderThree(std::span<Leaf> leaves) {
     const double surfaces[] = {united(leaves[1], leaves[2]).surface(), united(leaves[0], leaves[2]).surface(),
                                united(leaves[0], leaves[1]).surface()};
@@ -71,7 +72,7 @@ void orderThree(std::span<Leaf> leaves) {
     std::swap(leaves[alone], leaves[2]);
 }
 
-// Those pairs of four leaves that have the least surface.
+// Pairs four leaves so that the two pairs have the least surface.
 void orderFour(std::span<Leaf> leaves) {
     std::size_t partner = 1;
     double least = std::numeric_limits<double>::infinity();
@@ -92,7 +93,7 @@ class Halver {
 public:
     Halver(std::span<Leaf> leaves, std::span<std::uint64_t> ranks) : leaves_(leaves), ranks_(ranks) {}
 
-    // The leaves of a node, and of all nodes below it.
+    // Orders the leaves of a node and of all nodes below it.
     void order(std::size_t first, std::size_t count, std::uint32_t threads) {
         const std::span<Leaf> leaves = leaves_.subspan(first, count);
         if (count <= 4) {
@@ -108,7 +109,7 @@ public:
                 helper.join();
                 return;
             } catch (const std::system_error&) {
-                // The system gives no more threads: this one does it all.
+                // The system gives no more threads, so this thread does all the work.
             }
         }
         order(first, left, 1);
@@ -117,7 +118,7 @@ public:
 
 private:
     static void orderFew(std::span<Leaf> leaves) {
-        // Not std::ranges, whose subrange Clang 14 can't read in libstdc++ 12.
+        // This is not std::ranges, whose subrange Clang 14 can't read in libstdc++ 12.
         const auto sound = std::stable_partition(leaves.begin(), leaves.end(),
                                                  [](const Leaf& leaf) { return leaf.box.isVoid(); });
         if (sound != leaves.begin()) {
@@ -130,7 +131,7 @@ private:
         }
     }
 
-    // The least rank of the second side, where the first has `left` leaves.
+    // Returns the lowest rank of the second side if the first side has `left` leaves.
     template <Key key>
     static std::uint64_t pivotOf(std::span<const Leaf> leaves, std::span<std::uint64_t> ranks,
                                  std::size_t left) {
@@ -165,7 +166,7 @@ private:
         return best;
     }
 
-    // `pivot`: 0 where it is still to be found.
+    // A `pivot` of 0 has not been found yet.
     template <Key key>
     static void partBy(std::span<Leaf> leaves, std::span<std::uint64_t> ranks, std::size_t left,
                        std::uint64_t pivot) {
@@ -232,7 +233,7 @@ void LeafBox::extend(const std::array<float, 3>& point) {
         sides[axis] = std::min(sides[axis], point[axis]);
         sides[axis + 3] = std::min(sides[axis + 3], -point[axis]);
     }
-    // Comparisons skip a NaN.
+    // The comparisons skip a NaN.
     const float sum = point[0] + point[1] + point[2];
     if (!(sum - sum == 0.0F)) {
         sides[0] = -kUnbounded;
@@ -240,8 +241,7 @@ void LeafBox::extend(const std::array<float, 3>& point) {
 }
 
 bool LeafBox::isVoid() const {
-    // Infinities and NaN alike make the sum something else than a number; so may huge boxes, which are as
-    // bad.
+    // Infinity and NaN make the sum infinite or NaN. Huge boxes may do so too, and are as bad.
     const float sum = (sides[0] + sides[3]) + (sides[1] + sides[4]) + (sides[2] + sides[5]);
     return !(sum - sum == 0.0F);
 }
@@ -260,7 +260,7 @@ std::vector<std::uint32_t> halvingOrder(std::span<const LeafBox> leaves, std::ui
     std::vector<Leaf> parted;
     parted.reserve(leaves.size());
     for (const LeafBox& box : leaves) {
-        // What is void widens no node.
+        // A void box must not widen any node.
         parted.push_back({box.isVoid() ? LeafBox() : box, static_cast<std::uint32_t>(parted.size())});
     }
     std::vector<std::uint64_t> ranks(leaves.size());

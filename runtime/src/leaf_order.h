@@ -1,8 +1,8 @@
-// In which order a CPU driver gets the leaves of an acceleration structure.
+// The order in which a CPU driver gets the leaves of an acceleration structure.
 //
-// Mesa's lavapipe (lvp_acceleration_structure.c) does not look for a tree: a node over n leaves has the first
-// ceil(n / 2) of them, in the order of the input, on one side, and the others on the other. The order alone
-// makes the tree.
+// Mesa's lavapipe (lvp_acceleration_structure.c) does not search for a good tree. A node over n leaves has
+// the first ceil(n / 2) of them, in the order of the input, on one side, and the others on the other side.
+// The order alone decides the tree.
 #pragma once
 
 #include "motion_bounds.h"
@@ -14,8 +14,8 @@
 
 namespace glint {
 
-// The box of a leaf: min x, y, z and -max x, y, z, so that a union is the minimum of all six.
-// Void, which is the initial value, where a coordinate was not finite.
+// The box of a leaf as min x, y, z and -max x, y, z, so that a union is the minimum of all six. A box is void
+// if a coordinate was not finite; the initial value is void too.
 struct LeafBox {
     std::array<float, 6> sides;
 
@@ -24,15 +24,16 @@ struct LeafBox {
     void extend(const LeafBox& other);
     void extend(const std::array<float, 3>& point);
     bool isVoid() const;
-    double surface() const;  // square units; 0 where void
+    double surface() const;  // square units; 0 if void
 };
 
-// The order that makes a small tree when it is halved as above: from the top down, each node's leaves are
-// parted at that place along the axis, or by the size of the leaves, with which both sides have the least
-// surface. `order[i]` is the leaf that comes in place i. Leaves that are void come first: from there their
-// boxes, which are no numbers, don't get into those of the nodes above.
+// Returns an order that makes a small tree when it is halved as above. It works from the top down. Each
+// node's leaves are parted after the first ceil(n / 2) of them, either along an axis or by their size. The
+// key whose two sides have the least surface is taken. `order[i]` is the leaf in place i. Void leaves come
+// first, because their boxes, which are no numbers, then don't get into those of the nodes above.
 //
-// Takes O(n log² n) time and 44 bytes a leaf; the result does not depend on `threads`, which is at least 1.
+// Takes O(n log² n) time and 44 bytes a leaf. The result does not depend on `threads`, which must be at least
+// 1.
 std::vector<std::uint32_t> halvingOrder(std::span<const LeafBox> leaves, std::uint32_t threads);
 
 }  // namespace glint

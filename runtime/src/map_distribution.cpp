@@ -10,10 +10,10 @@ namespace {
 
 struct Cell {
     std::size_t index = 0;
-    double fraction = 0.0;  // of the cell, [0, 1)
+    double fraction = 0.0;  // position in the cell, [0, 1)
 };
 
-// The cell of running sums that `target` falls into; never one of no weight.
+// Returns the cell of running sums that `target` falls into. It never returns a cell without weight.
 Cell findCell(std::span<const double> sums, double target) {
     const auto after = std::upper_bound(sums.begin(), sums.end(), target);
     std::size_t index = static_cast<std::size_t>(after - sums.begin());

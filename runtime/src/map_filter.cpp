@@ -13,12 +13,12 @@
 namespace glint {
 namespace {
 
-// Samples of all texels of a level together, and of one texel: an eighth of a second for a level, and less
-// than 1 % of noise in a smooth sky.
+// The number of samples for all texels of a level together, and the least number for one texel. A level takes
+// an eighth of a second, and a smooth sky has less than 1 % of noise.
 constexpr std::uint32_t kLevelSamples = 1U << 23;
 constexpr std::uint32_t kMinSamples = 32;
 constexpr std::uint32_t kMaxSamples = 1024;
-// Samples of the map, which all texels share: a lamp that has a tenth of the light gets 100.
+// The number of map samples, which all texels share. A lamp that has a tenth of the light gets 100.
 constexpr std::uint32_t kMapSamples = 1024;
 constexpr std::uint32_t kRowsAtOnce = 4;
 constexpr std::uint32_t kMaxThreads = 64;
@@ -27,23 +27,25 @@ struct Vec3 {
     float x, y, z;
 };
 
-// The lobe about a direction in which surface and viewer are too: a function of the cosine x = n·l alone,
-// since (n·h)² = (1 + x) / 2. D (n·h) / (4 v·h) = D / 4 is the density of l by that of h.
+// The lobe about a direction that is also the direction of the surface and of the viewer. It depends on the
+// cosine x = n·l alone, since (n·h)² = (1 + x) / 2. The density of l is that of h divided by 4 v·h, which
+// gives D (n·h) / (4 v·h) = D / 4.
 class Lobe {
 public:
     explicit Lobe(double roughness)
         : alpha2_(static_cast<float>(std::pow(roughness, 4.0))),
           scale_(static_cast<float>(alpha2_ / (4.0 * std::numbers::pi))) {}
 
-    // What a sample counts under the balance heuristic: the weight D x / 4 of its direction over the samples
-    // per steradian there, `lobeSamples` by the lobe and `mapDensity` by the map. The lobe samples directions
-    // above the surface only, 1 / (1 + α²) of it: with D / 4 = s / q², both are multiplied by q². GGX's
-    // denominator q = 1 - (1 - α²)(n·h)² is a sum of positive terms.
+    // Returns the weight of a sample under the balance heuristic. It is the weight D x / 4 of the sample's
+    // direction over the samples per steradian there, which are `lobeSamples` from the lobe and `mapDensity`
+    // from the map. The lobe samples only directions above the surface, which are 1 / (1 + α²) of it. Both
+    // are multiplied by q², where D / 4 = s / q². GGX's denominator q = 1 - (1 - α²)(n·h)² is a sum of
+    // positive terms.
     float balance(float x, float lobeSamples, float mapDensity) const {
         const float q = alpha2_ + (1.0F - alpha2_) * 0.5F * (1.0F - x);
         return scale_ * x / (lobeSamples * scale_ * (1.0F + alpha2_) + mapDensity * q * q);
     }
-    // The cosine of a sample, [0, 1] for u in [0, 1].
+    // Returns the cosine of a sample; it is in [0, 1] for u in [0, 1].
     double sampleCosine(double u) const {
         const double a2 = alpha2_;
         const double v = u / (1.0 + a2);
@@ -55,7 +57,7 @@ private:
     float scale_;
 };
 
-// Reversed bits as a fraction: van der Corput's sequence.
+// Returns the reversed bits as a fraction, which is van der Corput's sequence.
 double radicalInverse(std::uint32_t i) {
     std::uint32_t bits = 0;
     for (int bit = 0; bit < 32; ++bit) {
@@ -64,7 +66,7 @@ double radicalInverse(std::uint32_t i) {
     return bits * 0x1p-32;
 }
 
-// In the frame of the lobe, whose axis is z.
+// Returns samples in the frame of the lobe, whose axis is z.
 std::vector<Vec3> sampleLobe(const Lobe& lobe, std::uint32_t count) {
     std::vector<Vec3> samples;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -77,17 +79,17 @@ std::vector<Vec3> sampleLobe(const Lobe& lobe, std::uint32_t count) {
     return samples;
 }
 
-// Samples of the map side by side, for vector instructions.
+// Samples of the map are stored side by side for vector instructions.
 constexpr std::size_t kLanes = 16;
 using Lanes = std::array<float, kLanes>;
 struct Lights {
     std::array<Lanes, 3> direction{};
     std::array<Lanes, 3> radiance{};
-    Lanes samples{};  // that each stands for; 0: none
+    Lanes samples{};  // samples that each stands for; 0: none
     Lanes density{};  // expected samples per steradian
 };
 
-// The map as the samplers see it: radiance, and expected map samples per steradian.
+// The map as the samplers see it: its radiance and the expected map samples per steradian.
 class Source {
 public:
     explicit Source(const RadianceMap& map) : width_(map.width), height_(map.height) {
@@ -121,8 +123,8 @@ public:
     }
 
 private:
-    // Texels that expect a sample or more are taken as that many at their centres: no chance in the light of
-    // a sun.
+    // A texel that expects one sample or more counts as that many samples at its centre. The light of a sun
+    // is therefore not random.
     double expectedSamples(std::size_t texel) const {
         return texels_[texel][3] *
                texelSolidAngle(static_cast<std::uint32_t>(texel / width_), width_, height_);
@@ -155,7 +157,7 @@ private:
     std::size_t lightCount_ = 0;
 };
 
-// A weighted mean of radiance: no greater than the greatest of it.
+// A weighted mean of radiance. It is no greater than its greatest value.
 class Mean {
 public:
     void add(float r, float g, float b, float weight) {
@@ -177,7 +179,7 @@ private:
     double total_ = 0.0;
 };
 
-// `turn`: of the lobe's samples about its axis, so that neighbours err in different ways.
+// `turn` rotates the lobe's samples about its axis, so that neighbours have different errors.
 Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3>& samples, double polar,
                   double azimuth, double turn) {
     const double sinP = std::sin(polar);
@@ -188,7 +190,7 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3
         return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     };
     const Vec3 n = vec(sinP * cosA, cosP, sinP * sinA);
-    // Down the meridian and along the parallel, turned.
+    // One axis goes down the meridian and the other along the parallel, and both are turned.
     const double c = std::cos(turn);
     const double s = std::sin(turn);
     const Vec3 t = vec(c * cosP * cosA - s * sinA, -c * sinP, c * cosP * sinA + s * cosA);
@@ -206,7 +208,7 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float x =
                 lights.direction[0][i] * n.x + lights.direction[1][i] * n.y + lights.direction[2][i] * n.z;
-            // max(x, 0), which the compiler would branch for.
+            // This is max(x, 0) without the branch that the compiler would make.
             const float above = 0.5F * (x + std::abs(x));
             const float weight = lights.samples[i] * lobe.balance(above, lobeSamples, lights.density[i]);
             sums[0][i] += weight * lights.radiance[0][i];
@@ -221,7 +223,7 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3
     return mean.value();
 }
 
-// Calls `work` for each row, from several threads.
+// Calls `work` for each row from several threads.
 template <typename Work>
 void forEachRow(std::uint32_t rows, const Work& work) {
     std::atomic<std::uint32_t> next{0};
@@ -239,7 +241,7 @@ void forEachRow(std::uint32_t rows, const Work& work) {
         try {
             helpers.emplace_back(loop);
         } catch (const std::system_error&) {
-            break;  // those that there are do the work
+            break;  // the threads that exist do the work
         }
     }
     loop();

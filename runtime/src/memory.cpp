@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-// Large enough that 4096 allocations, the least that maxMemoryAllocationCount may be, make 256 GiB. Blocks of
-// a type double up to it, so that what is small takes little.
+// The largest size of a block. maxMemoryAllocationCount is at least 4096, and 4096 blocks of this size make
+// 256 GiB. Blocks of a memory type double up to it, so that small scenes take little memory.
 constexpr VkDeviceSize kBlockBytes = VkDeviceSize{64} << 20;
 constexpr VkDeviceSize kFirstBlockBytes = VkDeviceSize{1} << 20;
 
@@ -97,14 +97,14 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
         return makeError("memory-type", "", "the device has no memory of the kind that a resource needs",
                          "update the driver or use another device");
     }
-    // Linear and optimal resources never share a block, which settles bufferImageGranularity.
+    // Linear and optimal resources never share a block, which satisfies bufferImageGranularity.
     auto block = std::ranges::find_if(blocks_, [&](const Block& candidate) {
         const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
         return candidate.type == *type && candidate.tiling == tiling && reachable &&
                alignUp(candidate.used, requirements.alignment) + requirements.size <= candidate.bytes;
     });
     if (block == blocks_.end()) {
-        // An eighth of the heap keeps small heaps from being taken by one block.
+        // A block takes at most an eighth of the heap, so that one block does not fill a small heap.
         const VkDeviceSize heap = memory.memoryHeaps[memory.memoryTypes[*type].heapIndex].size;
         VkDeviceSize taken = kFirstBlockBytes;
         for (const Block& other : blocks_) {

@@ -1,4 +1,4 @@
-// Device memory in blocks: many resources share an allocation, as drivers allow few of them.
+// Device memory in blocks. Many resources share an allocation, because drivers allow only few allocations.
 #pragma once
 
 #include "device_handle.h"
@@ -14,16 +14,17 @@ inline VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
 
-// Where a resource lives. `mapped` is null for memory that the host can't see.
+// The place of a resource in memory. `mapped` is null for memory that the host can't see.
 struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0;
     std::uint8_t* mapped = nullptr;
 };
 
-enum class Tiling { Linear, Optimal };  // of the resource: buffers are linear
+enum class Tiling { Linear, Optimal };  // tiling of the resource; buffers are linear
 
-// Hands memory out and takes it back all at once, when it is destroyed: after the resources that live in it.
+// Hands out memory and frees all of it when it is destroyed. The resources that live in it must be destroyed
+// before.
 class MemoryPool {
 public:
     explicit MemoryPool(Context::State& context) : context_(&context) {}
@@ -36,7 +37,7 @@ public:
     // Errors: "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call".
     Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
 
-    // Of the allocations, whether handed out or not.
+    // Returns the size of all allocations, including memory that was not handed out.
     VkDeviceSize bytes() const;
 
 private:

@@ -25,7 +25,7 @@ void add(std::vector<MemoryItem>& items, MemoryItem item) {
     known->bytes += item.bytes;
 }
 
-// By binding.
+// Names of the images by binding.
 constexpr std::string_view kImageNames[] = {"surface", "radiance", "accumulated", "residual", "position"};
 static_assert(std::size(kImageNames) == gpu::kFrameImageCount);
 

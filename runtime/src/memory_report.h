@@ -1,4 +1,4 @@
-// Collecting what the public headers list of memory.
+// Collects the memory items that the public headers report.
 #pragma once
 
 #include "resources.h"
@@ -10,7 +10,8 @@
 
 namespace glint {
 
-// Adds a buffer or image, or what it has of another of its name; nothing where it has no handle.
+// Adds a buffer or image to the items, or to the item of the same name. A resource without a handle adds
+// nothing.
 void addTo(std::vector<MemoryItem>& items, std::string name, const Buffer& buffer);
 void addTo(std::vector<MemoryItem>& items, std::string name, const DeviceImage& image);
 

@@ -14,7 +14,8 @@ Box boxOf(const std::array<float, 3>& point) {
     return {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
 }
 
-// Around p + sum of weight * difference for every point of `box` and any differences in their ranges.
+// Returns the box around p + sum of weight * difference, for every point p of `box` and any differences in
+// their ranges.
 Box morphed(Box box, std::span<const Box> targets, std::span<const float> weights) {
     for (std::size_t i = 0; i < std::min(targets.size(), weights.size()); ++i) {
         for (std::size_t axis = 0; axis < 3 && !targets[i].isEmpty(); ++axis) {
@@ -66,7 +67,7 @@ Box transformed(const Box& box, const std::array<float, 12>& rows) {
     if (box.isEmpty()) {
         return box;
     }
-    // Arvo, "Transforming Axis-Aligned Bounding Boxes" (Graphics Gems, 1990).
+    // The method is that of Arvo, "Transforming Axis-Aligned Bounding Boxes" (Graphics Gems, 1990).
     Box result{};
     for (std::size_t row = 0; row < 3; ++row) {
         result.min[row] = result.max[row] = rows[4 * row + 3];

@@ -1,4 +1,4 @@
-// Boxes around what moves, without looking at vertices again.
+// Boxes around moving meshes, computed without reading the vertices again.
 #pragma once
 
 #include <glint/scene_view.h>
@@ -10,7 +10,7 @@
 
 namespace glint {
 
-// Axis-aligned; empty where a min is above its max.
+// An axis-aligned box. It is empty if a min is above its max.
 struct Box {
     std::array<double, 3> min{};
     std::array<double, 3> max{};
@@ -18,24 +18,24 @@ struct Box {
     static Box nothing();
     void extend(const Box& other);
     bool isEmpty() const;
-    double surface() const;                // square metres; 0 where empty
-    double diagonal() const;               // metres; 0 where empty
-    std::array<double, 3> centre() const;  // of a box that is not empty
+    double surface() const;                // square metres; 0 if empty
+    double diagonal() const;               // metres; 0 if empty
+    std::array<double, 3> centre() const;  // requires a box that is not empty
 };
 
-// The box of a box's corners under three rows of four.
+// Returns the box around a box's corners, transformed by three rows of four.
 Box transformed(const Box& box, const std::array<float, 12>& rows);
 
-// What bounds a mesh in every pose of an instance: a box for each joint around the vertices that follow it,
-// and the ranges of the morph targets' differences. A weighted mean of transforms takes a point into the hull
-// of the points that each alone makes of it.
+// Bounds a mesh in every pose of an instance. It has a box for each joint around the vertices that follow the
+// joint, and the ranges of the morph targets' differences. This works because a weighted mean of transforms
+// takes a point into the hull of the points that the single transforms make of it.
 class MotionBounds {
 public:
-    // `primitives`: those of the mesh, and no others.
+    // `primitives` must be those of the mesh and no others.
     explicit MotionBounds(std::span<const PrimitiveView> primitives);
 
-    // In world space. Not less than the mesh at that pose; equal to its box where nothing deforms and nothing
-    // turns.
+    // Returns a box in world space that contains the mesh at that pose. It is the mesh's exact box if nothing
+    // deforms or turns the mesh.
     Box at(const InstanceView& instance) const;
 
 private:
@@ -45,8 +45,8 @@ private:
     };
     struct Part {
         Box rest = Box::nothing();
-        std::vector<JointBox> joints;  // empty: it follows no skin
-        std::vector<Box> targets;      // ranges of differences
+        std::vector<JointBox> joints;  // empty if the mesh follows no skin
+        std::vector<Box> targets;      // ranges of the targets' differences
     };
     std::vector<Part> parts_;
 };

@@ -1,4 +1,4 @@
-// SceneMotion: an update, from the pose to the commands.
+// SceneMotion: records an update, from the pose to the commands.
 #include "motion_record.h"
 
 #include "draw_batches.h"
@@ -16,7 +16,7 @@ namespace glint {
 namespace {
 
 constexpr VkPipelineStageFlags2 kBuildStage = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
-// Poses and records into the pass that deforms, and instances into the build.
+// Copied poses and records are visible to the pass that deforms, and copied instances to the build.
 constexpr MemoryDependency kCopyToMotion{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | kBuildStage,
                                          VK_ACCESS_2_SHADER_READ_BIT};
@@ -25,7 +25,7 @@ constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
                                           VK_ACCESS_2_SHADER_READ_BIT};
 constexpr MemoryDependency kBlasToTlas{kBuildStage, VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
                                        kBuildStage, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
-// Whoever draws and traces next.
+// Results are visible to all commands that draw and trace next.
 constexpr MemoryDependency kMotionToAll{
     kBuildStage | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_SHADER_WRITE_BIT |
@@ -99,8 +99,8 @@ Decisions decide(SceneMotion& motion, std::vector<bool> deformed, bool placedCha
     return decisions;
 }
 
-// A top level that is built anew gets its instances where they are now; an update keeps the order of the last
-// build.
+// Orders the instances for a top level that is built anew, by their present positions. An update keeps the
+// order of the last build.
 void orderPlaced(SceneMotion& motion, const InstanceOrder& order, std::span<const InstanceView> instances) {
     const std::vector<std::uint32_t> places = order.at(instances, motion.partInstances);
     motion.partInstances = permuted<PartInstance>(motion.partInstances, places);
@@ -218,7 +218,7 @@ void stage(const GpuScene::State& state, std::span<const InstanceView> instances
 void recordAll(GpuScene::State& state, VkCommandBuffer commands, const Decisions& decisions) {
     SceneMotion& motion = *state.motion;
     motion.timer.recordReset(commands);
-    // Frames that still read what is overwritten here.
+    // Earlier frames may still read what the copies overwrite.
     recordDependency(state.context, commands, kAllToAll);
     recordCopies(state, commands);
     if (motion.deformer) {

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// Whether a box has left the place that it had at the build by more than its length there.
+// Whether a box has moved, since the build, by more than the length that it had then.
 bool hasLeft(const Box& built, const Box& now) {
     if (built.isEmpty() || now.isEmpty()) {
         return built.isEmpty() != now.isEmpty();

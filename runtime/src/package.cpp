@@ -11,7 +11,7 @@ namespace glint {
 
 namespace {
 
-// A table above this is no package: 256 MiB hold more than a million primitives and materials.
+// A larger file is not a package's table: 256 MiB hold more than a million primitives and materials.
 constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the elements of tables.bin promise each other.
+// Checks that the elements of tables.bin agree with each other.
 #include "package_state.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ Status checkFiles(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
-// The header says what the modules can do, no more and no less.
+// The modules must match what the header says: none may be missing, and there may be no others.
 Status checkModules(const Package::State& state, const std::string& where) {
     std::set<package::ModuleKey> present;
     for (const package::ModuleEntry& module : state.modules) {
@@ -151,7 +151,8 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
         return altered(where,
                        name + " has shader ID " + std::to_string(entry.shaderId) + ", which is retired");
     }
-    // The key may hold more than its case knows: lobes that primary surfaces have and hits do not keep.
+    // The key may have features that its case does not know: lobes that primary surfaces have and hits do not
+    // keep.
     if ((shadedBy.always & ~key) != 0) {
         return altered(where, name + " lacks features that its case takes for granted");
     }
@@ -187,7 +188,7 @@ Status checkPrimitives(const Package::State& state, const package::SceneEntry& s
 
 Status checkMaterials(const Package::State& state, const package::SceneEntry& scene,
                       const std::string& where) {
-    // A slot that no key reads holds zero, whether or not there is a texture zero.
+    // A slot that no key reads holds zero, even if there is no texture zero.
     const std::uint32_t textureEnd = std::max(scene.textureCount, 1U);
     const std::uint32_t samplerEnd = std::max(scene.samplerCount, 1U);
     for (const gpu::MaterialRecord& material :
@@ -203,7 +204,7 @@ Status checkMaterials(const Package::State& state, const package::SceneEntry& sc
     return okStatus();
 }
 
-// A range of a section, which follows the range of the scene before.
+// A range of a section. It follows the range of the scene before.
 struct SceneRange {
     std::uint32_t package::SceneEntry::*first;
     std::uint32_t package::SceneEntry::*count;

@@ -1,4 +1,4 @@
-// Files of a package: reading them, and keeping to the package's folder.
+// Reads the files of a package and refuses files outside the package's folder.
 #include "package_state.h"
 
 #include <xxhash.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 constexpr std::size_t kSpirvHeaderBytes = 20;
-// A relative path of plain components: nothing that leads out of the folder by name.
+// Whether a name is a relative path of plain components, so that the name does not lead out of the folder.
 bool staysInside(const std::filesystem::path& name) {
     if (name.empty() || name.is_absolute() || name.has_root_path()) {
         return false;
@@ -22,7 +22,7 @@ bool staysInside(const std::filesystem::path& name) {
         name, [](const std::filesystem::path& part) { return !part.empty() && part != ".." && part != "."; });
 }
 
-// Nor by a symbolic link. `file` exists.
+// Whether symbolic links keep the file inside the folder too. `file` must exist.
 bool resolvesInside(const std::filesystem::path& folder, const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::path root = std::filesystem::canonical(folder, error);
@@ -64,7 +64,8 @@ Result<std::vector<std::uint32_t>> readModule(const PackageFiles& files, const s
     return words;
 }
 
-// One byte more than allowed tells the caller that the file is longer, without reading all of it.
+// Reads up to one byte more than allowed. That byte tells the caller that the file is longer, without reading
+// all of it.
 Result<std::vector<std::uint8_t>> readWhole(const std::filesystem::path& path, const char* missingId,
                                             std::uint64_t maxBytes) {
     const std::string where = path.string();
@@ -109,7 +110,7 @@ Result<std::vector<std::uint8_t>> FolderFiles::read(const std::string& name, con
     return bytes;
 }
 
-// Of two files of one name the first counts.
+// If two files have the same name, the first one counts.
 MemoryFiles::MemoryFiles(std::span<const package::EmbeddedFile> files) {
     for (const package::EmbeddedFile& file : files) {
         files_.emplace(file.name, file.bytes);
@@ -136,7 +137,7 @@ Result<std::vector<std::uint8_t>> MemoryFiles::read(const std::string& name, con
 Status readModules(Package::State& state, const PackageFiles& files) {
     for (const package::ModuleEntry& entry : state.modules) {
         const std::string name(state.strings.data() + entry.file.offset, entry.file.length);
-        // Entries that share a file agree on its size and hash: checkTables() has seen to it.
+        // Entries that share a file have the same size and hash, which checkTables() has ensured.
         if (state.spirv.contains(name)) {
             continue;
         }

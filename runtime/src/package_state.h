@@ -18,11 +18,11 @@
 
 namespace glint {
 
-// The hint of errors that only another package mends.
+// The hint of errors that only a new package can fix.
 inline constexpr const char* kRecompile = "compile the package again with `glint compile`";
 
 struct Package::State {
-    std::vector<std::uint8_t> tables;  // the file; the spans below point into it
+    std::vector<std::uint8_t> tables;  // the bytes of the file; the spans below point into them
     package::PackageHeader header{};
     std::span<const package::ModuleEntry> modules;
     std::span<const gpu::MaterialRecord> materials;
@@ -32,21 +32,21 @@ struct Package::State {
     std::span<const char> strings;
     std::span<const package::CaseEntry> cases;
     std::span<const package::SceneEntry> scenes;
-    // By file name: entries that name one file share its words.
+    // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };
 
-// Of the header and the cases.
+// Returns the shape that the header and the cases describe.
 package::PackageShape shapeOf(const Package::State& state);
 
-// Reads the header, the section table and the spans out of state.tables. `where` is the file's name.
-// Errors: "package-foreign" (no package), "package-version", "package-truncated", "package-altered".
+// Reads the header, the section table and the spans from state.tables. `where` is the file's name. Errors:
+// "package-foreign" (not a package), "package-version", "package-truncated", "package-altered".
 Status readTables(Package::State& state, const std::string& where);
 
-// Every index, reference and promise of the tables. Error "package-altered", with what is wrong.
+// Checks every index, reference and promise of the tables. Error "package-altered" says what is wrong.
 Status checkTables(const Package::State& state, const std::string& where);
 
-// Where the files of a package come from.
+// The source of a package's files.
 class PackageFiles {
 public:
     PackageFiles() = default;
@@ -54,15 +54,15 @@ public:
     PackageFiles& operator=(const PackageFiles&) = delete;
     virtual ~PackageFiles() = default;
 
-    // What messages call a file.
+    // Returns the name that messages use for a file.
     virtual std::string where(const std::string& name) const = 0;
-    // A whole file, or its first maxBytes + 1 bytes if it is longer. Errors: `missingId` where there is no
-    // such file, "package-read", "package-file-name".
+    // Returns a whole file. If the file is longer than maxBytes, returns its first maxBytes + 1 bytes.
+    // Errors: `missingId` if there is no such file, "package-read", "package-file-name".
     virtual Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
                                                    std::uint64_t maxBytes) const = 0;
 };
 
-// Files below a folder: no name and no link leads out of it.
+// Files below a folder. No name and no link may lead out of it.
 class FolderFiles final : public PackageFiles {
 public:
     explicit FolderFiles(std::filesystem::path folder);
@@ -74,7 +74,7 @@ private:
     std::filesystem::path folder_;
 };
 
-// Files in memory, which must outlive it.
+// Files in memory. The memory must outlive this object.
 class MemoryFiles final : public PackageFiles {
 public:
     explicit MemoryFiles(std::span<const package::EmbeddedFile> files);

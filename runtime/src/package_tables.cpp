@@ -1,4 +1,4 @@
-// tables.bin as bytes: header, hash, sections.
+// Reads tables.bin from bytes: header, hash, sections.
 #include "interop_hash.h"
 #include "package_state.h"
 
@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// As PackageHeader::contentHash says.
+// Computes the hash that PackageHeader::contentHash describes.
 std::uint64_t contentHash(package::PackageHeader header, std::span<const std::uint8_t> file) {
     header.contentHash = 0;
     return XXH3_64bits_withSeed(file.data() + sizeof(header), file.size() - sizeof(header),
@@ -62,7 +62,8 @@ Status readHeader(Package::State& state, const std::string& where) {
     return okStatus();
 }
 
-// Bounds of a section, then its elements in place. Only the division can't overflow.
+// Checks the bounds of a section, then makes a span of its elements in place. The check divides, because a
+// product could overflow.
 template <typename T>
 Status readSection(const Package::State& state, const package::PackageSection& section,
                    const std::string& where, std::span<const T>& elements) {

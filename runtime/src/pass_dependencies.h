@@ -6,7 +6,8 @@
 
 namespace glint {
 
-// Everything before against everything after: frames follow each other, whoever recorded the one before.
+// All earlier commands against all later ones. Frames then follow each other, whoever recorded the frame
+// before.
 inline constexpr MemoryDependency kAllToAll{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
@@ -14,7 +15,7 @@ inline constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_
 inline constexpr VkPipelineStageFlags2 kRasterShaders =
     VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 
-// Dependencies of the passes, which run in `stages`.
+// The dependencies between passes, which run in `stages`.
 struct PassDependencies {
     explicit PassDependencies(VkPipelineStageFlags2 stages)
         // Fills count as clears or as copies, depending on the edition of the specification.
@@ -40,12 +41,12 @@ struct PassDependencies {
     MemoryDependency clearToPasses;
     MemoryDependency rasterToPasses;
     MemoryDependency passToPass;
-    MemoryDependency passToDispatch;  // of one that writes indirect arguments
-    MemoryDependency passToClear;     // of lists that are filled anew
-    MemoryDependency passesToCopy;    // counters that no pass touched were last written by a fill
+    MemoryDependency passToDispatch;  // after a pass that writes indirect arguments
+    MemoryDependency passToClear;     // before lists are filled anew
+    MemoryDependency passesToCopy;    // a fill wrote the counters that no pass changed
 };
 
-// Of passes that are not raster passes.
+// Returns the stages of the passes that are not raster passes.
 inline VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
     const bool rayPipeline = choice.tracer == package::kTracerRayPipeline;
     return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |

@@ -108,7 +108,7 @@ void PassRecorder::drawScene() {
     bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
     for (const DrawBatch& draw : state_.scene.batches) {
         vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
-        // glTF's fronts are counter-clockwise on screen, unless a mirroring transform turns them.
+        // A front is counter-clockwise on screen in glTF, unless a mirroring transform turns it.
         vk_.CmdSetFrontFace(commands_,
                             draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
         pushed_.geometry = draw.geometry;

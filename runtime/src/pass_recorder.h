@@ -1,4 +1,4 @@
-// Records one pass after the other, each with its label and its timer.
+// Records passes one after the other, each with its label and its timer.
 #pragma once
 
 #include "pass_dependencies.h"
@@ -13,23 +13,24 @@ class PassRecorder {
 public:
     PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing);
 
-    // A stretch of several passes, timed where passes are not; its number, for the end.
+    // Begins a stretch of several passes, which is timed if passes are not. Returns its number for
+    // endStretch().
     std::uint32_t beginStretch(const PassLabel& label);
     void endStretch(std::uint32_t stretch);
 
     void barrier(const MemoryDependency& dependency);
-    // Descriptor sets of every kind of pass but the raster pass.
+    // Binds the descriptor sets for every kind of pass except the raster pass.
     void bindSets();
-    // Into the G-buffer's visibility image.
+    // Draws the scene into the G-buffer's visibility image.
     void drawScene();
-    // Over the image.
+    // Dispatches the pass over the pixels of the image.
     void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
-    // So many workgroups.
+    // Dispatches `groups` workgroups.
     void dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups);
-    // Over a list whose length the device knows: entry `index` of the arguments.
+    // Dispatches over a list whose length the device knows. `index` is the entry of the arguments.
     void dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
                       std::uint32_t index);
-    // Which bucket the next dispatch shades.
+    // Sets the bucket that the next dispatch shades.
     void setBucket(std::uint32_t bucket);
 
     const PassDependencies& dependencies() const {

@@ -59,7 +59,7 @@ private:
     }
 
     void clear(const FrameOptions& frame) {
-        // The last counter is of the accumulated picture: it starts with it.
+        // The last counter belongs to the accumulated picture, so it is reset with the picture only.
         static_assert(gpu::kCounterNonFinite + 1 == gpu::kCounterCount);
         const bool starts = frame.sampleIndex == 0 || !state_.recorded;
         fill(state_.frame.counters,
@@ -67,7 +67,7 @@ private:
         clearLists();
     }
 
-    // What a round of rays starts with.
+    // Clears the lists at the start of a round of rays.
     void clearLists() {
         fill(state_.frame.bucketCounts, VK_WHOLE_SIZE, 0);
         fill(state_.frame.bucketCursors, VK_WHOLE_SIZE, 0);
@@ -79,7 +79,7 @@ private:
         passes_.barrier(dependencies().passToPass);
     }
 
-    // Rays of all effects that are on: all at once, or effect by effect.
+    // Records the rays of all effects that are on, either together or effect by effect.
     void recordEffects(std::uint32_t effects) {
         const std::uint32_t withRays = package::rayEffects(effects);
         std::vector<std::uint32_t>& rounds = state_.rounds;
@@ -108,7 +108,7 @@ private:
     }
 
     void startRound() {
-        // Lists that the round before read; the counts of the lists, which are the first.
+        // The round before read these lists. Their counts are the first counters.
         static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
         passes_.barrier(dependencies().passToClear);
         fill(state_.frame.counters, kRoundCounterBytes, 0);
@@ -116,10 +116,10 @@ private:
         passes_.barrier(dependencies().clearToPasses);
     }
 
-    // What counters() says of the round; the next one clears it.
+    // Copies the round's counters for counters(), before the next round clears them.
     void finishRound(std::uint32_t round) {
         passes_.barrier(dependencies().passesToCopy);
-        // The list's own counts, round by round, behind the other counters.
+        // The list's own counts follow the other counters, round by round.
         const VkDeviceSize place = readbackRound(state_.size, round);
         copy(state_.frame.counters, 0, kRoundCounterBytes, place);
         if (state_.size.ordered) {
@@ -134,7 +134,7 @@ private:
             passes_.dispatchPixels({name + " walk", Pass::RefractionWalk}, pass(ModuleRole::RefractionWalk));
             passes_.barrier(dependencies().passToPass);
         }
-        // Effects append to the same list, in any order: they need none among themselves.
+        // Effects append to the same list in any order, so they need no barrier among themselves.
         passes_.dispatchPixels({name + " rays", Pass::EffectRays},
                                state_.pipelines.effectRays[package::effectNumber(info.effect)]);
     }
@@ -155,20 +155,21 @@ private:
             dispatchRays({"copy", Pass::Copy}, ModuleRole::BucketCopy);
         }
         if (state_.choice.checksOrder) {
-            // Not by the number of rays: without any, buckets have to be empty.
+            // This does not dispatch by the number of rays: if there are none, it must check that buckets are
+            // empty.
             passes_.dispatchPixels({"check order", Pass::CheckOrder}, pass(ModuleRole::OrderCheck));
             passes_.barrier(dependencies().passToPass);
         }
     }
 
     void recordBuckets() {
-        // Buckets write different samples: they need no order among themselves.
+        // Buckets write different samples, so they need no barrier among themselves.
         const Buffer& arguments = state_.frame.bucketDispatch;
         passes_.setBucket(0);
         passes_.dispatchList({"shade miss", Pass::ShadeMiss}, pass(ModuleRole::ShadeMiss), arguments, 0);
         for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
             if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
-                continue;  // a retired shader ID, whose bucket stays empty
+                continue;  // the bucket of a retired shader ID stays empty
             }
             passes_.setBucket(1 + shaderId);
             passes_.dispatchList({"shade " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
@@ -177,7 +178,7 @@ private:
         passes_.barrier(dependencies().passToPass);
     }
 
-    // Shades what the rays of the list hit.
+    // Shades the hits of the rays in the list.
     void recordHits() {
         passes_.dispatchGroups({"ray dispatch", Pass::RayDispatch}, pass(ModuleRole::RayDispatch), 1);
         passes_.barrier(dependencies().passToDispatch);

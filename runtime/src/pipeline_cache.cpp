@@ -14,14 +14,14 @@ namespace {
 constexpr std::array<char, 8> kMagic{'G', 'l', 'i', 'n', 't', 'P', 'L', 'C'};
 constexpr std::uint32_t kVersion = 1;
 
-// In the byte order of the machine, as what the driver wrote is good for that alone.
+// The header is in the byte order of the machine, because the driver's data is valid on that machine only.
 struct Header {
     std::array<char, 8> magic = kMagic;
     std::uint32_t version = kVersion;
     PipelineCacheOwner owner;
     std::uint32_t reserved = 0;
-    std::uint64_t bytes = 0;     // of the data, which follows
-    std::uint64_t checksum = 0;  // of the header with a 0 here, and of the data
+    std::uint64_t bytes = 0;     // size of the data, which follows
+    std::uint64_t checksum = 0;  // of the header with a checksum of 0, and of the data
 };
 static_assert(sizeof(PipelineCacheOwner) == 4 * sizeof(std::uint32_t) + VK_UUID_SIZE);
 static_assert(sizeof(Header) == 64 && offsetof(Header, bytes) == 48, "there would be padding to hash");
@@ -36,7 +36,8 @@ Diagnostic refusal(const char* why) {
     return makeError("pipeline-cache", "", why, "delete it: pipelines are made without it");
 }
 
-// Vulkan 1.3 specification, "Pipeline Cache Header": what the driver itself should check.
+// Compares the fields that the driver itself should check (Vulkan 1.3 specification, "Pipeline Cache
+// Header").
 bool isOf(const PipelineCacheOwner& owner, std::span<const std::uint8_t> data) {
     VkPipelineCacheHeaderVersionOne header{};
     if (data.size() < sizeof(header)) {
@@ -109,7 +110,7 @@ Result<std::vector<std::uint8_t>> Context::pipelineCacheData() const {
     const VkDevice device = state_->handles.device;
     std::vector<std::uint8_t> data;
     VkResult result = VK_INCOMPLETE;
-    // Other threads may add to it between the two calls.
+    // Other threads may add to the cache between the two calls.
     while (result == VK_INCOMPLETE) {
         std::size_t bytes = 0;
         result = vk.GetPipelineCacheData(device, state_->pipelineCache, &bytes, nullptr);
@@ -141,7 +142,7 @@ Status Context::addPipelineCache(std::span<const std::uint8_t> data) {
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineCache", result);
     }
-    // What is there already goes into the new one, which is the larger as a rule.
+    // The existing cache is merged into the added one, which is usually larger.
     result = vk.MergePipelineCaches(device, added, 1, &state_->pipelineCache);
     if (result != VK_SUCCESS) {
         vk.DestroyPipelineCache(device, added, nullptr);

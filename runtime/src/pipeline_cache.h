@@ -1,5 +1,5 @@
-// What a driver keeps of pipelines, wrapped so that a file of it can be told from anything else: drivers may
-// crash on data that is damaged or of another driver, and Vulkan's own header has no checksum.
+// A wrapper for a driver's pipeline cache data, which distinguishes a file of it from any other file. Drivers
+// may crash on data that is damaged or of another driver, and Vulkan's own header has no checksum.
 #pragma once
 
 #include <glint/result.h>
@@ -14,7 +14,7 @@
 
 namespace glint {
 
-// Whose pipelines they are.
+// The device and driver that a cache belongs to.
 struct PipelineCacheOwner {
     std::uint32_t vendorId = 0;
     std::uint32_t deviceId = 0;
@@ -25,14 +25,15 @@ struct PipelineCacheOwner {
     friend bool operator==(const PipelineCacheOwner&, const PipelineCacheOwner&) = default;
 };
 
-// All of it in hexadecimal digits and hyphens.
+// Returns the owner in hexadecimal digits and hyphens.
 std::string nameOf(const PipelineCacheOwner& owner);
 
-// `data`: of vkGetPipelineCacheData.
+// `data` must come from vkGetPipelineCacheData.
 std::vector<std::uint8_t> wrapPipelineCache(const PipelineCacheOwner& owner,
                                             std::span<const std::uint8_t> data);
 
-// The data in what wrapPipelineCache() made. Error "pipeline-cache": damaged, or of another owner.
+// Returns the data inside a result of wrapPipelineCache(). Error "pipeline-cache": it is damaged or has
+// another owner.
 Result<std::span<const std::uint8_t>> unwrapPipelineCache(const PipelineCacheOwner& owner,
                                                           std::span<const std::uint8_t> wrapped);
 

@@ -17,7 +17,7 @@ std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
 
 Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
                                                 VkPipelineCreateFlags flags, std::uint32_t threads) {
-    // Of what runs at the same time the longest should not be the last to begin.
+    // The longest job must not begin last, as the others would then wait for it.
     std::vector<std::size_t> order(jobs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t job) { return jobs[job].wordCount; });
@@ -36,7 +36,7 @@ Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> job
         try {
             helpers.emplace_back(work);
         } catch (const std::system_error&) {
-            break;  // no more threads: the ones there are do it all
+            break;  // no more threads: the existing ones do all the work
         }
     }
     work();

@@ -1,4 +1,4 @@
-// Pipelines that are made by several threads at once.
+// Makes pipelines with several threads at once.
 #pragma once
 
 #include "shader_modules.h"
@@ -13,24 +13,25 @@
 namespace glint {
 
 struct PipelineJob {
-    std::string name;           // of the pipeline, for reports
-    std::size_t wordCount = 0;  // of its SPIR-V: how much work it may be
-    // Called from any thread, with nothing that another job changes.
+    std::string name;           // name of the pipeline, for reports
+    std::size_t wordCount = 0;  // words of its SPIR-V, which estimate the work
+    // Any thread may call this. It must use nothing that another job changes.
     std::function<Result<UniquePipeline>(PipelineCreation& creation)> make;
 };
 
 struct MadePipeline {
     std::string name;
     UniquePipeline handle;
-    VkPipelineCreationFeedback feedback{};  // without the flag VALID: the driver says nothing
+    VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives no feedback
 };
 
-// Threads for that many jobs, where `wanted` are asked for; 0: as many as the machine runs at once.
+// Returns the number of threads for that many jobs, at most `wanted`. 0 asks for as many as the machine runs
+// at once.
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount);
 
-// The pipelines in order of their jobs, whatever the order in which they were made: the largest is begun
-// first. `threads`: this one included, and not 0; fewer where the system gives no more. All jobs run; the
-// error is that of the first that failed.
+// Returns the pipelines in the order of their jobs. The largest job begins first. `threads` includes the
+// calling thread and must not be 0; if the system gives fewer threads, fewer are used. All jobs run. The
+// error is that of the first job that failed.
 Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
                                                 VkPipelineCreateFlags flags, std::uint32_t threads);
 

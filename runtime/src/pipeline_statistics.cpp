@@ -9,12 +9,12 @@
 namespace glint {
 namespace {
 
-// Drivers need not end a text that fills its field.
+// A driver need not terminate a text that fills its field.
 std::string textOf(const char (&field)[VK_MAX_DESCRIPTION_SIZE]) {
     return {field, strnlen(field, sizeof(field))};
 }
 
-// All that `ask(count, list)` lists, where the first call gives the number.
+// Collects everything that `ask(count, list)` lists. The first call returns the number.
 template <typename Structure, typename Ask>
 VkResult listAll(const Structure& empty, const Ask& ask, std::vector<Structure>& list) {
     VkResult result = VK_INCOMPLETE;

@@ -1,4 +1,4 @@
-// Reading what a driver says of a pipeline.
+// Reads what a driver reports about a pipeline.
 #pragma once
 
 #include "context_state.h"
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Requires DeviceHandles::pipelineStatistics, and a pipeline that was made with
+// Requires DeviceHandles::pipelineStatistics and a pipeline that was made with
 // VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
 Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline);
 

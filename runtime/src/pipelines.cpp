@@ -36,7 +36,8 @@ Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayo
     return okStatus();
 }
 
-// Vertices are pulled by address, so there is no vertex input; reversed depth; facing set draw by draw.
+// Shaders fetch vertices by address, so there is no vertex input. Depth is reversed. Each draw sets its front
+// face.
 Result<UniquePipeline> createGBuffer(Context::State& context, const Package& package, VkPipelineLayout layout,
                                      PipelineCreation& creation) {
     Result<UniqueShaderModule> vertex =
@@ -120,7 +121,7 @@ bool isGraphics(const package::RoleInfo& info) {
     return info.kind == package::ShaderKind::Vertex || info.kind == package::ShaderKind::Fragment;
 }
 
-// Whether the choice runs a module that its shape has.
+// Whether the choice runs a module of its shape.
 bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const package::ModuleKey& key) {
     if (info.repeated == package::Repeated::ByOrdering) {
         return key.index == static_cast<std::uint32_t>(choice.ordering);
@@ -131,11 +132,11 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 
-// Pipelines to make, and what they are for.
+// The pipelines to make and the passes that use them.
 struct PipelinePlan {
     std::vector<PipelineJob> jobs;
     std::vector<std::pair<package::ModuleKey, std::size_t>> computePasses;  // each with its job
-    std::vector<RayPass> rayPasses;                                         // the last jobs, in this order
+    std::vector<RayPass> rayPasses;                                         // made by the last jobs
 };
 
 PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipelineLayout layout) {
@@ -146,10 +147,10 @@ PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipeli
             }};
 }
 
-// Every compute pass and case of the choice.
+// Plans every compute pass and case of the choice.
 void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
                        VkPipelineLayout layout, PipelinePlan& plan) {
-    // The loader gives entries that name one file the same words.
+    // The loader gives the same words to entries that name the same file.
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
@@ -201,7 +202,7 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
     package::PackageShape shape = package.shape();
     shape.strategies = choice.strategy;
     shape.tracers = choice.tracer;
-    shape.deforms = false;  // that pass is the scene's own
+    shape.deforms = false;  // the scene has that pass itself
     return shape;
 }
 

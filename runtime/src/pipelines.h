@@ -1,4 +1,4 @@
-// Pipelines of a strategy.
+// The pipelines of a strategy.
 #pragma once
 
 #include "pipeline_jobs.h"
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// Which of a package's modules a renderer runs. Each field is one value, not a set.
+// The choice among a package's modules that a renderer runs. Each field is one value, not a set.
 struct PipelineChoice {
     package::Strategy strategy = package::kStrategyVisibility;
     package::Tracer tracer = package::kTracerRayQuery;
@@ -22,13 +22,13 @@ struct PipelineChoice {
     bool batchEffects = false;
 };
 
-// How they are made.
+// How pipelines are made.
 struct PipelineMaking {
     std::uint32_t threads = 0;       // 0: as many as the machine runs at once
     bool captureStatistics = false;  // requires DeviceHandles::pipelineStatistics
 };
 
-// A pass: a compute pipeline, or a ray tracing pipeline with its shader binding table.
+// The pipeline of a pass: a compute pipeline, or a ray tracing pipeline with its shader binding table.
 struct PassPipeline {
     VkPipeline pipeline = VK_NULL_HANDLE;
     bool traces = false;
@@ -37,7 +37,7 @@ struct PassPipeline {
     VkStridedDeviceAddressRegionKHR hit{};
 };
 
-// Members are destroyed in reverse: the pool's memory last.
+// Members are destroyed in reverse order: the pool's memory last.
 struct Pipelines {
     explicit Pipelines(Context::State& context) : pool(context) {}
 
@@ -46,25 +46,25 @@ struct Pipelines {
     UniquePipelineLayout layout;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
-    std::vector<PassPipeline> effectRays;  // by package::effectNumber()
-    std::vector<PassPipeline> cases;       // by shader ID; cases that share a module share a pipeline
+    std::vector<PassPipeline> effectRays;  // indexed by package::effectNumber()
+    std::vector<PassPipeline> cases;       // indexed by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
-    std::uint32_t threads = 0;  // that made them
+    std::uint32_t threads = 0;  // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
 };
 
-// What decides which of the package's modules the choice has.
+// Returns the part of the package's shape that decides which of its modules the choice needs.
 package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
 
-// Stages that push constants are for.
+// Returns the stages that push constants are for.
 VkShaderStageFlags pushStages(const Context::State& context);
 
-// Of a pipeline, for reports: the role of its module, and its case, effect or ordering.
+// Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
 std::string pipelineName(const Package& package, const package::ModuleKey& key);
 
-// All pipelines of the choice. `shaderIds`: of the scene's geometry records, in their order. Errors: those of
-// buffers and submissions, "vulkan-call".
+// Makes all pipelines of the choice. `shaderIds` are those of the scene's geometry records, in their order.
+// Errors: those of buffers and submissions, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds,

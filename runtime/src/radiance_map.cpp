@@ -8,13 +8,15 @@
 namespace glint {
 namespace {
 
-// The source cells [first, first + weights.size()) that a target cell covers, and what share of it each has.
+// The source cells [first, first + weights.size()) that a target cell covers, and the share that each has of
+// it.
 struct Coverage {
     std::uint32_t first = 0;
-    std::vector<double> weights;  // of sum 1
+    std::vector<double> weights;  // their sum is 1
 };
 
-// Cells divide [0, 1] evenly; `measure` maps that to the measure in which the shares count, monotonically.
+// Cells divide [0, 1] evenly. `measure` is monotonic and maps [0, 1] to the measure by which shares are
+// weighted.
 template <typename Measure>
 std::vector<Coverage> coverages(std::uint32_t sources, std::uint32_t targets, const Measure& measure) {
     std::vector<Coverage> result(targets);

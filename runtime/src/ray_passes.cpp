@@ -11,7 +11,7 @@ SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index
     return package.spirv({role, index, package::kTracerRayPipeline});
 }
 
-// Of passes that only trace: what rays find is shaded elsewhere.
+// Returns the source of passes that only trace. Other passes shade what their rays find.
 RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> rayGeneration) {
     RayPipelineSource source;
     source.rayGeneration = std::move(rayGeneration);
@@ -21,11 +21,12 @@ RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> 
     return source;
 }
 
-// Of the strategy hit-shaders: a record for each geometry, with the hit group of its shader ID.
+// Returns the source of the strategy hit-shaders. Each geometry has a record, with the hit group of its
+// shader ID.
 RayPipelineSource hitShaderSource(const Package& package, std::span<const std::uint32_t> shaderIds) {
     RayPipelineSource source;
     source.rayGeneration = {rayWords(package, ModuleRole::HitTrace)};
-    // By miss index: rays of the list, shadow rays.
+    // The miss indices are those of rays in the list and of shadow rays, in this order.
     source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
     source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
     std::map<std::uint32_t, std::uint32_t> groups;  // by shader ID; retired ones have none
@@ -51,7 +52,8 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
     return source;
 }
 
-// Cases that trace their shadow rays: one pipeline, a ray generation shader for each distinct module.
+// Plans the cases that trace their own shadow rays. They share one pipeline, which has a ray generation
+// shader for each distinct module.
 RayPass planCases(const Package& package) {
     RayPass pass;
     pass.name = std::string(package::roleName(ModuleRole::ShadeCase));

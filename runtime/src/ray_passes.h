@@ -1,4 +1,4 @@
-// Passes that a ray tracing pipeline runs.
+// The passes that a ray tracing pipeline runs.
 #pragma once
 
 #include "pipelines.h"
@@ -13,25 +13,25 @@
 
 namespace glint {
 
-// What a ray tracing pipeline is to be made of, and what for.
+// The parts of a ray tracing pipeline, and the pass that it serves.
 struct RayPass {
     std::string name;  // for reports
     package::ModuleRole role{};
     RayPipelineSource source;
-    // Of cases, which share a pipeline: by shader ID the ray generation shader of the source; retired ones
+    // For cases, which share a pipeline: the source's ray generation shader by shader ID. Retired shader IDs
     // have none.
     std::map<std::uint32_t, std::size_t> shaderOfCase;
 };
 
-// Those of the choice. `shaderIds`: of the scene's geometry records, in their order. The sources point into
-// the package.
+// Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.
+// The sources point into the package.
 std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
                                    std::span<const std::uint32_t> shaderIds);
 
-// SPIR-V of all stages.
+// Returns the number of SPIR-V words of all stages.
 std::size_t wordCount(const RayPipelineSource& source);
 
-// Makes the table of the pass, whose pipeline is among those that `pipelines` owns, and adds what it is for.
+// Makes the shader binding table of the pass and adds the pass to `pipelines`, which must own `pipeline`.
 // Errors: those of buffers and submissions, "vulkan-call".
 Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
                   Pipelines& pipelines);

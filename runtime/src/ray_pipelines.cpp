@@ -11,15 +11,15 @@
 namespace glint {
 namespace {
 
-// Stages and groups of a pipeline in the making. Groups are in the order of the source: ray generation, miss,
-// hit.
+// Stages and groups of a pipeline that is being made. Groups are in the order of the source: ray generation,
+// miss, hit.
 struct Parts {
     std::vector<UniqueShaderModule> modules;
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     std::vector<VkRayTracingShaderGroupCreateInfoKHR> groups;
 };
 
-// The index of the new stage.
+// Returns the index of the new stage.
 Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits stage, SpirvWords words,
                                Parts& parts) {
     Result<UniqueShaderModule> module = createShaderModule(context, words);
@@ -95,13 +95,13 @@ Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source
     return parts;
 }
 
-// Where the records of a table are, from its start.
+// The offsets of a table's records from its start.
 struct TableLayout {
-    // Handles have 32 bytes and alignments are 32 and 64 at most, strides 4096 at least: all by the
-    // specification's limits, so that no stride is above the device's.
+    // By the limits of the specification, handles have 32 bytes, alignments are at most 32 and 64, and the
+    // largest stride is at least 4096. No stride is therefore above the device's limit.
     VkDeviceSize handleBytes = 0;
-    VkDeviceSize stride = 0;               // of misses and hits
-    VkDeviceSize rayGenerationStride = 0;  // each begins a region
+    VkDeviceSize stride = 0;               // stride of miss and hit records
+    VkDeviceSize rayGenerationStride = 0;  // each record begins a region
     VkDeviceSize missOffset = 0;
     VkDeviceSize hitOffset = 0;
     VkDeviceSize bytes = 0;
@@ -120,7 +120,7 @@ TableLayout layOutTable(const Context::State& context, const RayPipelineSource& 
     return layout;
 }
 
-// The table's bytes, from the handles of all groups.
+// Returns the table's bytes, made from the handles of all groups.
 std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const TableLayout& layout,
                                     const std::vector<std::uint8_t>& handles) {
     std::vector<std::uint8_t> bytes(layout.bytes);
@@ -192,7 +192,7 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
     }
     const TableLayout layout = layOutTable(context, source);
     const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
-    // Nothing says that the buffer itself is so aligned.
+    // Vulkan does not guarantee this alignment for the buffer itself.
     Result<Buffer> buffer =
         createBuffer(context, pool, layout.bytes + alignment,
                      VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -221,7 +221,7 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
     table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};
     table.hit = {start + layout.hitOffset, layout.stride, layout.bytes - layout.hitOffset};
     if (source.hitRecords.empty()) {
-        // Instances have record offsets; without a stride all come to the one record.
+        // Instances have record offsets. With a stride of 0 all of them use the only record.
         table.hit.stride = 0;
     }
     return table;

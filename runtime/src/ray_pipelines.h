@@ -12,19 +12,19 @@ namespace glint {
 
 using SpirvWords = std::span<const std::uint32_t>;
 
-// What a pipeline and its table are made of. Rays of its ray generation shaders do not recurse.
+// The modules of a pipeline and of its table. Rays of its ray generation shaders do not recurse.
 struct RayPipelineSource {
-    std::vector<SpirvWords> rayGeneration;  // a pass each
-    std::vector<SpirvWords> miss;           // by miss index
-    std::vector<SpirvWords> closestHit;     // a hit group each
-    SpirvWords anyHit;                      // of every hit group; empty: none
-    // Hit group of each record of the table; empty: all hits, whatever their record, are of group 0.
+    std::vector<SpirvWords> rayGeneration;  // one for each pass
+    std::vector<SpirvWords> miss;           // indexed by miss index
+    std::vector<SpirvWords> closestHit;     // one for each hit group
+    SpirvWords anyHit;                      // shared by all hit groups; empty: there is none
+    // The hit group of each record of the table. If empty, all hits use group 0, whatever their record.
     std::vector<std::uint32_t> hitRecords;
 };
 
 struct ShaderBindingTable {
     Buffer buffer;
-    std::vector<VkStridedDeviceAddressRegionKHR> rayGeneration;  // as in the source
+    std::vector<VkStridedDeviceAddressRegionKHR> rayGeneration;  // in the order of the source
     VkStridedDeviceAddressRegionKHR miss{};
     VkStridedDeviceAddressRegionKHR hit{};
 };
@@ -33,8 +33,8 @@ struct ShaderBindingTable {
 Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
                                          const RayPipelineSource& source, PipelineCreation& creation);
 
-// The table of a pipeline that was made of the same source. Waits until it is on the device. `pool` must
-// outlive the result. Errors: those of buffers and submissions, "vulkan-call".
+// Makes the table of a pipeline that was made from the same source, and waits until the table is on the
+// device. `pool` must outlive the result. Errors: those of buffers and submissions, "vulkan-call".
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source);
 

@@ -91,7 +91,8 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     if (!runner) {
         return runner.error();
     }
-    // Its last channel is the distance along the camera's axis, 0 where there is no surface.
+    // The last channel of the image is the distance along the camera's axis. It is 0 where there is no
+    // surface.
     const auto radiance = readFrameImage(*state_, *runner, gpu::kBindingRadiance);
     if (!radiance) {
         return radiance.error();

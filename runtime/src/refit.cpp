@@ -8,10 +8,10 @@
 namespace glint {
 namespace {
 
-// Shared scratch, unless a single build needs more.
+// The size of shared scratch, unless a single build needs more.
 constexpr VkDeviceSize kScratchBytes = VkDeviceSize{64} << 20;
 
-// Scratch is free again, and what was built may be read.
+// After it, scratch is free again and the built structures may be read.
 constexpr MemoryDependency kBuildToRefit{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR,

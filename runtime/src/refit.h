@@ -12,13 +12,14 @@ namespace glint {
 
 class RefittedBlases {
 public:
-    // Structures and scratch, not yet built. The inputs' geometry stays where it is. `pool` must outlive the
-    // result.
+    // Creates structures and scratch, which are not built yet. The geometry of the inputs must stay in place.
+    // `pool` must outlive the result.
     static Result<RefittedBlases> create(Context::State& context, MemoryPool& pool,
                                          std::span<const BlasInput> inputs);
 
-    // Records what is to be done with each; the first time, all are built. Scratch is shared: batches that it
-    // has no room for wait for those before. No dependency is recorded before the first or after the last.
+    // Records the action for each structure; the first time, all are built. Batches share scratch: a batch
+    // that does not fit beside the earlier ones waits for them. No dependency is recorded before the first
+    // batch or after the last.
     void record(VkCommandBuffer commands, std::span<const BuildAction> actions) const;
 
     std::size_t size() const {

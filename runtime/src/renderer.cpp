@@ -14,9 +14,9 @@
 namespace glint {
 namespace {
 
-// As kFarDistance of shaders: a ray this long leaves any scene.
+// A ray of this length leaves any scene. It equals kFarDistance of shaders.
 constexpr float kFarDistance = 1e18F;
-// Rays a pixel and sample to one light, or for ambient occlusion.
+// The largest number of rays a pixel and sample, to one light or for ambient occlusion.
 constexpr std::uint32_t kMaxSurfaceSamples = 4096;
 constexpr std::uint32_t kMaxInterfaces = 64;
 
@@ -86,7 +86,7 @@ Status checkFrame(const FrameOptions& frame) {
     return okStatus();
 }
 
-// Shaders turn the direction that they look up, and the host the harmonics.
+// Shaders turn the direction of a lookup, and the host turns the harmonics.
 void fillEnvironment(const Environment::State& environment, const FrameOptions& options,
                      gpu::FrameConstants& constants) {
     const SkyHarmonics harmonics = turned(environment.harmonics, options.environmentRotation);
@@ -229,7 +229,7 @@ VkImageView Renderer::outputView() const {
 
 namespace {
 
-// Samples [0, sampleCount) of the frame, one after the other.
+// Renders the samples [0, sampleCount) of the frame, one after the other.
 Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample, std::uint32_t sampleCount,
                   const std::function<Status()>& afterSample) {
     if (sampleCount == 0) {

@@ -49,9 +49,9 @@ Result<package::Tracer> chooseTracer(const Context::State& context, const Packag
                      "compile the package with --tracer all");
 }
 
-// As measured: docs/performance.md, "Ordering". On a CPU an atomic costs little more than what saves one. On
-// a GPU hits of one bucket wait for each other in memory, unless their workgroup or subgroup adds them up
-// first.
+// The choice follows measurements: docs/performance.md, "Ordering". On a CPU an atomic costs little more than
+// the work that would save one. On a GPU hits of one bucket wait for each other in memory, unless their
+// workgroup or subgroup adds them up first.
 package::Ordering orderingFor(const DeviceLimits& limits, std::uint32_t bucketCount) {
     if (limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
         return package::Ordering::GlobalAtomics;
@@ -135,7 +135,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
-    // As in hit/bucket_key.glsl.
+    // This agrees with hit/bucket_key.glsl.
     size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
     size.environmentMap = package.environmentMap();
     size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&

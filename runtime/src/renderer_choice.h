@@ -1,4 +1,4 @@
-// What a renderer runs, from its options, its package and the device.
+// Chooses what a renderer runs from its options, its package and the device.
 #pragma once
 
 #include "frame_resources.h"
@@ -9,8 +9,8 @@
 
 namespace glint {
 
-// Errors: "renderer-options" (not one strategy, tracer or ordering), "package-strategy", "package-tracer"
-// (the package lacks it), "device-tracer" (the device does), "device-ordering".
+// Errors: "renderer-options" (not exactly one strategy, tracer or ordering), "package-strategy" and
+// "package-tracer" (the package lacks it), "device-tracer" and "device-ordering" (the device lacks it).
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
                                        const RendererOptions& options);
 

@@ -1,4 +1,4 @@
-// What the passes of a Renderer work on.
+// The state that the passes of a Renderer work on.
 #pragma once
 
 #include "commands.h"
@@ -16,16 +16,16 @@
 
 namespace glint {
 
-// Passes of a round at most: the fixed ones of the longer strategy, and one a case.
+// The largest number of passes of a round: the fixed ones of the longest strategy, and one for each case.
 inline constexpr std::uint32_t kMaxFixedPasses = 24;
-// Rounds at most: one an effect with rays.
+// The largest number of rounds: one for each effect with rays.
 inline constexpr std::uint32_t kMaxRounds = package::rayEffectCount(package::kAllEffects);
 
-// What a stretch of the timer is of.
+// The label of a timer's stretch.
 struct PassLabel {
     std::string name;  // for people
     Pass pass = Pass::Frame;
-    std::uint32_t shaderId = 0;  // of Pass::ShadeCase
+    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
 };
 
 struct Renderer::State {
@@ -44,11 +44,11 @@ struct Renderer::State {
     Timer timer;
     FrameResources frame;
     Pipelines pipelines;
-    // That set 1 names; alive as long as a recording may read it.
+    // The environment in set 1. It stays alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
-    // Of the last recording.
-    std::vector<PassLabel> timed;       // stretches of the timer
-    std::vector<std::uint32_t> rounds;  // of rays: Effect bits of each
+    // These describe the last recording.
+    std::vector<PassLabel> timed;       // label of each stretch of the timer
+    std::vector<std::uint32_t> rounds;  // Effect bits of each round of rays
     bool recorded = false;
 };
 

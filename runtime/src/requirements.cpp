@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kExtensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
                                        VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
-// A feature by name, and where its bit is in a DeviceRequirements.
+// A feature's name, and the place of its bit in a DeviceRequirements.
 struct RequiredFeature {
     const char* name;
     VkBool32& (*bit)(DeviceRequirements&);
@@ -26,7 +26,7 @@ struct RequiredFeature {
 constexpr RequiredFeature kFeatures[] = {
     GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
     GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
-    // Keys of hits by bucket have one or two bytes.
+    // Bucket keys of hits have one or two bytes.
     GLINT_FEATURE(vulkan11, storageBuffer16BitAccess),
     GLINT_FEATURE(vulkan12, storageBuffer8BitAccess),
     GLINT_FEATURE(vulkan12, bufferDeviceAddress),
@@ -43,14 +43,14 @@ constexpr RequiredFeature kFeatures[] = {
 };
 
 constexpr RequiredFeature kRayQueryFeatures[] = {GLINT_FEATURE(rayQuery, rayQuery)};
-// Lists of rays are dispatched by their length on the device.
+// Lists of rays are dispatched by their length, which only the device knows.
 constexpr RequiredFeature kRayPipelineFeatures[] = {
     GLINT_FEATURE(rayPipeline, rayTracingPipeline),
     GLINT_FEATURE(rayPipeline, rayTracingPipelineTraceRaysIndirect)};
 
 #undef GLINT_FEATURE
 
-// What each tracer takes, beyond what every device must have.
+// The requirements of each tracer in addition to those of every device.
 struct TracerNeeds {
     package::Tracer tracer;
     const char* extension;
@@ -62,12 +62,12 @@ constexpr TracerNeeds kTracerNeeds[] = {
     {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
 };
 
-// The accessors take a mutable chain; nothing is written through them here.
+// The accessors take a mutable chain, but nothing is written through them here.
 bool hasFeature(const DeviceReport& report, const RequiredFeature& feature) {
     return feature.bit(const_cast<DeviceRequirements&>(report.features)) != VK_FALSE;
 }
 
-// "VK_KHR_ray_query (rayQuery) or VK_KHR_…".
+// Returns a text such as "VK_KHR_ray_query (rayQuery) or VK_KHR_…".
 std::string tracerChoices() {
     std::string text;
     for (const TracerNeeds& needs : kTracerNeeds) {
@@ -86,7 +86,7 @@ std::string versionName(std::uint32_t version) {
            std::to_string(VK_API_VERSION_MINOR(version));
 }
 
-// Numbers of the Vulkan registry, for headers that lack them.
+// Numbers of the Vulkan registry, for headers that lack the names.
 constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000);
 
 }  // namespace
@@ -131,7 +131,7 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
-    // An umbrella bit: the specification asks for it where its parts are used with SPIR-V 1.5 modules.
+    // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.
     vulkan12.descriptorIndexing = VK_TRUE;
     for (const RequiredFeature& feature : kFeatures) {
         feature.bit(*this) = VK_TRUE;

@@ -1,4 +1,4 @@
-// What a device must have, as pure functions over what it reports.
+// Pure functions that compare the report of a device with what Glint requires.
 #pragma once
 
 #include "vulkan_table.h"
@@ -11,10 +11,11 @@
 
 namespace glint {
 
-// Where it is supported, so is its feature (Vulkan 1.3 specification, "Feature Requirements").
+// A device that supports the extension supports its feature too (Vulkan 1.3 specification, "Feature
+// Requirements").
 inline constexpr const char* kPositionFetchExtension = "VK_KHR_ray_tracing_position_fetch";
 
-// What a physical device reports: features in a DeviceRequirements chain, plus limits and extensions.
+// The report of a physical device: features in a DeviceRequirements chain, limits and extensions.
 struct DeviceReport {
     std::uint32_t apiVersion = 0;
     std::vector<std::string> extensions;
@@ -23,24 +24,25 @@ struct DeviceReport {
     VkSubgroupFeatureFlags subgroupOperations = 0;
     std::uint32_t maxPushConstantBytes = 0;
     std::uint32_t maxWorkgroupThreads = 0;
-    bool hasQueue = false;  // a family with graphics and compute
+    bool hasQueue = false;  // it has a queue family with graphics and compute
 };
 
-// Names of what `report` lacks, the API version first; empty if Glint runs on such a device.
+// Returns the names of the requirements that `report` lacks, the API version first. The list is empty if
+// Glint runs on such a device.
 std::vector<std::string> missingFrom(const DeviceReport& report);
 
-// package::Tracer bits of which `report` has every extension and feature.
+// Returns the package::Tracer bits whose extensions and features `report` has in full.
 std::uint32_t tracersOf(const DeviceReport& report);
 
 bool hasExtension(const DeviceReport& report, const char* name);
 
-// Takes every feature out of `report`.
+// Clears every feature of `report`.
 void clearFeatures(DeviceReport& report);
 
 // Fills `report` by asking `device`. Error "vulkan-call".
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);
 
-// "a, b and c".
+// Returns a list such as "a, b and c".
 std::string joinNames(const std::vector<std::string>& names);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Buffers and images with their memory.
+// Buffers and images that own their memory.
 #pragma once
 
 #include "memory.h"
@@ -15,17 +15,17 @@ struct Buffer {
     MemoryUse use = MemoryUse::Device;
 };
 
-// A buffer of at least one byte, with a device address. `pool` must outlive it.
+// Creates a buffer of at least one byte, with a device address. `pool` must outlive it.
 Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                             VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device);
 
 struct DeviceImage {
     UniqueImage handle;
-    UniqueImageView view;  // of all mips
+    UniqueImageView view;  // view of all mips
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
     std::uint32_t mips = 1;
-    VkDeviceSize bytes = 0;  // of memory
+    VkDeviceSize bytes = 0;  // size in memory
 };
 
 struct ImageInfo {
@@ -36,10 +36,10 @@ struct ImageInfo {
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
 };
 
-// A two-dimensional image on the device, layout undefined. `pool` must outlive it.
+// Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it.
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);
 
-// Layers 0..0 and all mips of an image.
+// Returns the range of layer 0 and all mips of an image.
 VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
 }  // namespace glint

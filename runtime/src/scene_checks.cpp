@@ -18,7 +18,8 @@ std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
     return "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive);
 }
 
-// A span of a primitive by name, and the key bit that makes it necessary (0: always or never).
+// An attribute span of a primitive by name, and the key bit that makes it necessary. With 0 it is always or
+// never necessary.
 struct Attribute {
     const char* name;
     std::size_t count;
@@ -103,7 +104,7 @@ Status checkPrimitives(const PackageScene& known, std::span<const PrimitiveView>
     return okStatus();
 }
 
-// Every primitive that the package has for an instance's mesh must be among the scene's.
+// The scene must have every primitive that the package has for an instance's mesh.
 Status checkInstances(const PackageScene& known, const SceneView& scene) {
     std::set<std::uint32_t> used;
     for (const InstanceView& instance : scene.instances) {

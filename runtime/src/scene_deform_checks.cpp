@@ -1,4 +1,4 @@
-// Whether what moves is well formed.
+// Checks whether skins, morph targets and motion are well formed.
 #include "geometry.h"
 #include "scene_checks.h"
 
@@ -49,7 +49,7 @@ Status checkInfluences(const PrimitiveView& view) {
     return okStatus();
 }
 
-// One above the largest joint that a vertex of the mesh follows.
+// Returns one more than the largest joint index that a vertex of the mesh uses.
 std::size_t jointsNeeded(std::span<const PrimitiveView> primitives) {
     std::size_t needed = 0;
     for (const PrimitiveView& view : primitives) {

@@ -16,7 +16,7 @@ bool hasSize(const MaterialView& view) {
     return view.record.size() == sizeof(gpu::MaterialRecord);
 }
 
-// Everything but which textures and samplers there are, their sizes and UV sets.
+// Takes all values except the choice of textures and samplers, their sizes and UV sets.
 void takeValues(const MaterialView& view, gpu::MaterialRecord& record) {
     gpu::MaterialRecord given;
     std::memcpy(&given, view.record.data(), sizeof(given));

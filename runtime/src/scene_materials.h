@@ -1,4 +1,4 @@
-// Values of materials that the host gives in the place of the package's.
+// Material values of the host that replace the package's.
 #pragma once
 
 #include "interop/scene.h"
@@ -12,19 +12,20 @@
 
 namespace glint {
 
-// A material of SceneView::materials, as the device has it.
+// A material of SceneView::materials with its values on the device.
 struct ChangingMaterial {
     std::uint32_t material = 0;
     gpu::MaterialRecord record{};
 };
 
-// Puts the values of `views` into the records that they name. Each record keeps its textures and samplers,
-// which the host can't name. Error "scene-material": a material that is not there, out of order, or of
+// Writes the values of `views` into the records that they name. Each record keeps its textures and samplers,
+// which the host can't name. Error "scene-material": a material does not exist, is out of order or has
 // another size.
 Result<std::vector<ChangingMaterial>> replaceMaterials(std::span<const MaterialView> views,
                                                        std::span<gpu::MaterialRecord> records);
 
-// The values of an update, which must name the same materials. Error "scene-material"; `changing` then stays.
+// Takes the values of an update, which must name the same materials. On error "scene-material", `changing`
+// stays as it was.
 Status takeMaterials(std::span<const MaterialView> views, std::span<ChangingMaterial> changing);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// SceneMotion: what there is, and its first build.
+// SceneMotion: its contents and its first build.
 #include "scene_motion.h"
 
 #include "gpu_scene_state.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<float, 12> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-// What later poses are compared with.
+// Stores the properties that later poses are compared with.
 void rememberScene(SceneMotion& motion, const SceneView& scene) {
     std::map<std::uint32_t, const MotionBounds*> byMesh;
     for (const InstanceView& instance : scene.instances) {
@@ -85,7 +85,7 @@ Status createTlas(GpuScene::State& state) {
     return okStatus();
 }
 
-// The first build of everything.
+// Builds everything for the first time.
 Status buildAll(GpuScene::State& state, const SceneView& scene) {
     SceneMotion& motion = *state.motion;
     const std::vector<Box> boxes = boxesOf(motion, scene.instances);

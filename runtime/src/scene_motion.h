@@ -1,5 +1,5 @@
-// What a GpuScene has only if it moves: the pose on its way to the device, structures that are refitted, and
-// the rules that say when.
+// The part of a GpuScene that only moving scenes have: the staging memory for poses, structures that are
+// refitted, and the rules for their builds.
 #pragma once
 
 #include "acceleration.h"
@@ -17,34 +17,34 @@
 
 namespace glint {
 
-// Members are destroyed in reverse: the pool's memory last.
+// Members are destroyed in reverse order: the pool's memory last.
 struct SceneMotion {
     SceneMotion(Context::State& context, Timer stretches) : pool(context), timer(std::move(stretches)) {}
 
     MemoryPool pool;
-    // Null where nothing changes its shape.
+    // Null if no instance changes its shape.
     std::unique_ptr<Deformer> deformer;
-    std::unique_ptr<RefittedBlases> blases;    // of parts that an instance has for itself
-    std::vector<std::uint32_t> blasInstances;  // by bottom level: the instance whose it is
-    std::vector<BlasHistory> blasHistories;    // likewise
+    std::unique_ptr<RefittedBlases> blases;    // BLASes of parts that belong to one instance
+    std::vector<std::uint32_t> blasInstances;  // for each refitted BLAS, its instance
+    std::vector<BlasHistory> blasHistories;    // for each refitted BLAS
 
     std::vector<PartInstance> partInstances;                 // instances of the top level, in their order
-    std::vector<VkAccelerationStructureInstanceKHR> placed;  // likewise, as last sent to the device
+    std::vector<VkAccelerationStructureInstanceKHR> placed;  // the same, as last sent to the device
     Buffer placedBuffer;
     TlasBuild tlasBuild;
     Scratch tlasScratch;
     TlasHistory tlasHistory;
 
-    // Of the scene's instances and lights, in their order.
+    // Properties of the scene's instances and lights, in their order.
     std::vector<std::uint32_t> meshes;
     std::vector<std::size_t> jointCounts;
     std::vector<std::size_t> weightCounts;
-    std::vector<const MotionBounds*> bounds;  // into boundsOfMeshes
+    std::vector<const MotionBounds*> bounds;  // point into boundsOfMeshes
     std::vector<std::unique_ptr<MotionBounds>> boundsOfMeshes;
     std::vector<std::uint32_t> lightTypes;
 
-    // Instance records, light records, `placed` and records of materials that change, one after the other,
-    // for the copy to the device.
+    // The source of the copy to the device: instance records, light records, `placed` and records of changing
+    // materials, one after the other.
     Buffer staging;
     VkDeviceSize lightOffset = 0;
     VkDeviceSize placedOffset = 0;
@@ -55,17 +55,17 @@ struct SceneMotion {
     bool recorded = false;
 };
 
-// Makes state.motion, and state.tlas from it, for a scene with SceneView::moves: bottom levels of `refitted`,
-// which are those of the layout's parts that an instance has for itself, and the top level, built at the
-// scene's pose; waits for the device. `deformer` is null where nothing changes its shape.
+// Makes state.motion and state.tlas for a scene with SceneView::moves, and waits for the device. It builds
+// the bottom levels of `refitted`, which are the layout's parts that belong to one instance, and the top
+// level at the scene's pose. `deformer` is null if no instance changes its shape.
 Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
                     std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer);
 
-// GpuScene::update() and GpuScene::motion().
+// These implement GpuScene::update() and GpuScene::motion().
 Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const MotionView& motion);
 Result<MotionStatistics> readMotion(const GpuScene::State& state);
 
-// An instance of the top level.
+// Makes an instance of the top level.
 VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
                                               const std::array<float, 12>& objectToWorld,
                                               VkDeviceAddress blas);

@@ -1,4 +1,4 @@
-// Shader modules, and pipelines of one module.
+// Shader modules, and pipelines that have one module.
 #pragma once
 
 #include "device_handle.h"
@@ -8,27 +8,29 @@
 
 namespace glint {
 
-// Error "vulkan-call".
+// Makes a module from SPIR-V words. Error "vulkan-call".
 Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words);
 
-// The entry point is "main".
+// Describes a stage whose entry point is "main".
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
 
-// How a pipeline is to be made, and what the driver says of how it was.
+// Settings for making a pipeline, and the driver's feedback about it.
 struct PipelineCreation {
     VkPipelineCreateFlags flags = 0;
-    std::uint32_t threads =
-        0;  // of a compute shader's workgroup, where that is its constant 0; 0: it has none
-    VkPipelineCreationFeedback feedback{};  // without the flag VALID: nothing
+    // The number of threads in a compute shader's workgroup, if that is its constant 0. 0 means that the
+    // shader has no such constant.
+    std::uint32_t threads = 0;
+    VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
 };
 
-// Error "vulkan-call".
+// Makes a compute pipeline from SPIR-V words. Error "vulkan-call".
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation);
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout);
 
-// For the chain of a pipeline's creation; fills `creation`, which must outlive it.
+// Returns a structure for the chain of a pipeline's creation. The driver writes to `creation`, which must
+// outlive the structure.
 VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation);
 
 }  // namespace glint

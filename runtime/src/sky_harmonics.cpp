@@ -9,9 +9,9 @@ namespace {
 
 // Integrals over the azimuth φ of one column.
 struct ColumnIntegrals {
-    double cos1 = 0.0;  // of cos φ
+    double cos1 = 0.0;  // integral of cos φ
     double sin1 = 0.0;
-    double cos2 = 0.0;  // of cos 2φ
+    double cos2 = 0.0;  // integral of cos 2φ
     double sin2 = 0.0;
 };
 
@@ -27,7 +27,7 @@ std::vector<ColumnIntegrals> columnIntegrals(std::uint32_t width) {
     return columns;
 }
 
-// Integrals over y from -1, where s = √(1 - y²): the antiderivatives of 1, y, s, ys, s², 3y² - 1.
+// Integrals over y from -1, with s = √(1 - y²). They are the antiderivatives of 1, y, s, ys, s², 3y² - 1.
 struct RowIntegrals {
     explicit RowIntegrals(double y)
         : one(y),
@@ -39,7 +39,7 @@ struct RowIntegrals {
     double one, y1, s1, ys, s2, p2;
 };
 
-// Sums over a row, by channel.
+// Sums over a row, for each channel.
 struct RowSums {
     double one = 0.0;
     double cos1 = 0.0;
@@ -89,7 +89,8 @@ SkyHarmonics skyHarmonics(const RadianceMap& map) {
             addRow(above, below, sums[channel], channel, h);
         }
     }
-    // The square of each basis function's constant, times the cosine lobe's coefficient over π: 1, 2/3, 1/4.
+    // Each factor is the square of the basis function's constant, times the cosine lobe's coefficient over π:
+    // 1, 2/3, 1/4.
     constexpr double kPi = std::numbers::pi;
     constexpr double kFactors[9] = {1.0 / (4.0 * kPi),   1.0 / (2.0 * kPi),   1.0 / (2.0 * kPi),
                                     1.0 / (2.0 * kPi),   5.0 / (64.0 * kPi),  15.0 / (16.0 * kPi),
@@ -109,14 +110,14 @@ SkyHarmonics turned(const SkyHarmonics& harmonics, double angle) {
     const double c2 = std::cos(2.0 * angle);
     const double s2 = std::sin(2.0 * angle);
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        // Of cos φ and sin φ, where x and z are theirs.
+        // These coefficients belong to cos φ and sin φ, to which x and z are proportional.
         for (const auto& [x, z] : {std::pair{1, 3}, std::pair{5, 6}}) {
             const double a = harmonics[x][channel];
             const double b = harmonics[z][channel];
             result[x][channel] = a * c1 + b * s1;
             result[z][channel] = b * c1 - a * s1;
         }
-        // Of cos 2φ and sin 2φ; xz has half of the latter.
+        // These coefficients belong to cos 2φ and sin 2φ. xz is half of sin 2φ, up to a common factor.
         const double a = harmonics[8][channel];
         const double b = harmonics[7][channel] / 2.0;
         result[8][channel] = a * c2 + b * s2;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLargest16 = 65535.0;
 
-// IEC 61966-2-1, the electro-optical transfer function.
+// The electro-optical transfer function of IEC 61966-2-1.
 double decodeSrgb(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> narrowRgba16(std::span<const std::uint8_t> texels) {
     for (std::size_t i = 0; i < narrow.size(); ++i) {
         std::uint16_t channel = 0;
         std::memcpy(&channel, &texels[2 * i], sizeof channel);
-        // 65535 = 255 * 257; 128 rounds to the nearest.
+        // 65535 = 255 * 257, and adding 128 rounds to the nearest.
         narrow[i] = static_cast<std::uint8_t>((channel + 128U) / 257U);
     }
     return narrow;

@@ -1,4 +1,4 @@
-// Conversions of 16-bit texels on the host.
+// Host functions that convert 16-bit texels.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace glint {
 
-// RGBA of 16 bits a channel in sRGB, native byte order, as 16-bit linear: Vulkan has no 16-bit sRGB format. A
-// step of the result is 1.5e-5, the darkest step of 8-bit sRGB is 3.0e-4, so that nothing shows. Alpha is
-// linear already. Requires 8 bytes a texel.
+// Converts RGBA in sRGB of 16 bits a channel, native byte order, to linear values of 16 bits, because Vulkan
+// has no 16-bit sRGB format. A step of the result is 1.5e-5 and the darkest step of 8-bit sRGB is 3.0e-4, so
+// no difference is visible. Alpha is linear already. Requires 8 bytes a texel.
 std::vector<std::uint8_t> linearizeRgba16(std::span<const std::uint8_t> texels);
 
-// RGBA of 16 bits a channel as the nearest of 8 bits, in the same transfer function.
+// Converts RGBA of 16 bits a channel to the nearest values of 8 bits, in the same transfer function.
 std::vector<std::uint8_t> narrowRgba16(std::span<const std::uint8_t> texels);
 
 }  // namespace glint

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// What a slot that names no texture finds: it leaves a factor as it is.
+// The texture of a slot that names none. White leaves a factor unchanged.
 constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
 
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
@@ -28,7 +28,7 @@ Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Upl
     if (!texture) {
         return texture.error();
     }
-    // Mips are blitted from linear values: of sRGB formats, blits decode and encode.
+    // Mips must be blitted from linear values. Blits of sRGB formats decode and encode them.
     std::vector<std::uint8_t> converted;
     if (image.format == ImageView::Format::Rgba16 && (srgb || !isWide)) {
         converted = isWide ? linearizeRgba16(image.pixels) : narrowRgba16(image.pixels);
@@ -58,7 +58,7 @@ VkFilter filter(std::uint32_t linear) {
     return linear != 0 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
 }
 
-// Where a file asks for nearest texels, or for no mips, it gets those.
+// A file that asks for nearest texels, or for no mips, gets those.
 float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry) {
     const bool isTrilinear = entry.minification != 0 && entry.mipmapped != 0 && entry.mip != 0;
     return isTrilinear ? context.limits.samplerAnisotropy : 1.0F;
@@ -76,7 +76,8 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
         info.mipmapMode = entry.mip != 0 ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
         info.maxLod = VK_LOD_CLAMP_NONE;
     } else {
-        // Mip 0 only. Above 0, so that minification still chooses its own filter (VkSamplerCreateInfo, note).
+        // Only mip 0 is used. The limit is above 0, so that minification still uses its own filter
+        // (VkSamplerCreateInfo, note).
         info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
         info.maxLod = 0.25F;
     }

@@ -13,24 +13,24 @@
 
 namespace glint {
 
-// One image a TextureEntry, in its order, all mips; at least one, so that the array is never empty.
-// 16-bit images become 16-bit linear textures, where the device can use those. Copies are queued in
-// `uploader`. Error "scene-textures": more than a shader of this device can see.
+// Makes one image with all mips for each TextureEntry, in their order. There is at least one image, so that
+// the array is never empty. 16-bit images become 16-bit linear textures if the device can use those. Queues
+// the copies in `uploader`. Error "scene-textures": there are more than a shader of this device can see.
 Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                                 std::span<const package::TextureEntry> textures,
                                                 std::span<const ImageView> images);
 
-// Of those textures, how many uploadTextures() narrowed from 16 bits to 8.
+// Returns how many of those textures uploadTextures() narrowed from 16 bits to 8.
 std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
                             std::span<const ImageView> images);
 
-// The package's materials with the sizes of their textures and the anisotropy of their samplers, which
-// texture gradients need: a size query in a shader is a fetch of its own, and lavapipe answers it for one
-// lane where the index differs. Requires an image for each texture.
+// Returns the package's materials with the sizes of their textures and the anisotropy of their samplers,
+// which texture gradients need. A size query in a shader would be a fetch of its own, and lavapipe answers it
+// for one lane even if lanes differ in the index. Requires an image for each texture.
 std::vector<gpu::MaterialRecord> materialsWithSizes(const Context::State& context, const PackageScene& known,
                                                     std::span<const ImageView> images);
 
-// One sampler a SamplerEntry; at least one. Error "scene-samplers".
+// Makes one sampler for each SamplerEntry, and at least one. Error "scene-samplers".
 Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
                                                   std::span<const package::SamplerEntry> samplers);
 

@@ -7,16 +7,17 @@
 namespace glint {
 namespace {
 
-// Where the device does not say how many it has: between those of a small GPU and of a large one.
+// The number for devices that do not report theirs. It is between those of a small GPU and of a large one.
 constexpr std::uint32_t kGuessedMultiprocessors = 64;
 
-// Workgroups that a multiprocessor runs at once, by what an H200 has shared memory for: docs/performance.md.
+// The number of workgroups that a multiprocessor runs at once, given the shared memory of an H200:
+// docs/performance.md.
 constexpr std::uint32_t kCountGroups = 2;
 constexpr std::uint32_t kSmallCopyGroups = 3;
 constexpr std::uint32_t kCopyGroups = 2;
 constexpr std::uint32_t kLargeCopyGroups = 1;
 
-// Of scans: a word of shared memory for every fourth thread.
+// Scans need it: they have a word of shared memory for every fourth thread.
 constexpr std::uint32_t kLeastSubgroup = 4;
 
 std::uint32_t groupsFor(std::uint64_t hits, std::uint32_t hitsOfGroup, std::uint32_t atOnce) {
@@ -60,7 +61,7 @@ TileSortGroups tileSortGroups(const DeviceLimits& limits, std::uint32_t bucketCo
     const std::uint32_t copyGroups = threads < gpu::kTileThreads   ? kSmallCopyGroups
                                      : threads > gpu::kTileThreads ? kLargeCopyGroups
                                                                    : kCopyGroups;
-    // Keys of four bytes are the fewest that a thread counts at a time.
+    // A thread counts at least four keys at a time, which is the number for keys of four bytes.
     return {groupsFor(maxHits, gpu::kCountGroupSize * 4, processors * kCountGroups),
             groupsFor(maxHits, threads * gpu::kTileHitsOfThread, processors * copyGroups)};
 }

@@ -1,4 +1,4 @@
-// The ordering tile-sort, as far as the device decides on it.
+// The properties of the ordering tile-sort that depend on the device.
 #pragma once
 
 #include "context_state.h"
@@ -9,18 +9,18 @@
 
 namespace glint {
 
-// Whether the device has the shared memory, threads and subgroups that it takes.
+// Whether the device has enough shared memory, threads and subgroups for tile-sort.
 bool sortsTiles(const DeviceLimits& limits);
 
-// Threads of a workgroup of its copy pass.
+// Returns the number of threads in a workgroup of the copy pass.
 std::uint32_t tileSortThreads(const DeviceLimits& limits, std::uint32_t bucketCount);
 
-// PipelineCreation::threads of a module: of that pass; 0 of all others.
+// Returns PipelineCreation::threads of a module. It is 0 for every module except that of the copy pass.
 std::uint32_t chosenThreads(const DeviceLimits& limits, const package::ModuleKey& key,
                             std::uint32_t bucketCount);
 
-// Workgroups of its passes: as many as run at once, which share the hits out among them, and no more than
-// `maxHits` keep busy.
+// The numbers of workgroups of the passes, which share the hits out among themselves. They are as many as run
+// at once, but no more than `maxHits` keep busy.
 struct TileSortGroups {
     std::uint32_t count = 1;
     std::uint32_t copy = 1;

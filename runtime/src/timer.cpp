@@ -6,8 +6,8 @@ namespace glint {
 
 namespace {
 
-// Queries of a stretch: its begin and its end, each followed by an echo that is never read. Mesa's lavapipe
-// puts a timestamp off until the next one is recorded; the echo makes it take the first at once.
+// The queries of a stretch are its begin and its end, each followed by an echo that is never read. Mesa's
+// lavapipe delays a timestamp until the next one is recorded. The echo makes it take the first one at once.
 constexpr std::uint32_t kBegin = 0;
 constexpr std::uint32_t kEnd = 2;
 constexpr std::uint32_t kQueriesPerStretch = 4;
@@ -30,7 +30,7 @@ Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
         return vulkanError("vkCreateQueryPool", result);
     }
     timer.pool_ = UniqueQueryPool(context, pool);
-    // Reading a query that was never reset is not allowed; reading one without a result is.
+    // It is not allowed to read a query that was never reset, but one without a result may be read.
     context.vk.ResetQueryPool(context.handles.device, pool, 0, timer.queries_);
     return timer;
 }
@@ -81,7 +81,7 @@ Result<std::vector<double>> Timer::read(std::uint32_t count) const {
     const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
     std::vector<double> milliseconds(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-        // Modulo the valid bits, a counter that wraps once in between is no harm.
+        // The difference modulo the valid bits is correct even if the counter wraps once in between.
         const std::uint64_t* stretch = &ticks[std::size_t{kQueriesPerStretch} * i];
         const std::uint64_t elapsed = (stretch[kEnd] - stretch[kBegin]) & mask;
         milliseconds[i] = static_cast<double>(elapsed) * context_->limits.core.timestampPeriod * 1e-6;

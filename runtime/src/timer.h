@@ -1,4 +1,4 @@
-// Device time of stretches of a command buffer.
+// Measures the device time of stretches of a command buffer.
 #pragma once
 
 #include "device_handle.h"
@@ -10,19 +10,21 @@ namespace glint {
 
 class Timer {
 public:
-    // Room for `capacity` stretches. A queue family without timestamps makes a timer that records nothing.
+    // Makes a timer for at most `capacity` stretches. On a queue family without timestamps the timer records
+    // nothing.
     static Result<Timer> create(Context::State& context, std::uint32_t capacity);
 
     bool available() const {
         return pool_.get() != VK_NULL_HANDLE;
     }
-    // Forgets earlier results; outside a render pass, before the first stretch of a recording.
+    // Forgets earlier results. It must be recorded outside a render pass, before the first stretch of a
+    // recording.
     void recordReset(VkCommandBuffer commands) const;
-    // Marks wait for all earlier commands, so that stretches do not overlap.
+    // Each mark waits for all earlier commands, so that stretches do not overlap.
     void recordBegin(VkCommandBuffer commands, std::uint32_t stretch) const;
     void recordEnd(VkCommandBuffer commands, std::uint32_t stretch) const;
-    // Milliseconds of stretches [0, count), once the device has done them.
-    // Errors: "timings-unavailable", "timings-pending", "vulkan-call".
+    // Returns the milliseconds of stretches [0, count), which the device must have completed. Errors:
+    // "timings-unavailable", "timings-pending", "vulkan-call".
     Result<std::vector<double>> read(std::uint32_t count) const;
 
 private:

@@ -42,7 +42,8 @@ std::vector<std::uint32_t> orderPrimitive(const PrimitiveView& view, std::uint64
                                           LeafOrder leafOrder, std::uint32_t threads) {
     std::vector<Corners> triangles = cornersOf(view);
     orderPiece(view, triangles, leafOrder, threads);
-    // Pieces of a primitive have trees of their own, which are halved at other places than the whole is.
+    // Pieces of a primitive have trees of their own, which are halved at other places than the tree of the
+    // whole would be.
     for (std::size_t first = 0; first < triangles.size() && capacity < triangles.size(); first += capacity) {
         const std::size_t count = std::min<std::size_t>(triangles.size() - first, capacity);
         orderPiece(view, std::span(triangles).subspan(first, count), leafOrder, threads);
@@ -69,7 +70,7 @@ void forEach(std::size_t count, const Work& work) {
         try {
             helpers.emplace_back(take);
         } catch (const std::system_error&) {
-            break;  // no more threads: the ones there are do it all
+            break;  // no more threads: the existing ones do all the work
         }
     }
     take();
@@ -78,7 +79,8 @@ void forEach(std::size_t count, const Work& work) {
     }
 }
 
-// Around the vertices that the range has: primitives may share an array of which each uses a part.
+// Returns the box around the vertices that the triangles use, because primitives may share an array of which
+// each uses a part.
 Box boxOf(const PrimitiveView& view) {
     LeafBox box;
     for (const std::uint32_t corner : view.indices) {
@@ -107,7 +109,8 @@ BlasCapacity orderedCapacity(BlasCapacity capacity) {
 std::vector<std::vector<std::uint32_t>> orderedTriangles(std::span<const PrimitiveView> primitives,
                                                          const BlasCapacity& capacity, LeafOrder order) {
     std::vector<std::vector<std::uint32_t>> ordered(primitives.size());
-    // Where there are many primitives, each is ordered by one thread; the few of a scene with few get more.
+    // If there are many primitives, one thread orders each of them. If there are few, each one gets more
+    // threads.
     const std::uint32_t threads =
         primitives.size() < 4 * std::size_t{threadsOfMachine()} ? threadsOfMachine() : 1;
     forEach(primitives.size(), [&](std::size_t i) {

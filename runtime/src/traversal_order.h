@@ -1,4 +1,4 @@
-// Triangles and instances in an order that suits a CPU driver (leaf_order.h says why).
+// Orders triangles and instances to suit a CPU driver (leaf_order.h says why).
 #pragma once
 
 #include "context_state.h"
@@ -14,38 +14,39 @@
 
 namespace glint {
 
-// How a scene is ordered on this device; null: not at all. Drivers of GPUs look for a good tree themselves.
+// Returns how a scene is ordered on this device, or null if it keeps its order. Drivers of GPUs search for a
+// good tree themselves.
 LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted);
 
-// What one BLAS holds where triangles are ordered: one geometry. A driver that keeps the geometries of a BLAS
-// in sequence would mix parts of neighbours in its nodes; instances, of which each then has one, can be
-// ordered by where they are.
+// Returns what one BLAS holds if triangles are ordered: one geometry. A driver that keeps the geometries of a
+// BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be
+// ordered by their positions.
 BlasCapacity orderedCapacity(BlasCapacity capacity);
 
-// The indices of each primitive, in its order of triangles; corners stay in theirs. `capacity` is that of
-// orderedCapacity(): the pieces that primitives above it are cut into are ordered one by one. Takes 56 bytes
-// a triangle while a primitive is ordered, 12 of which stay.
+// Returns the indices of each primitive in the order of its triangles; the corners of a triangle keep their
+// order. `capacity` is that of orderedCapacity(). A primitive above it is cut into pieces that are ordered
+// one by one. Takes 56 bytes a triangle while a primitive is ordered, 12 of which stay.
 std::vector<std::vector<std::uint32_t>> orderedTriangles(std::span<const PrimitiveView> primitives,
                                                          const BlasCapacity& capacity, LeafOrder order);
 
-// Knows where the instances of a top level are in any pose of the scene.
+// Knows the boxes of a top level's instances in any pose of the scene.
 class InstanceOrder {
 public:
-    // Keeps nothing of what it is given. `primitives`: those of the scene.
+    // Keeps no reference to its arguments. `primitives` are those of the scene.
     InstanceOrder(std::span<const PrimitiveView> primitives, std::span<const MeshPart> parts,
                   LeafOrder order);
 
-    // The order of `placed` at a pose: place i is for placed[result[i]].
+    // Returns the order of `placed` at a pose: placed[result[i]] goes to place i.
     std::vector<std::uint32_t> at(std::span<const InstanceView> instances,
                                   std::span<const PartInstance> placed) const;
 
 private:
     LeafOrder order_;
-    std::vector<Box> boxes_;                               // by part, in its mesh's space; as the file has it
-    std::vector<std::unique_ptr<MotionBounds>> deformed_;  // by part: null unless an instance deforms it
+    std::vector<Box> boxes_;                               // by part: the undeformed box in the mesh's space
+    std::vector<std::unique_ptr<MotionBounds>> deformed_;  // by part; null unless an instance deforms it
 };
 
-// values[order[0]], values[order[1]] and so on.
+// Returns values[order[0]], values[order[1]] and so on.
 template <typename T>
 std::vector<T> permuted(std::span<const T> values, std::span<const std::uint32_t> order) {
     std::vector<T> result;

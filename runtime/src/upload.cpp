@@ -6,10 +6,10 @@
 namespace glint {
 namespace {
 
-// Large enough that submissions don't show, small enough for every host-visible heap. A row of the largest
-// image that a device may have (65536 pixels of 8 bytes) fits 32 times.
+// The staging buffer is large enough that submissions cost little time, and small enough for every
+// host-visible heap. It holds 32 rows of the largest image that a device may have (65536 pixels of 8 bytes).
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
-// Copies start at multiples of a texel, and of what devices like best.
+// Copies start at multiples of a texel, and of the alignment that devices prefer.
 constexpr VkDeviceSize kStagingAlignment = 256;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
@@ -175,7 +175,7 @@ void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
                 {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
         }
     };
-    // What was blitted from is a source, the rest are targets.
+    // The mips that were blitted from have the source layout, and the others the target layout.
     recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
     recordReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
     recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);

@@ -1,4 +1,4 @@
-// Host data into device buffers and images, through a staging buffer of bounded size.
+// Copies host data into device buffers and images, through a staging buffer of bounded size.
 #pragma once
 
 #include "commands.h"
@@ -16,25 +16,25 @@ public:
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills the first mips of an image of undefined layout with texels of `texelBytes` bytes, blits the
-    // others that it has each from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL.
-    // Requires one mip at least. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage where mips are
-    // blitted.
+    // Fills the first mips of an undefined image with texels of `texelBytes` bytes. Blits each remaining mip
+    // from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. Requires at least one mip.
+    // `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
     Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                        const DeviceImage& target);
-    // Waits until everything is on the device, visible to all commands that are submitted later.
+    // Waits until all data is on the device and visible to all commands that are submitted later.
     Status finish();
 
 private:
     explicit Uploader(Context::State& context) : context_(&context), pool_(context) {}
-    // Room for at least `unit` bytes, at most `wanted`; submits what there is to make room.
+    // Returns room for at least `unit` and at most `wanted` bytes. If there is too little, it submits the
+    // pending copies to make room.
     Result<VkDeviceSize> reserve(VkDeviceSize wanted, VkDeviceSize unit);
     Status start();
-    // All mips become TRANSFER_DST_OPTIMAL.
+    // Moves all mips to TRANSFER_DST_OPTIMAL.
     Status startImage(const DeviceImage& target);
     Status copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes, const DeviceImage& target,
                     std::uint32_t mip);
-    // Blits the mips behind the first `given`, and makes all of them readable.
+    // Blits the mips after the first `given`, and makes all of them readable.
     void recordMips(const DeviceImage& target, std::uint32_t given);
 
     Context::State* context_;
@@ -45,7 +45,7 @@ private:
     VkDeviceSize used_ = 0;
 };
 
-// Bytes of an array of plain structures.
+// Returns the bytes of an array of plain structures.
 template <typename T>
 std::span<const std::uint8_t> bytesOf(std::span<const T> elements) {
     return {reinterpret_cast<const std::uint8_t*>(elements.data()), elements.size_bytes()};

@@ -1,4 +1,4 @@
-// Vulkan's result codes as diagnostics.
+// Turns Vulkan's result codes into diagnostics.
 #pragma once
 
 #include <glint/result.h>
@@ -7,10 +7,11 @@
 
 namespace glint {
 
-// "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not know.
+// Returns a name such as "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not
+// know.
 std::string vulkanResultName(VkResult result);
 
-// Error "vulkan-call": which call failed, and how.
+// Makes the error "vulkan-call", which says which call failed and how.
 Diagnostic vulkanError(const char* call, VkResult result);
 
 }  // namespace glint

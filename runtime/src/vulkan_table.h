@@ -1,5 +1,5 @@
-// Vulkan's functions as tables that a Context owns: no global pointers, so that two contexts, or the host
-// application's own loader, never meet.
+// Vulkan's functions as tables that a Context owns. There are no global pointers, so two contexts, or a
+// context and the host application's own loader, never interfere.
 #pragma once
 
 #include <glint/result.h>
@@ -8,7 +8,7 @@
 
 #include <memory>
 
-// Needed before an instance exists.
+// Functions that are needed before an instance exists.
 #define GLINT_GLOBAL_FUNCTIONS(X)       \
     X(CreateInstance)                   \
     X(EnumerateInstanceLayerProperties) \
@@ -109,14 +109,14 @@
     X(CmdCopyAccelerationStructureKHR)          \
     X(CmdWriteAccelerationStructuresPropertiesKHR)
 
-// Of VK_KHR_ray_tracing_pipeline.
+// Functions of VK_KHR_ray_tracing_pipeline.
 #define GLINT_RAY_PIPELINE_FUNCTIONS(X)   \
     X(CreateRayTracingPipelinesKHR)       \
     X(GetRayTracingShaderGroupHandlesKHR) \
     X(CmdTraceRaysKHR)                    \
     X(CmdTraceRaysIndirectKHR)
 
-// Of VK_KHR_pipeline_executable_properties.
+// Functions of VK_KHR_pipeline_executable_properties.
 #define GLINT_PIPELINE_STATISTICS_FUNCTIONS(X) \
     X(GetPipelineExecutablePropertiesKHR)      \
     X(GetPipelineExecutableStatisticsKHR)
@@ -139,9 +139,9 @@ struct InstanceTable {
 
 struct DeviceTable {
     GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null until loadRayPipelineFunctions().
+    // Null until loadRayPipelineFunctions() was called.
     GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null until loadPipelineStatisticsFunctions().
+    // Null until loadPipelineStatisticsFunctions() was called.
     GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null unless VK_EXT_debug_utils is enabled.
     PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
@@ -150,10 +150,10 @@ struct DeviceTable {
 
 #undef GLINT_DECLARE_FUNCTION
 
-// The system's Vulkan loader, closed when the last owner goes.
+// The system's Vulkan loader. It is closed when its last owner is destroyed.
 class VulkanLibrary {
 public:
-    // Error "vulkan-loader" where there is none.
+    // Error "vulkan-loader" if the system has none.
     static Result<std::shared_ptr<VulkanLibrary>> open();
     ~VulkanLibrary();
     VulkanLibrary(const VulkanLibrary&) = delete;
@@ -162,7 +162,7 @@ public:
     PFN_vkGetInstanceProcAddr getInstanceProcAddr() const {
         return getInstanceProcAddr_;
     }
-    // A symbol that the library exports, or null.
+    // Returns a symbol that the library exports, or null.
     void* symbol(const char* name) const;
 
 private:
@@ -174,11 +174,11 @@ private:
 // Each error ("vulkan-function") names the first function that is missing.
 Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr);
 Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
-// `debugUtils`: whether the instance has VK_EXT_debug_utils; layers hand its functions out in any case.
+// `debugUtils` says whether the instance has VK_EXT_debug_utils. Layers hand out its functions in any case.
 Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils);
-// For a device that has VK_KHR_ray_tracing_pipeline enabled.
+// Requires a device with VK_KHR_ray_tracing_pipeline enabled.
 Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
-// For a device that has VK_KHR_pipeline_executable_properties enabled.
+// Requires a device with VK_KHR_pipeline_executable_properties enabled.
 Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 
 }  // namespace glint

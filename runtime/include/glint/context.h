@@ -1,4 +1,4 @@
-// The Vulkan device that Glint works on: the caller's, or a headless one of its own.
+// The Vulkan device that Glint works on. It is the caller's, or a headless device that Glint makes.
 #pragma once
 
 #include <glint/package_format.h>
@@ -14,7 +14,7 @@
 
 namespace glint {
 
-// Handles that the caller owns and keeps alive as long as the Context.
+// Handles of the caller's device. The caller owns them and keeps them alive as long as the Context.
 struct DeviceHandles {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -22,55 +22,61 @@ struct DeviceHandles {
     VkQueue queue = VK_NULL_HANDLE;  // graphics, compute and transfer
     std::uint32_t queueFamily = 0;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
-    bool debugUtils = false;  // VK_EXT_debug_utils is enabled on the instance: passes are labelled
-    // VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Glint runs without it, with
-    // textures that are blurrier at grazing angles.
+    bool debugUtils = false;  // whether the instance has VK_EXT_debug_utils: passes then get labels
+    // Whether VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Without it Glint runs
+    // too, but textures are blurrier at grazing angles.
     bool samplerAnisotropy = false;
-    // VK_KHR_ray_tracing_position_fetch is enabled on the device: packages run that need it.
+    // Whether VK_KHR_ray_tracing_position_fetch is enabled on the device. Some packages need it.
     bool positionFetch = false;
-    // VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device: packages run that need it.
+    // Whether VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device. Some packages need
+    // it.
     bool shaderFloat16 = false;
-    // VK_KHR_pipeline_executable_properties with its feature is enabled on the device: Renderers can tell
-    // what the driver says of their pipelines.
+    // Whether VK_KHR_pipeline_executable_properties and its feature are enabled on the device. Renderers can
+    // then report the driver's statistics of their pipelines.
     bool pipelineStatistics = false;
-    // package::Tracer bits whose extensions and features are enabled on the device: those that its
-    // DeviceRequirements were made with.
+    // The package::Tracer bits whose extensions and features are enabled on the device. They are the bits
+    // that its DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
 };
 
 enum class Validation { Off, On, Synchronization };
 
 struct HeadlessOptions {
-    // Anything but Off requires the Khronos validation layer and collects its messages.
+    // Every value but Off requires the Khronos validation layer and collects its messages.
     Validation validation = Validation::Off;
-    std::string deviceName;  // part of the wanted device's name; empty: the first that has all features
-    // package::Tracer bits to enable where the device has them; it has at least one of them.
+    std::string deviceName;  // part of the device's name; empty: the first device with all features
+    // The package::Tracer bits to enable. Those that the device lacks are left out; it must support at least
+    // one.
     std::uint32_t tracers = package::kAllTracers;
-    // VK_KHR_ray_tracing_position_fetch, for packages that need it. Error "device-features" where it is
-    // missing.
+    // Enables VK_KHR_ray_tracing_position_fetch, which some packages need. Error "device-features" if the
+    // device lacks it.
     bool positionFetch = false;
-    // 16-bit float arithmetic, for packages that need it. Error "device-features" where it is missing.
+    // Enables 16-bit float arithmetic, which some packages need. Error "device-features" if the device lacks
+    // it.
     bool shaderFloat16 = false;
-    // VK_KHR_pipeline_executable_properties, where the device has it: DeviceHandles::pipelineStatistics.
+    // Enables VK_KHR_pipeline_executable_properties if the device supports it;
+    // DeviceHandles::pipelineStatistics then says whether it does.
     bool pipelineStatistics = false;
 };
 
-// package::Tracer bits that a device can be created with; 0: Glint does not run on it.
+// Returns the package::Tracer bits that a device can be created with. 0 means that Glint does not run on it.
 std::uint32_t deviceTracers(VkPhysicalDevice device);
 
-// VkPhysicalDeviceRayTracingPositionFetchFeaturesKHR, which Vulkan headers before 1.3.249 lack.
+// Has the layout of VkPhysicalDeviceRayTracingPositionFetchFeaturesKHR, which Vulkan headers before 1.3.249
+// lack.
 struct PositionFetchFeatures {
     VkStructureType sType;
     void* pNext;
     VkBool32 rayTracingPositionFetch;
 };
 
-// What a device must be created with for Glint to use it: chain `features.pNext` into VkDeviceCreateInfo.
-// Points into static memory or itself; neither copy nor move.
+// The extensions and features that a device must be created with for Glint to use it. Chain `features.pNext`
+// into VkDeviceCreateInfo. The structure points into static memory and into itself, so it can be neither
+// copied nor moved.
 struct DeviceRequirements {
-    // `tracers`: which to enable, some of deviceTracers(). Packages run whose tracer is among them.
-    // positionFetch, shaderFloat16: for packages that need them. pipelineStatistics: for
-    // Renderer::pipelineStatistics().
+    // `tracers` are the bits to enable, a subset of deviceTracers(). The device then runs packages that have
+    // one of these tracers. Some packages need `positionFetch` or `shaderFloat16`.
+    // Renderer::pipelineStatistics() needs `pipelineStatistics`.
     explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false,
                                 bool shaderFloat16 = false, bool pipelineStatistics = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
@@ -78,26 +84,28 @@ struct DeviceRequirements {
 
     static constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;
     std::vector<const char*> extensions;
-    VkPhysicalDeviceFeatures2 features;  // chain of everything below
+    VkPhysicalDeviceFeatures2 features;  // head of the chain of the structures below
     VkPhysicalDeviceVulkan11Features vulkan11;
     VkPhysicalDeviceVulkan12Features vulkan12;
     VkPhysicalDeviceVulkan13Features vulkan13;
     VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure;
-    VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;               // in the chain if among the tracers
-    VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // likewise
-    PositionFetchFeatures positionFetch;                        // in the chain if asked for
-    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR pipelineExecutables;  // likewise
+    VkPhysicalDeviceRayQueryFeaturesKHR rayQuery;               // in the chain if `tracers` has it
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // in the chain if `tracers` has it
+    PositionFetchFeatures positionFetch;                        // in the chain if it is asked for
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR pipelineExecutables;  // in the chain if asked for
 };
 
-// Every extension and feature that `device` lacks, by name; empty if Glint runs on it. Of the tracers it
-// needs one.
+// Returns the name of every extension and feature that `device` lacks. The list is empty if Glint runs on the
+// device, which needs only one of the tracers.
 std::vector<std::string> missingRequirements(VkPhysicalDevice device);
 
 class Context {
 public:
-    // Uses the caller's device. The error names each missing feature or extension of the physical device.
+    // Uses the caller's device. Errors: "context-handles", "context-queue", "device-features" (it names each
+    // feature or extension that the physical device lacks), and those of loading Vulkan's functions.
     static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
-    // Makes an instance, a device and a queue without a surface.
+    // Makes an instance, a device and a queue without a surface. Errors: "validation-layer",
+    // "device-missing", "device-features", and those of the loader and of Vulkan's calls.
     static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
 
     ~Context();
@@ -109,18 +117,19 @@ public:
     std::string driverName() const;
     VkPhysicalDeviceType deviceType() const;
     std::uint32_t subgroupSize() const;  // lanes
-    // Messages of the validation layer so far, warnings and errors; empty with Validation::Off or adopt().
+    // Returns the warnings and errors of the validation layer so far. The list is empty with Validation::Off
+    // and after adopt().
     std::vector<std::string> validationMessages() const;
 
-    // What the driver knows of the pipelines that were made so far, for addPipelineCache() in another run on
-    // the same device and driver, which make them faster for it. Error "vulkan-call".
+    // Returns the driver's cache of the pipelines made so far. Another run on the same device and driver can
+    // pass it to addPipelineCache(), and then makes these pipelines faster. Error "vulkan-call".
     Result<std::vector<std::uint8_t>> pipelineCacheData() const;
-    // Adds what an earlier run got; no Renderer or GpuScene may be in the making. `data` is not trusted:
-    // error "pipeline-cache" where it is damaged or of another device or driver. With an error nothing has
-    // changed.
+    // Adds the data that pipelineCacheData() returned in an earlier run. No Renderer or GpuScene may be
+    // created at the same time. The data is not trusted: error "pipeline-cache" if it is damaged or belongs
+    // to another device or driver. An error leaves the cache unchanged.
     Status addPipelineCache(std::span<const std::uint8_t> data);
-    // Of the device and driver, with hexadecimal digits and hyphens: for the name of a file that keeps the
-    // data.
+    // Returns a name that identifies the device and the driver, for the file that keeps the data. It consists
+    // of hexadecimal digits and hyphens.
     std::string pipelineCacheName() const;
 
     struct State;  // for the runtime's own sources

@@ -1,4 +1,4 @@
-// A file of a package in memory: what `glint compile --embed` makes, and Package::load() reads.
+// A file of a package in memory. `glint compile --embed` makes such files, and Package::load() reads them.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 namespace glint::package {
 
 struct EmbeddedFile {
-    std::string_view name;                // as in the package's folder: "tables.bin", "uber.spv"
-    std::span<const std::uint8_t> bytes;  // of any alignment
+    std::string_view name;                // file name in the package's folder: "tables.bin", "uber.spv"
+    std::span<const std::uint8_t> bytes;  // any alignment; not owned
 };
 
 }  // namespace glint::package

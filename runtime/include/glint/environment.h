@@ -1,5 +1,5 @@
-// Light from all around a scene: an equirectangular map of radiance, filtered for diffuse and for rough
-// surfaces.
+// Light from all directions around a scene. It is an equirectangular map of radiance, filtered for diffuse
+// and for rough surfaces.
 #pragma once
 
 #include <glint/context.h>
@@ -11,29 +11,29 @@
 
 namespace glint {
 
-// Made once, used by the frames of any number of renderers, and shared by them: it may go before they do. The
-// Context must outlive it.
+// An environment is made once. The frames of any number of renderers can share it, and it may be destroyed
+// before they are. The Context must outlive it.
 class Environment {
 public:
-    // Filters on the host and uploads; waits for the queue. `image` holds radiance in the units of the
-    // lights, red, green and blue in linear Rec. 709; alpha is not read. Its first row is up (+Y); its middle
-    // faces +X, and from there +Z is a quarter to the right, as in the Khronos viewers. Any size and aspect:
-    // the whole image is the whole sphere. Negative channels count as 0. Errors: "environment-size" for an
-    // image without pixels, "environment-radiance" for NaN, infinity, and anything above 1e18, with the
-    // pixel.
+    // Filters the image on the host, uploads the result and waits for the queue. `image` holds radiance in
+    // the units of the lights: red, green and blue in linear Rec. 709. Alpha is not read. The first row is up
+    // (+Y). The middle of the image faces +X, and +Z is a quarter of the width to the right of it, as in the
+    // Khronos viewers. Any size and aspect ratio is allowed, since the whole image covers the whole sphere.
+    // Negative channels count as 0. Errors: "environment-size" for an image without pixels;
+    // "environment-radiance", with the pixel, for NaN, infinity and anything above 1e18.
     static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image);
     ~Environment();
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
 
     struct Statistics {
-        // Of the map on the device, which mirrors and the background show: from 256 x 128 to 2048 x 1024.
-        // Images outside of that are resampled; their light is kept.
+        // The size of the map on the device, which mirrors and the background show. It is between 256 x 128
+        // and 2048 x 1024. Images outside of that range are resampled, which keeps their light.
         std::uint32_t width = 0;
         std::uint32_t height = 0;
-        std::uint32_t levels = 0;          // by roughness, the map itself included
-        std::uint64_t negativePixels = 0;  // with a channel below 0
-        // Texels have 16 bits a channel, as this device filters no 32-bit images.
+        std::uint32_t levels = 0;          // levels of roughness, the map itself included
+        std::uint64_t negativePixels = 0;  // pixels with a channel below 0
+        // Whether texels have 16 bits a channel because this device can't filter 32-bit images.
         bool halfFloat = false;
         double filterMs = 0.0;  // host time
     };

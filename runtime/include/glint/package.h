@@ -1,4 +1,4 @@
-// A compiled package, read and checked. No Vulkan device needed.
+// A compiled package, read and checked. It needs no Vulkan device.
 #pragma once
 
 #include <glint/embedded_file.h>
@@ -20,7 +20,7 @@ namespace gpu {
 struct MaterialRecord;
 }
 
-// What a package knows of one of its scenes. Valid as long as the package.
+// The tables of one of a package's scenes. The spans are valid as long as the package.
 struct PackageScene {
     std::string_view name;
     std::span<const gpu::MaterialRecord> materials;
@@ -28,7 +28,7 @@ struct PackageScene {
     std::span<const package::TextureEntry> textures;
     std::span<const package::SamplerEntry> samplers;
 
-    // The entry for a primitive of a mesh, or null if the package does not know it.
+    // Returns the entry for a primitive of a mesh, or null if the package does not know the primitive.
     const package::PrimitiveEntry* findPrimitive(std::uint32_t mesh, std::uint32_t primitive) const;
 };
 
@@ -36,43 +36,52 @@ class PackageFiles;  // for the runtime's own sources
 
 class Package {
 public:
-    // Reads tables.bin and every module of `folder`. The error says whether the folder is no package, of
-    // another version, truncated or altered.
+    // Reads tables.bin and every module of `folder`. The error says whether the folder has no package, or one
+    // of another version, or one that is truncated or altered.
     static Result<Package> load(const std::filesystem::path& folder);
-    // The same of files in memory, with the same checks. They are copied: none is needed afterwards. Files
-    // that tables.bin does not name are ignored.
+    // Reads a package from files in memory, with the same checks. The files are copied, so they need not
+    // outlive the call. Files that tables.bin does not name are ignored.
     static Result<Package> load(std::span<const package::EmbeddedFile> files);
 
     Package(Package&&) noexcept;
     Package& operator=(Package&&) noexcept;
     ~Package();
 
+    // Whether the package has the modules of a strategy.
     bool supports(package::Strategy strategy) const;
+    // Whether masked geometry must be built non-opaque, so that rays run alpha tests.
     bool alphaTested() const;
-    // Strategies, tracers and where shadow rays are: what decides which modules there are.
+    // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
+    // modules the package has.
     package::PackageShape shape() const;
     package::HitRecordFormat hitRecord() const;
     // Whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
-    // Whether shaders read positions of hit triangles from acceleration structures:
+    // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
     // DeviceHandles::positionFetch.
     bool positionFetch() const;
-    // With Half the shaders compute in 16-bit float, too: DeviceHandles::shaderFloat16.
+    // With ShadingPrecision::Half shaders also compute in 16-bit float. The device then needs
+    // DeviceHandles::shaderFloat16.
     package::ShadingPrecision precision() const;
+    // Returns the number of shader IDs, retired ones included.
     std::uint32_t caseCount() const;
-    // Buckets of a visibility buffer: 0 for misses, 1 + shader ID for hits.
+    // Returns the number of buckets of a visibility buffer: bucket 0 holds misses, bucket 1 + shader ID holds
+    // hits.
     std::uint32_t bucketCount() const;
 
+    // These spans are valid as long as the package. Cases are indexed by shader ID.
     std::span<const package::CaseEntry> cases() const;
     std::span<const package::ModuleEntry> modules() const;
-    // At least one.
+    // Returns the number of scenes, which is at least 1.
     std::uint32_t sceneCount() const;
-    // `index` < sceneCount(), in the order in which they were given to the compiler.
+    // Scenes are in the order in which the compiler got them. `index` must be below sceneCount().
     PackageScene scene(std::uint32_t index) const;
+    // Returns the index of the scene with this name, or no value if there is none.
     std::optional<std::uint32_t> findScene(std::string_view name) const;
 
+    // Returns a text of the package. It is empty if `ref` is outside of the package's strings.
     std::string_view string(package::StringRef ref) const;
-    // SPIR-V words of a module. Empty if the package lacks it.
+    // Returns the SPIR-V words of a module. The span is empty if the package lacks the module.
     std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;
     struct State;  // for the runtime's own sources
 

@@ -1,10 +1,11 @@
-// The binary table of a package, tables.bin: the one contract between compiler and runtime. Little endian.
+// The binary table of a package, tables.bin. It is the only contract between compiler and runtime. All
+// numbers are little endian.
 //
 //   PackageHeader, PackageSection[sectionCount], then the sections' elements at their offsets (8-byte
 //   aligned).
 //
-// The runtime reads this file and the .spv files that it names; manifest.json says the same to people and
-// scripts.
+// The runtime reads this file and the .spv files that it names. manifest.json has the same content for
+// people and scripts.
 #pragma once
 
 #include <glint/effects.h>
@@ -19,7 +20,7 @@ inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
 
-// How hits are shaded: bits.
+// How hits are shaded, as bits of a set.
 enum Strategy : std::uint32_t {
     kStrategyUber = 1,        // trace and shade in one dispatch, a switch over the cases
     kStrategyVisibility = 2,  // hit records, ordered by case; one dispatch a case
@@ -28,35 +29,36 @@ enum Strategy : std::uint32_t {
     kAllStrategies = 15,
 };
 
-// What traces rays: bits. The strategy hit-shaders has the second, whatever the package has for the others.
+// How rays are traced, as bits of a set. The strategy hit-shaders always uses the ray tracing pipeline,
+// whichever tracers the package has for the other strategies.
 enum Tracer : std::uint32_t {
     kTracerRayQuery = 1,
     kTracerRayPipeline = 2,  // ray generation shaders: for devices without ray queries
     kAllTracers = 3,
 };
 
-// Where shadow rays of hits are traced.
+// Which pass traces the shadow rays of hits.
 enum class ShadowPlacement : std::uint32_t {
     Inline = 0,    // by the shader that shades the hit
     Deferred = 1,  // by a pass of their own, from a list
 };
 
-// What is kept of a hit between passes.
+// How a hit is stored between passes.
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
 };
 
-// What of shading is computed in how many bits.
+// How many bits shading computes with.
 enum class ShadingPrecision : std::uint32_t {
-    Single = 0,  // all in 32-bit float
-    Half = 1,    // what keeps its meaning there in 16-bit float: the device needs shaderFloat16
+    Single = 0,  // everything in 32-bit float
+    Half = 1,    // 16-bit float where the result keeps its meaning; the device needs shaderFloat16
 };
 
-// How hits are counted into buckets and copied in their order. All give each hit one slot; which is fastest
-// depends on the device and on the number of buckets.
+// How hits are counted into buckets and copied in the order of the buckets. Each method gives each hit one
+// slot. Which one is fastest depends on the device and on the number of buckets.
 enum class Ordering : std::uint32_t {
-    GlobalAtomics = 0,  // an atomic a hit
+    GlobalAtomics = 0,  // one atomic for each hit
     WaveLoop = 1,       // an atomic for each distinct bucket in a subgroup, found one after the other
     WaveAggregated =
         2,  // a loop over all buckets, with an atomic for each that the subgroup has: few buckets only
@@ -70,9 +72,9 @@ struct PackageHeader {
     char magic[8];
     std::uint32_t version;
     std::uint32_t sectionCount;
-    std::uint64_t fileBytes;  // of the whole file
-    // XXH3, 64 bits, of every byte after this header, with the hash of this header as its seed; for that,
-    // contentHash is 0.
+    std::uint64_t fileBytes;  // size of the whole file
+    // The 64-bit XXH3 hash of every byte after this header. Its seed is the hash of this header with a
+    // contentHash of 0.
     std::uint64_t contentHash;
     std::uint32_t strategies;   // Strategy bits
     std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
@@ -111,12 +113,12 @@ struct StringRef {
     std::uint32_t length;
 };
 
-// What a SPIR-V module is for. Values are stable.
+// The purpose of a SPIR-V module. The values are stable.
 enum class ModuleRole : std::uint32_t {
     GBufferVertex = 1,
     GBufferFragment = 2,
     Lighting = 3,
-    EffectRays = 4,  // one entry an effect that sends rays
+    EffectRays = 4,  // one entry for each effect that sends rays
     RayDispatch = 5,
     UberShade = 6,
     Trace = 7,
@@ -124,36 +126,36 @@ enum class ModuleRole : std::uint32_t {
     BucketOffset = 9,
     BucketCopy = 10,
     ShadeMiss = 11,
-    ShadeCase = 12,  // one entry a case
+    ShadeCase = 12,  // one entry for each case
     Compose = 13,
     SortedShade = 14,
     ShadowDispatch = 15,
     ShadowTrace = 16,
     OrderCheck = 17,
-    TraceClosestHit = 18,  // of ray tracing pipelines whose rays are shaded elsewhere
+    TraceClosestHit = 18,  // of ray tracing pipelines that only trace: other passes shade their hits
     TraceAnyHit = 19,      // alpha tests
     TraceMiss = 20,
-    HitTrace = 21,    // ray generation of the strategy hit-shaders
-    HitCase = 22,     // closest hit, one entry a case
-    HitUnknown = 23,  // closest hit of a geometry whose shader ID no case has
+    HitTrace = 21,    // ray generation shader of the strategy hit-shaders
+    HitCase = 22,     // closest-hit shader, one entry for each case
+    HitUnknown = 23,  // closest-hit shader for geometries whose shader ID no case has
     HitMiss = 24,
     RefractionWalk = 25,
-    Deform = 26,  // skins and morphs vertices; of GpuScene, not of a renderer
+    Deform = 26,  // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
 };
 
 struct ModuleEntry {
     ModuleRole role;
     std::uint32_t index;   // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
                            // EffectRays: effectNumber(); 0 otherwise
-    std::uint32_t tracer;  // Tracer that it traces with; 0: it traces nothing
+    std::uint32_t tracer;  // the Tracer that it traces with; 0: it traces no rays
     std::uint32_t pad;
     StringRef file;  // relative to the package's folder; several entries may name one file
     std::uint64_t bytes;
     std::uint64_t hash;  // XXH3, 64 bits
 };
 
-// A shader ID. One that a lock file keeps and no material has is retired: it has no keys, no primitives and
-// no modules.
+// A shader ID. It is retired if a lock file keeps it and no material has it. A retired one has no keys, no
+// primitives and no modules.
 struct CaseEntry {
     std::uint64_t always;
     std::uint64_t sometimes;
@@ -162,10 +164,11 @@ struct CaseEntry {
     std::uint32_t pad;
 };
 
-// One of the scenes that share the package's cases. Ranges of the sections that go scene by scene; they
-// follow each other without gaps. Indices in its elements count from the scene's own first element.
+// One of the scenes that share the package's cases. It names the scene's ranges in the sections that are
+// stored scene by scene; these ranges follow each other without gaps. Indices in their elements count from
+// the scene's own first element.
 struct SceneEntry {
-    StringRef name;  // unique in the package: the file's, without folder and extension
+    StringRef name;  // unique in the package: the scene file's name without folder and extension
     std::uint32_t firstMaterial;
     std::uint32_t materialCount;
     std::uint32_t firstPrimitive;
@@ -176,7 +179,7 @@ struct SceneEntry {
     std::uint32_t samplerCount;
 };
 
-// One primitive of one mesh; sorted by (mesh, primitive) in each scene.
+// One primitive of one mesh. The entries of each scene are sorted by (mesh, primitive).
 struct PrimitiveEntry {
     std::uint32_t mesh;
     std::uint32_t primitive;
@@ -188,7 +191,7 @@ struct PrimitiveEntry {
     std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
 };
 
-// An image viewed in one colour space: a glTF image used as colour and as data is two of these.
+// An image viewed in one colour space. A glTF image that is used both as colour and as data has two entries.
 struct TextureEntry {
     std::uint32_t image;  // index into the scene's images
     std::uint32_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format

@@ -1,5 +1,5 @@
-// Which modules a package has: the one list that the compiler fills, the loader checks and the renderer draws
-// from.
+// The list of the modules that a package has. The compiler fills it, the loader checks it and the renderer
+// draws from it.
 #pragma once
 
 #include <glint/package_format.h>
@@ -11,7 +11,7 @@
 
 namespace glint::package {
 
-// What decides which modules there are.
+// The properties of a package that decide which modules it has.
 struct PackageShape {
     std::uint32_t strategies = kStrategyUber | kStrategyVisibility;  // Strategy bits
     std::uint32_t tracers = kTracerRayQuery;                         // Tracer bits
@@ -19,11 +19,11 @@ struct PackageShape {
     std::uint32_t effects = kEffectShadow | kEffectReflection;  // Effect bits
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
-    std::vector<std::uint32_t> retired{};  // shader IDs below caseCount that have no modules, ascending
+    std::vector<std::uint32_t> retired{};  // ascending shader IDs below caseCount that have no modules
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
 };
 
-// One module of a package; fields as in ModuleEntry.
+// One module of a package. The fields are those of ModuleEntry.
 struct ModuleKey {
     ModuleRole role{};
     std::uint32_t index = 0;
@@ -47,27 +47,28 @@ enum class ShaderKind : std::uint8_t {
 
 enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect };
 
-// Which effects a role is for.
+// Which packages have a role.
 enum class Purpose : std::uint8_t {
     Picture,     // every package
-    Hits,        // packages with an effect that sends rays: what rays hit is shaded
-    Shadows,     // of those, with deferred shadow rays
-    Refraction,  // with refraction
-    Tracing,     // wherever a ray tracing pipeline traces
-    Motion,      // with meshes that follow skins or morph targets
+    Hits,        // packages with an effect that sends rays, whose hits are shaded
+    Shadows,     // those among them that defer shadow rays
+    Refraction,  // packages with refraction
+    Tracing,     // packages in which a ray tracing pipeline traces
+    Motion,      // packages with meshes that follow skins or morph targets
 };
 
 struct RoleInfo {
     ModuleRole role;
     std::uint32_t strategies;  // Strategy bits
-    std::string_view name;     // stable, as in the manifest
+    std::string_view name;     // stable; the name in the manifest
     ShaderKind kind;
     Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
-    bool shades = false;  // hits: traces only where there are shadows, and inline
+    bool shades = false;  // shades hits: it traces only if shadow rays are inline
 };
 
-// Names as on the command line and in the manifest; "unknown" for what is not one value.
+// Names on the command line and in the manifest. A value that is not exactly one of the enumerators is
+// "unknown".
 constexpr std::string_view nameOf(Strategy strategy) {
     switch (strategy) {
         case kStrategyUber:
@@ -118,7 +119,7 @@ inline constexpr Tracer kTracers[] = {kTracerRayQuery, kTracerRayPipeline};
 
 inline constexpr std::uint32_t kOrderedStrategies = kStrategyVisibility | kStrategySortedUber;
 
-// By role.
+// Every role, in the order of the list of modules.
 inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::GBufferVertex, kAllStrategies, "GBufferVertex", ShaderKind::Vertex, Purpose::Picture},
     {ModuleRole::GBufferFragment, kAllStrategies, "GBufferFragment", ShaderKind::Fragment, Purpose::Picture},
@@ -155,7 +156,7 @@ inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
 };
 
-// Null for a number that is no role.
+// Returns null for a number that is no role.
 constexpr const RoleInfo* findRole(ModuleRole role) {
     for (const RoleInfo& info : kRoles) {
         if (info.role == role) {
@@ -170,19 +171,20 @@ constexpr std::string_view roleName(ModuleRole role) {
     return info == nullptr ? std::string_view("unknown") : info->name;
 }
 
-// Tracer bits that strategies come with: hit-shaders has a pipeline, the others what the package has.
+// Returns the Tracer bits that strategies use. hit-shaders uses the ray tracing pipeline; the others use the
+// package's tracers.
 constexpr std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers) {
     const bool others = (strategies & ~kStrategyHitShaders) != 0;
     const bool hitShaders = (strategies & kStrategyHitShaders) != 0;
     return (others ? tracers : 0U) | (hitShaders ? std::uint32_t{kTracerRayPipeline} : 0U);
 }
 
-// Whether anything traces that is not the strategy's own.
+// Whether a pass other than those of the strategy traces rays.
 constexpr bool tracesPrimary(std::uint32_t effects) {
     return (effects & (kEffectShadow | kEffectAmbientOcclusion)) != 0;
 }
 
-// Whether the package's effects call for modules of a purpose.
+// Whether a package of this shape needs modules with this purpose.
 constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     const bool hits = rayEffects(shape.effects) != 0;
     switch (purpose) {
@@ -202,7 +204,7 @@ constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     return false;
 }
 
-// Whether a module of a kind that may trace does.
+// Whether a module traces, given that modules of its kind may do so.
 constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
     if (info.role == ModuleRole::Lighting) {
         return tracesPrimary(shape.effects);
@@ -210,8 +212,8 @@ constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
     return !info.shades || ((shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Inline);
 }
 
-// Tracer values of the modules of a role: several, one, or {0} where it traces nothing. Empty: it is not
-// needed.
+// Returns the Tracer values that the modules of a role have: several, one, or {0} if the role traces no rays.
+// The result is empty if the package does not need the role.
 inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
     const std::uint32_t strategies = info.strategies & shape.strategies;
     const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested;
@@ -242,7 +244,7 @@ inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const Pack
     return result;
 }
 
-// Numbers that the modules of a role have, ascending.
+// Returns the indices that the modules of a role have, ascending.
 inline std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const PackageShape& shape) {
     std::vector<std::uint32_t> indices;
     switch (info.repeated) {
@@ -272,7 +274,7 @@ inline std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const Pack
     return indices;
 }
 
-// Every module of a package, in order of role, index, tracer.
+// Returns every module of a package, in the order of role, index, tracer.
 inline std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
     std::vector<ModuleKey> keys;
     for (const RoleInfo& info : kRoles) {

@@ -1,4 +1,4 @@
-// What a driver says of the pipelines that it made, as VK_KHR_pipeline_executable_properties has it.
+// A driver's report about the pipelines that it made, in the terms of VK_KHR_pipeline_executable_properties.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -11,25 +11,25 @@
 
 namespace glint {
 
-// Names and descriptions are the driver's own.
+// One number of a driver. The driver chooses the name and the description.
 struct PipelineStatistic {
     std::string name;
     std::string description;
     std::variant<bool, std::int64_t, std::uint64_t, double> value;
 };
 
-// A piece of code that a pipeline has on the device: one a stage, or fewer, or more.
+// A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or more.
 struct PipelineExecutable {
     std::string name;
     std::string description;
     VkShaderStageFlags stages = 0;
-    std::uint32_t subgroupSize = 0;  // 0: it may vary, or there is none
+    std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
     std::vector<PipelineStatistic> statistics;
 };
 
 struct PipelineStatistics {
-    std::string name;  // the role of its module, as in the manifest, and its case, effect or ordering
-    // Absent where the driver does not say.
+    std::string name;  // the role of its module in the manifest, and its case, effect or ordering
+    // These have no value if the driver does not report them.
     std::optional<double> creationMs;
     std::optional<bool> cacheHit;
     std::vector<PipelineExecutable> executables;

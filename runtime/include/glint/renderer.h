@@ -1,4 +1,4 @@
-// Scenes on the device, and the passes that shade them with a package.
+// Scenes on the device, and the passes that shade them with a package's shaders.
 #pragma once
 
 #include <glint/context.h>
@@ -22,25 +22,28 @@
 
 namespace glint {
 
-// What GpuScene::update() did last. Device times are 0 where the queue has no timestamps.
+// What the last GpuScene::update() did. Times are device times in milliseconds; without timestamps on the
+// queue they are 0.
 struct MotionStatistics {
     enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
-    std::uint32_t deformed = 0;  // instances whose vertices were computed anew
-    std::uint32_t refits = 0;    // bottom levels
-    std::uint32_t rebuilds = 0;  // likewise
+    std::uint32_t deformed = 0;  // instances whose vertices were computed again
+    std::uint32_t refits = 0;    // bottom levels that were refitted
+    std::uint32_t rebuilds = 0;  // bottom levels that were built anew
     TopLevel topLevel = TopLevel::Kept;
     double deformMs = 0.0;
     double blasMs = 0.0;
     double tlasMs = 0.0;
 };
 
-// Geometry, acceleration structures, materials, textures and lights on the device.
-// The Context must outlive it.
+// The geometry, acceleration structures, materials, textures and lights of a scene on the device. The Context
+// must outlive it.
 class GpuScene {
 public:
-    // Uploads and builds: BLASes (fast trace, compacted), then the TLAS; waits for the queue. Errors:
-    // attributes that disagree with the package, more than 2^24 geometry records, a mesh or structure above a
-    // limit of the device.
+    // Uploads the scene, builds its BLASes (for fast tracing, compacted), then the TLAS, and waits for the
+    // queue. The spans of `scene` are not kept. Errors: "scene-package" (the package has no such scene, or
+    // the attributes disagree with it), "position-fetch" and "half-precision" (the device was created without
+    // what the package needs), "scene-geometries" (more than 2^24 geometry records), other "scene-" errors
+    // for a scene that is not well formed, "tlas-limit", and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
                                                     const SceneView& scene);
     ~GpuScene();
@@ -48,45 +51,49 @@ public:
     GpuScene& operator=(const GpuScene&) = delete;
 
     struct Statistics {
-        std::uint64_t triangles = 0;  // of all instances
+        std::uint64_t triangles = 0;  // triangles of all instances
         std::uint32_t geometries = 0;
         std::uint32_t instances = 0;
         std::uint32_t blasCount = 0;
         std::uint64_t blasBytes = 0;  // after compaction
         std::uint64_t blasUncompactedBytes = 0;
-        // 16-bit images that are 8-bit on this device, as it can't filter or blit R16G16B16A16_UNORM.
+        // How many 16-bit images are stored with 8 bits, because this device can't filter or blit
+        // R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;
-        double orderMs = 0.0;      // wall clock of SceneView::traversalOrder; 0: as the scene has them
+        double orderMs = 0.0;      // wall clock of SceneView::traversalOrder; 0: not ordered
         double blasBuildMs = 0.0;  // device time
         double tlasBuildMs = 0.0;
     };
     const Statistics& statistics() const;
-    // Buffers and images by what they hold, and the memory that they were allocated with.
+    // Lists buffers and images by what they hold. allocatedBytes() is the memory that was allocated for them.
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;
 
-    // Records into a command buffer of the caller's, in the recording state, outside a render pass, what
-    // brings a scene with SceneView::moves to another pose: vertices that follow joints and morph weights are
-    // computed, their BLASes refitted, the TLAS updated, instance and light records replaced. BLASes of
-    // meshes that keep their shape stay as they are; what has not changed since the last call is not touched.
-    // Renderer::record() may follow in the same command buffer; its accumulation should start anew.
+    // Records the commands that bring a scene with SceneView::moves to another pose. `commands` is a command
+    // buffer of the caller's, in the recording state and outside a render pass. The device then computes the
+    // vertices that follow joints and morph weights, refits their BLASes, updates the TLAS and replaces the
+    // records of instances, lights and materials. BLASes of meshes that keep their shape are not touched, and
+    // neither is anything that has not changed since the last call. Renderer::record() may follow in the same
+    // command buffer; its accumulation should start anew.
     //
-    // A BLAS is built anew instead of refitted after 32 refits, or where the box around the mesh has twice
-    // the surface that it had at the last build; the TLAS after 32 updates, or where an instance has gone
-    // farther than its own box was long (docs/movement.md says why). A flattened instance is hidden until it
-    // is whole again.
+    // A BLAS is built anew instead of refitted after 32 refits, or if the box around the mesh has more than
+    // twice the surface that it had at the last build. The TLAS is built anew after 32 updates, or if an
+    // instance has moved farther than its own box was long. docs/movement.md gives the reasons. A flattened
+    // instance is hidden until its transform is invertible again.
     //
-    // The spans are read here and not kept. One update may be in flight at a time: poses are written to
-    // host-visible memory here. What is recorded must be submitted before the next call, which builds upon
-    // it. Errors, with which nothing is recorded: "scene-still" (it was uploaded without `moves`),
-    // "scene-motion" (another number of instances, lights, joints or weights than at upload, another mesh, or
-    // a number that is not finite).
+    // The spans are read in this call and not kept. Poses are written to host-visible memory in this call, so
+    // only one update may be in flight at a time. The recorded commands must be submitted before the next
+    // call, which builds upon them. With an error nothing is recorded. Errors: "scene-still" (the scene was
+    // uploaded without `moves`), "scene-motion" (another number of instances, lights, joints or weights than
+    // at upload, another mesh, or a number that is not finite), "scene-light", "scene-material" (other
+    // materials than at upload).
     Status update(VkCommandBuffer commands, const MotionView& motion);
 
-    // Records, submits and waits; for tools and tests.
+    // Records an update, submits it and waits for the device. This is for tools and tests.
     Status updateAndWait(const MotionView& motion);
 
-    // Of the last update that has completed on the device; the caller has waited for it.
+    // Returns what the last update did. The caller must have waited until the device completed it. Error
+    // "frame-not-recorded" if there was no update, and those of reading device times.
     Result<MotionStatistics> motion() const;
 
     struct State;
@@ -99,31 +106,35 @@ private:
 
 struct RendererOptions {
     package::Strategy strategy = package::kStrategyVisibility;
-    std::uint32_t width = 1280;
+    std::uint32_t width = 1280;  // pixels
     std::uint32_t height = 720;
-    // No value: ray queries if package and device have them, else the ray tracing pipeline.
+    // No value chooses ray queries if package and device support them, else the ray tracing pipeline.
     std::optional<package::Tracer> tracer{};
-    // No value: by the number of buckets and the device.
+    // No value chooses by the number of buckets and the device, as defaultOrdering() does.
     std::optional<package::Ordering> ordering{};
-    // Checks on the device that each hit is in its bucket, once: FrameCounters::orderErrors. Slow.
+    // Makes the device check that each hit is in its bucket exactly once, and count the errors in
+    // FrameCounters::orderErrors. This is slow.
     bool checkOrder = false;
-    // Rays of all effects join one list, and their hits are ordered and shaded together: fewer, larger
-    // dispatches, and more memory.
+    // Puts the rays of all effects into one list, so that their hits are ordered and shaded together. This
+    // makes fewer, larger dispatches and takes more memory.
     bool batchEffects = false;
-    // Threads that make pipelines, the caller's included; 0: as many as the machine runs at once.
+    // The number of threads that make pipelines, the calling one included. 0 means as many as the machine
+    // runs at once.
     std::uint32_t pipelineThreads = 0;
-    // Has the driver keep what pipelineStatistics() tells. Error "pipeline-statistics" without
-    // DeviceHandles::pipelineStatistics.
+    // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
+    // without DeviceHandles::pipelineStatistics.
     bool pipelineStatistics = false;
 };
 
-// The ordering that a renderer uses where none is asked for.
+// Returns the ordering that a renderer uses if RendererOptions::ordering has no value.
 package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount);
 
-// What the rays of a workgroup are sorted by before they join the list.
+// The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,
+// or cells of the direction's octahedral map.
 enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
 
-// A linear gradient: zenith above, ground below, horizon between. Radiance in the units of the lights.
+// A sky with a linear gradient: zenith above, ground below, horizon in between. Radiance is in the units of
+// the lights.
 struct SkyView {
     std::array<float, 3> zenith{0.25F, 0.45F, 0.85F};
     std::array<float, 3> horizon{0.75F, 0.80F, 0.85F};
@@ -132,64 +143,70 @@ struct SkyView {
 
 class Environment;
 
-// What Renderer::timings() has of a frame.
+// Which times Renderer::timings() returns for a frame.
 enum class Timing : std::uint32_t {
-    // "frame", all of it; and for each round of rays "hits": from the list of rays on, what finds and shades
-    // hits.
+    // "frame" is the time of the whole frame. "hits" is the time of a round of rays, from the finished list
+    // of rays to the shaded hits.
     Frame,
-    // Every pass. What measures it waits for what runs before, so that passes do not overlap: the sum is
-    // more than the frame takes otherwise.
+    // Every pass has a time of its own. To measure it, a pass waits for the passes before it, so that passes
+    // do not overlap. The sum is therefore longer than the frame takes otherwise.
     Passes,
 };
 
 struct FrameOptions {
     CameraView camera;
     SkyView sky;
-    // Instead of the gradient, for packages that read one (Package::environmentMap()); those need it, the
-    // others refuse it. A Renderer keeps the map of its last recording alive.
+    // The environment that replaces the gradient. Packages that read one (Package::environmentMap()) require
+    // it, and others refuse it. A Renderer keeps the map of its last recording alive.
     const Environment* environment = nullptr;
     float environmentRotation = 0.0F;   // about +Y, counter-clockwise as seen from above, radians
-    float environmentIntensity = 1.0F;  // times its radiance
-    // Smoother surfaces reflect as mirrors.
+    float environmentIntensity = 1.0F;  // factor of its radiance
+    // Surfaces with less roughness reflect as mirrors.
     float mirrorRoughness = 0.05F;
-    // Surfaces with a greater roughness send no reflection ray.
+    // Surfaces with more roughness send no reflection ray.
     float maxReflectionRoughness = 0.3F;
-    // Rays an effect and sample with a lesser luminance of their weight are not sent: their light is lost. 0:
-    // none.
+    // A ray of an effect is not sent if the luminance of its sample's weight is below this. Its light is
+    // lost. 0 sends every ray.
     float faintWeight = 0.0F;
-    // Rays a sample to each light that has a size, from primary surfaces.
+    // The number of rays that a primary surface sends, in each sample, to each light that has a size: 1 to
+    // 4096.
     std::uint32_t shadowSamples = 1;
-    // Ambient occlusion: rays a sample; how far they reach, metres, infinite for no limit; and whether an
-    // occluder counts less the farther it is, linearly to 0 at the radius, which then has to be finite.
+    // Ambient occlusion: the number of rays a sample (1 to 4096), their length in metres (infinite means no
+    // limit), and whether an occluder counts less the farther it is. That weight falls linearly to 0 at the
+    // radius, which then has to be finite.
     std::uint32_t occlusionSamples = 4;
     float occlusionRadius = std::numeric_limits<float>::infinity();
     bool occlusionFalloff = false;
-    // Surfaces that a refracted ray meets at most.
+    // The largest number of surfaces that a refracted ray meets: 1 to 64.
     std::uint32_t maxInterfaces = 8;
-    // Counts rays to lights and of ambient occlusion, too; costs time, most with ray tracing pipelines.
+    // Also counts rays to lights and rays of ambient occlusion. This costs time, most with ray tracing
+    // pipelines.
     bool countsLight = false;
-    // Luminance that a ray of an effect brings at most in one sample; infinite: no limit, which is exact.
+    // The largest luminance that a ray of an effect adds in one sample. Infinity means no limit, which is
+    // exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
     Binning binning = Binning::None;
-    // Steps of the march in screen space that comes before a ray; 0: none.
+    // The number of steps of the march in screen space that precedes a ray. 0 means no march.
     std::uint32_t screenSteps = 0;
-    // How far behind its depth a surface is taken to reach in that march, as a share of its distance.
+    // The thickness that the march assumes behind the depth of a surface, as a share of the surface's
+    // distance.
     float screenThickness = 0.02F;
-    // Effect bits: of the package's effects with rays, and of ambient occlusion, those that are on.
+    // Effect bits that switch effects on. They apply to the package's effects with rays and to ambient
+    // occlusion.
     std::uint32_t effects = package::kAllEffects;
     std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
-    // Samples of a pixel that the picture will average. Each stands for that share of the pixel's area, so
-    // that the cones by which textures are filtered are 1 / sqrt(averagedSamples) as wide. A program that
-    // accumulates until something moves gives the number that it usually reaches. 0: render() and
-    // renderSamples() take their count of samples, record() takes 1.
+    // The number of samples of a pixel that the picture will average. Each sample stands for that share of
+    // the pixel's area, so the cones by which textures are filtered are 1 / sqrt(averagedSamples) as wide. A
+    // program that accumulates until something moves should give the number that it usually reaches. With 0,
+    // render() and renderSamples() use their count of samples, and record() uses 1.
     std::uint32_t averagedSamples = 0;
     std::uint32_t seed = 0;
     Timing timing = Timing::Frame;
 };
 
-// What a stretch of a frame's time is spent on; docs/architecture.md, "Passes of a frame".
+// The part of a frame that a time belongs to. docs/architecture.md explains it in "Passes of a frame".
 enum class Pass : std::uint32_t {
-    Frame,  // everything, with Timing::Frame
+    Frame,  // the whole frame, with Timing::Frame
     Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
     Gbuffer,
     Lighting,
@@ -212,132 +229,137 @@ enum class Pass : std::uint32_t {
 };
 
 struct PassTiming {
-    std::string name;  // for people: also the debug label of the pass
+    std::string name;  // for people; it is also the debug label of the pass
     double milliseconds = 0.0;
     Pass pass = Pass::Frame;
-    std::uint32_t shaderId = 0;  // of Pass::ShadeCase
+    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
 };
 
-// Of one effect in one sample.
+// The counters of one effect in one sample.
 struct EffectCounters {
     package::Effect effect{};
-    std::uint32_t rays = 0;  // traced to their end: of the list, or to lights and occluders
+    std::uint32_t rays = 0;  // rays traced to their end: those of the list, or to lights and occluders
     std::uint32_t hits = 0;
-    std::uint32_t misses = 0;      // also: nothing in the way of a light
-    std::uint32_t segments = 0;    // refraction: rays traced from one interface to the next
-    std::uint32_t screenHits = 0;  // found in screen space, without a ray
-    // Pixels, or lights of pixels, that sent no ray, by the gate that kept them.
+    std::uint32_t misses = 0;      // also rays to a light with nothing in their way
+    std::uint32_t segments = 0;    // refraction: rays from one interface to the next
+    std::uint32_t screenHits = 0;  // hits found in screen space, without a ray
+    // Pixels, or lights of pixels, that sent no ray. Each counter belongs to the gate that stopped them.
     std::uint32_t skippedSky = 0;
     std::uint32_t skippedUnlit = 0;
     std::uint32_t skippedRough = 0;
     std::uint32_t skippedBlack = 0;   // the sample would bring no light
     std::uint32_t skippedAbsent = 0;  // the material has no such lobe
-    std::uint32_t skippedFaint = 0;   // FrameOptions::faintWeight
-    std::uint32_t skippedFacing = 0;  // shadow: the surface turns from the light
+    std::uint32_t skippedFaint = 0;   // below FrameOptions::faintWeight
+    std::uint32_t skippedFacing = 0;  // shadow: the surface faces away from the light
     std::uint32_t skippedRange = 0;
     std::uint32_t skippedCone = 0;
-    // Where hits are ordered, and effects are not batched: misses, then hits by shader ID.
+    // Misses, then hits by shader ID. Filled if hits are ordered and effects are not batched.
     std::vector<std::uint32_t> bucketCounts;
 };
 
 struct FrameCounters {
-    std::vector<EffectCounters> effects;  // those of the package, in order of their bits
-    std::uint32_t rays = 0;               // of all effects
-    std::uint32_t shadowRays = 0;         // of hits, deferred ones
+    std::vector<EffectCounters> effects;  // the package's effects, in the order of their bits
+    std::uint32_t rays = 0;               // rays of all effects
+    std::uint32_t shadowRays = 0;         // deferred shadow rays of hits
     std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;
-    std::uint32_t nonFinite = 0;  // samples since sample 0 that were no number: they count as black
-    // Where hits are ordered, of all effects: misses, then hits by shader ID.
+    std::uint32_t nonFinite = 0;  // samples since sample 0 that were not finite; they count as black
+    // Misses, then hits by shader ID, of all effects. Filled if hits are ordered.
     std::vector<std::uint32_t> bucketCounts;
 
-    // Zeros for an effect that the package lacks.
+    // Returns zeros for an effect that the package lacks.
     EffectCounters of(package::Effect effect) const;
 };
 
-// How a pixel came to what an effect brings it.
+// How a pixel got the light of an effect.
 enum class PixelPath : std::uint8_t {
     NoSurface,
     NoRay,   // rough, unlit, or its sample would bring no light
     Screen,  // found in screen space
-    Hit,     // by a ray
-    Miss,    // by a ray that left the scene
+    Hit,     // found by a ray
+    Miss,    // the ray left the scene
 };
 
-// RGBA, 32-bit float, linear, first row on top.
+// An image of RGBA in linear 32-bit float. The first row is on top.
 struct LinearImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<std::array<float, 4>> pixels;
 };
 
-// Pipelines and per-frame resources for one package, one scene, one size. Context and GpuScene must outlive
-// it.
+// The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
+// outlive it.
 class Renderer {
 public:
+    // Makes all pipelines, images and buffers and waits for the device. Errors: "renderer-options" (not
+    // exactly one strategy, tracer or ordering), "package-strategy" and "package-tracer" (the package lacks
+    // it), "device-tracer" and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size"
+    // (no pixels, or more than the device supports), and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Records one sample into a command buffer of the caller's, in the recording state, outside a render
-    // pass. Recordings of a renderer share its buffers: they run one after the other, which the barrier at
-    // their begin sees to on one queue, and counters() are those of the last. Afterwards output() holds the
-    // mean over samples 0..sampleIndex.
+    // Records one sample into a command buffer of the caller's, in the recording state and outside a render
+    // pass. Recordings of a renderer share its buffers, so they must run one after the other. On one queue
+    // the barrier at their beginning ensures that. counters() returns those of the last recording. After the
+    // commands ran, output() holds the mean over samples 0..sampleIndex. Errors: "camera", "sky",
+    // "frame-options", "environment-missing", "environment-unread".
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
-    // The accumulated linear image: VK_FORMAT_R32G32B32A32_SFLOAT, layout GENERAL, last written by a compute
-    // shader.
+    // The accumulated linear image. Its format is VK_FORMAT_R32G32B32A32_SFLOAT and its layout is GENERAL; a
+    // compute shader writes it last.
     VkImage output() const;
     VkImageView outputView() const;
 
-    // Records, submits and waits: samples [0, sampleCount) of the frame; then reads back. For tools and
-    // tests.
-    // `afterSample` is called when a sample has completed, and counters() and timings() are its own; its
-    // error ends the work. FrameOptions::timing is of the last sample, those before are timed as a frame.
+    // Records and submits samples [0, sampleCount) of the frame, waits for the device and reads the picture
+    // back. This is for tools and tests. `afterSample` is called after each completed sample; counters() and
+    // timings() are then those of that sample. An error that it returns ends the work. FrameOptions::timing
+    // applies to the last sample; the samples before it are timed as whole frames.
     Result<LinearImage> render(const FrameOptions& frame, std::uint32_t sampleCount = 1,
                                const std::function<Status()>& afterSample = {});
 
-    // The same without reading the picture back: to measure time.
+    // Does the same without reading the picture back, to measure time.
     Status renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,
                          const std::function<Status()>& afterSample = {});
 
-    // Of the last recording that has completed on the device; the caller has waited for it. As its
-    // FrameOptions::timing says.
+    // These return the results of the last recording. The caller must have waited until the device completed
+    // it. FrameOptions::timing of that recording says which times there are.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
-    // Of each pixel and an effect that sends rays, row by row from the top. Waits for the device. Error
-    // "effect-missing" where the package lacks it.
+    // Says for each pixel how it got the light of an effect that sends rays, row by row from the top. Waits
+    // for the device. Error "effect-missing" if the package lacks the effect.
     Result<std::vector<PixelPath>> readCoverage(package::Effect effect = package::kEffectReflection);
-    // Which pixels see a surface in the last sample: 1, or 0 for the sky; row by row from the top. Waits for
-    // the device.
+    // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
+    // by row from the top. Waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
 
-    // What it runs, where RendererOptions left the choice.
+    // What the renderer uses, also where RendererOptions left the choice to it.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
-    // Pipelines, images and buffers that there are, for tests and reports.
+    // The number of pipelines, images and buffers, for tests and reports.
     struct Footprint {
         std::uint32_t pipelines = 0;
         std::uint32_t images = 0;
         std::uint32_t buffers = 0;
-        std::uint64_t bytes = 0;           // of images and buffers
-        std::uint64_t allocatedBytes = 0;  // of the memory that holds them
+        std::uint64_t bytes = 0;           // size of images and buffers
+        std::uint64_t allocatedBytes = 0;  // size of the memory that holds them
     };
     Footprint footprint() const;
-    // Each image and buffer of the footprint.
+    // Lists each image and buffer of the footprint.
     std::vector<MemoryItem> memory() const;
 
     // How the pipelines were made.
     struct PipelineMaking {
         std::uint32_t threads = 0;
-        double milliseconds = 0.0;  // wall clock, with their tables
-        // Of the pipelines, how many the driver found in the cache of the Context; absent where it does not
+        double milliseconds = 0.0;  // wall clock, shader binding tables included
+        // How many of the pipelines the driver found in the Context's cache. No value if the driver does not
         // say.
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
-    // Of each pipeline, what the driver says of it. Errors: "pipeline-statistics" without
+    // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without
     // RendererOptions::pipelineStatistics, "vulkan-call".
     Result<std::vector<PipelineStatistics>> pipelineStatistics() const;
 

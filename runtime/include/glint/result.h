@@ -1,4 +1,4 @@
-// Errors as values, shared by the runtime and the tool. Standard library only.
+// Errors as values, shared by the runtime and the tool. This header needs the standard library only.
 #pragma once
 
 #include <cassert>
@@ -11,7 +11,7 @@ namespace glint {
 
 enum class Severity { Note, Warning, Error };
 
-// One message to the user: what is wrong, where, and what to do about it.
+// One message to the user. It says what is wrong, where, and what to do about it.
 struct Diagnostic {
     Severity severity = Severity::Error;
     std::string id;       // stable kebab-case name of the kind of message, for instance "accessor-range"
@@ -37,7 +37,7 @@ inline std::string toString(const Diagnostic& diagnostic) {
     return text;
 }
 
-// A value, or the error that stood in the way of it.
+// A value, or the error that prevented it.
 template <typename T>
 class [[nodiscard]] Result {
 public:
@@ -80,7 +80,7 @@ private:
     std::variant<T, Diagnostic> state_;
 };
 
-// The result of work that yields nothing but may fail.
+// The result of work that returns no value but may fail.
 using Status = Result<std::monostate>;
 
 inline Status okStatus() {

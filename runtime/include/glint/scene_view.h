@@ -1,4 +1,5 @@
-// A scene as the runtime takes it: spans over the caller's memory, read during upload and not kept.
+// A scene as the runtime takes it. Its spans refer to the caller's memory; upload reads them and does not
+// keep them.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +9,17 @@
 
 namespace glint {
 
-// Differences to the attributes of a primitive; each empty or as long as its positions.
+// Differences to the attributes of a primitive. Each span is empty or as long as the primitive's positions.
 struct MorphTargetView {
     std::span<const std::array<float, 3>> positions;
     std::span<const std::array<float, 3>> normals;   // only if the primitive has normals
-    std::span<const std::array<float, 3>> tangents;  // likewise
+    std::span<const std::array<float, 3>> tangents;  // only if the primitive has tangents
 };
 
-// A triangle list. Attribute spans are empty or as long as positions; a missing span must agree with the
-// package's key for this primitive (upload reports where it does not).
+// A triangle list. Attribute spans are empty or as long as `positions`. A missing span must agree with the
+// package's key for this primitive; upload reports an error otherwise.
 struct PrimitiveView {
-    std::uint32_t mesh = 0;       // as in the package's PrimitiveEntry
+    std::uint32_t mesh = 0;       // mesh number, as in the package's PrimitiveEntry
     std::uint32_t primitive = 0;  // within the mesh
     std::span<const std::array<float, 3>> positions;
     std::span<const std::array<float, 3>> normals;
@@ -26,10 +27,11 @@ struct PrimitiveView {
     std::span<const std::array<float, 2>> texCoords0;
     std::span<const std::array<float, 2>> texCoords1;
     std::span<const std::array<float, 4>> colors;  // linear RGBA
-    std::span<const std::uint32_t> indices;        // 3 a triangle
+    std::span<const std::uint32_t> indices;        // three indices for each triangle
     std::span<const MorphTargetView> targets{};
-    // Of a primitive that follows a skin: as many a vertex for all of them, vertex by vertex. The joints
-    // index InstanceView::joints; the weights of a vertex are at least 0 and sum to 1.
+    // Joints and weights of a primitive that follows a skin, vertex by vertex. Every vertex has the same
+    // number of them. Joints are indices into InstanceView::joints. The weights of a vertex are at least 0
+    // and sum to 1.
     std::span<const std::uint16_t> joints{};
     std::span<const float> jointWeights{};
 };
@@ -38,16 +40,18 @@ struct PrimitiveView {
 struct InstanceView {
     std::uint32_t mesh = 0;
     std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
-    // Of a mesh that follows a skin: from the mesh's space to that which objectToWorld starts from, three
-    // rows of four a joint. Empty: the mesh keeps its shape.
+    // One transform for each joint of a mesh that follows a skin, in three rows of four. It leads from the
+    // mesh's space to the space that objectToWorld starts from. If empty, no skin changes the mesh's shape.
     std::span<const std::array<float, 12>> joints{};
-    // Of a mesh with morph targets: one a target, missing ones are 0. Empty: likewise.
+    // One weight for each morph target of the mesh; missing ones are 0. If empty, no morph target changes the
+    // mesh's shape.
     std::span<const float> morphWeights{};
-    // A hidden instance is neither drawn nor hit. One that may be shown later needs SceneView::moves.
+    // A hidden instance is neither drawn nor hit. An instance that may be shown later needs SceneView::moves.
     bool visible = true;
 };
 
-// RGBA, first row on top, as stored: where the package reads an image as colour, it is taken to be in sRGB.
+// An RGBA image as it is stored, the first row on top. If the package reads an image as colour, the image is
+// taken to be in sRGB.
 struct ImageView {
     enum class Format : std::uint32_t {
         Rgba8,
@@ -57,14 +61,15 @@ struct ImageView {
     std::uint32_t height = 0;
     std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes
     Format format = Format::Rgba8;
-    // In `pixels`, one after another from the largest on, each of half the size of the one before, rounded
-    // down. Upload makes the others of a full pyramid from the last.
+    // The number of mip levels in `pixels`. They follow one another from the largest on; each has half the
+    // size of the one before, rounded down. Upload makes the remaining levels of a full pyramid from the last
+    // one.
     std::uint32_t levels = 1;
 
     std::uint32_t bytesPerPixel() const {
         return format == Format::Rgba16 ? 8 : 4;
     }
-    // The bytes of the first `count` levels.
+    // Returns the size in bytes of the first `count` levels.
     std::uint64_t byteCount(std::uint32_t count) const {
         std::uint64_t texels = 0;
         for (std::uint32_t level = 0; level < count; ++level) {
@@ -78,70 +83,73 @@ struct ImageView {
 struct LightView {
     enum class Type : std::uint32_t { Directional, Point, Spot };
     Type type = Type::Directional;
-    std::array<float, 3> intensity{1, 1, 1};  // colour times intensity, lux or candela
+    std::array<float, 3> intensity{1, 1, 1};  // colour times intensity, lux (directional) or candela
     std::array<float, 3> position{};
-    std::array<float, 3> direction{0, -1, 0};  // unit, the way the light travels
+    std::array<float, 3> direction{0, -1, 0};  // unit vector along which the light travels
     float range = 0.0F;                        // metres; 0 means unlimited
     float innerConeAngle = 0.0F;               // radians
     float outerConeAngle = 0.7853982F;
-    // Of soft shadows: the radius of a point or spot light, metres; half the angular diameter of a
-    // directional one, radians, below a quarter turn. 0: hard.
+    // The size of the light, for soft shadows. It is the radius in metres of a point or spot light. For a
+    // directional light it is half the angular diameter in radians, below a quarter turn. 0 makes hard
+    // shadows.
     float size = 0.0F;
 };
 
-// The values of a material in the place of the package's: a gpu::MaterialRecord (shaders/interop/scene.h).
-// Its textures and samplers stay those of the package, whatever the record says; their transforms are taken.
+// Values of a material that replace the package's, as the bytes of a gpu::MaterialRecord
+// (shaders/interop/scene.h). Texture transforms are taken from the record, but the textures and samplers stay
+// those of the package.
 struct MaterialView {
-    std::uint32_t material = 0;  // as in the package's PrimitiveEntry::materialIndex
+    std::uint32_t material = 0;  // material number, as in the package's PrimitiveEntry::materialIndex
     std::span<const std::uint8_t> record;
 };
 
 // The order in which the driver gets the triangles of each primitive and the instances of the scene. Mesa's
-// lavapipe makes its trees by halving what it is given: without an order rays may take a hundred times as
-// long. Shaders see triangles by the number that they have in that order.
+// lavapipe makes its trees by halving its input, so without an order rays may take a hundred times as long.
+// Shaders number triangles by their place in that order.
 enum class TraversalOrder : std::uint32_t {
     Auto,     // Halving on CPUs, Input on other devices
-    Input,    // as the scene has them
-    Halving,  // so that each half of the order is small, and each half of a half
+    Input,    // the scene's own order
+    Halving,  // an order in which each half is small, and each half of a half
 };
 
 struct SceneView {
-    std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive), all meshes that instances use
+    std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
     std::span<const InstanceView> instances;
-    std::span<const ImageView> images;  // by the package's TextureEntry::image
+    std::span<const ImageView> images;  // indexed by the package's TextureEntry::image
     std::span<const LightView> lights;
-    std::uint32_t packageScene = 0;  // which of the package's scenes it is
-    // Whether GpuScene::update() will move it. What only that needs is there only if so.
+    std::uint32_t packageScene = 0;  // index of the scene in the package
+    // Whether GpuScene::update() will move the scene. The resources for it are only made if so.
     bool moves = false;
-    // Materials with other values than the package's, by ascending number. Where the scene moves, these are
-    // the materials that GpuScene::update() may change.
+    // Materials whose values differ from the package's, by ascending number. If the scene moves,
+    // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
 };
 
-// A scene that moved: instances, lights and materials as at upload, in their order and number, each of the
-// same mesh, type or number, with as many joints and weights.
+// A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each
+// instance keeps its mesh and its number of joints and weights, each light its type, and each material its
+// number.
 struct MotionView {
-    // What becomes of acceleration structures that no longer fit.
+    // What happens to acceleration structures that no longer fit.
     enum class Builds : std::uint32_t {
-        ByRule,   // as GpuScene::update() says
-        Refit,    // refitted and updated, whatever that costs rays
-        Rebuild,  // built anew
+        ByRule,   // refit or rebuild by the rules of GpuScene::update()
+        Refit,    // refit and update, however slow rays become
+        Rebuild,  // build anew
     };
     std::span<const InstanceView> instances;
     std::span<const LightView> lights;
     Builds builds = Builds::ByRule;
-    std::span<const MaterialView> materials{};  // those of the upload, in their order
+    std::span<const MaterialView> materials{};  // the materials of the upload, in their order
 };
 
-// Where a frame is seen from, in world space, right-handed.
+// The camera of a frame, in world space, right-handed.
 struct CameraView {
     std::array<float, 3> position{};
     std::array<float, 3> forward{0, 0, -1};  // unit
     std::array<float, 3> up{0, 1, 0};        // unit, orthogonal to forward
     bool orthographic = false;
     float halfHeight = 0.4F;  // tan(yfov / 2), or half the height of the view in metres
-    float halfWidth = 0.4F;   // likewise; halfWidth / halfHeight should be width / height
+    float halfWidth = 0.4F;   // the same for the width; halfWidth / halfHeight should be width / height
     float near = 0.01F;       // metres
     float far = 0.0F;         // metres; 0 means infinite (perspective only)
 };
