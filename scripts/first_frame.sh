@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Measures how long a scene takes to its first sample, by strategy. It does so without anything from earlier runs, with the
-# pipeline cache in its file, and with only the driver's own cache; and with pipelines made by one thread, and by one thread
-# for each core. Runs are interleaved, so that a busy machine slows all alike. Prints Markdown: medians with the least and
-# the most, in milliseconds of wall clock.
+# Measures how long a scene takes to its first sample, by strategy. It does so without anything from earlier runs, with
+# the pipeline cache in its file, and with only the driver's own cache; and with pipelines made by one thread, and by one
+# thread for each core. Runs are interleaved, so that a busy machine slows all alike. Prints Markdown: medians with the
+# least and the most, in milliseconds of wall clock.
 #
 #   scripts/first_frame.sh [ROUNDS [SCENE.gltf|.glb [STRATEGIES]]]     default 5, the gallery, "uber visibility sorted-uber
 #                                                                      hit-shaders"

@@ -56,8 +56,8 @@ struct Place {
     double count = 1.0;
 };
 
-// Of more instances than this, an even selection is used, because a shear or an uneven scale costs a pass
-// over the triangles for each instance.
+// If there are more instances than this, an even selection of them is used, because a shear or an uneven
+// scale costs a pass over the triangles for each instance.
 constexpr std::size_t kMaxInstances = 1024;
 
 void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places) {
