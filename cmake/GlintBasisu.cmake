@@ -1,14 +1,15 @@
-# glint_basisu(TARGET): compiles the transcoder of Basis Universal into TARGET, with which it reads KTX2 textures, from the
-# sources that scripts/fetch_basisu.sh keeps, or those of a checkout that GLINT_BASISU_ROOT names. Sets GLINT_HAS_BASISU.
+# glint_basisu(TARGET): compiles the transcoder of Basis Universal into TARGET, which then reads KTX2
+# textures. The sources are those that scripts/fetch_basisu.sh keeps, or those of a checkout that
+# GLINT_BASISU_ROOT names. Sets GLINT_HAS_BASISU.
 #
-# It is compiled here, not taken from a library, so that it has the flags of each build, sanitizers and coverage among
-# them: what it reads was written by others.
+# It is compiled here and not taken from a library, so that it has the flags of each build, including those of
+# sanitizers and coverage, because it reads files that others wrote.
 
 set(GLINT_BASISU_ROOT "" CACHE PATH "Sources of Basis Universal (default: where scripts/fetch_basisu.sh keeps them)")
 
 set(GLINT_BASISU_TRIMMED "${CMAKE_CURRENT_LIST_DIR}/basisu_trimmed.h")
 
-# Where scripts/fetch_basisu.sh keeps the sources.
+# Finds the folder in which scripts/fetch_basisu.sh keeps the sources.
 function(_glint_basisu_root result)
   foreach(candidate IN ITEMS "${GLINT_BASISU_ROOT}" "$ENV{GLINT_BASISU_ROOT}")
     if(candidate)
@@ -40,13 +41,13 @@ function(glint_basisu target)
 
   add_library(glint_basisu OBJECT "${root}/transcoder/basisu_transcoder.cpp")
   target_compile_features(glint_basisu PRIVATE cxx_std_17)
-  # Its assertions are about its caller and the file alike: a file must not end the process. Optimised in every build, as
-  # it takes seconds a texture otherwise.
+  # Its assertions check its caller and the file alike, but a file must not end the process. Every build
+  # optimises it, because it would otherwise take seconds for each texture.
   set(level $<IF:$<BOOL:${GLINT_SANITIZE}>,-O1,-O2>)
   target_compile_options(glint_basisu PRIVATE -w ${level} -fno-strict-aliasing)
   target_compile_definitions(glint_basisu PRIVATE NDEBUG)
-  # Of the version that is known, only what reads ETC1S and UASTC and writes pixels: a third of the time, and less code that
-  # sees a file. Another version is compiled as it comes.
+  # If the version is known, only the code that reads ETC1S and UASTC and writes pixels is compiled. This
+  # takes a third of the time, and less code sees a file. Another version is compiled as it is.
   file(STRINGS "${root}/transcoder/basisu_transcoder_internal.h" version REGEX "define BASISD_LIB_VERSION 20[0-9]")
   if(version)
     foreach(format IN ITEMS ASTC ATC BC7 DXT1 DXT5A ETC2_EAC_A8 ETC2_EAC_RG11 FXT1 PVRTC1 PVRTC2 UASTC_HDR XUASTC)
@@ -61,10 +62,10 @@ function(glint_basisu target)
     target_compile_options(glint_basisu PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 
-  # As objects: whoever installs the target installs no second library.
+  # The target gets the objects, so that projects that install the target do not install a second library.
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:glint_basisu>)
   target_include_directories(${target} SYSTEM PRIVATE "${root}/transcoder")
-  # By its bare name, as an installed target names it, too.
+  # The library has its bare name here, as it does in an installed target.
   target_link_libraries(${target} PRIVATE zstd)
   set(GLINT_HAS_BASISU TRUE PARENT_SCOPE)
 endfunction()

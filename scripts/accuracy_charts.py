@@ -3,7 +3,7 @@
 
     scripts/accuracy_charts.py OUT.png BENCH.json...     BENCH.json: what `glint bench` wrote
 
-Medians; what is not on a front is small. The names of a front stand in the table that `glint bench` prints.
+Points are medians. Points that are not on a front are small. The table that `glint bench` prints names the points of a front.
 """
 import json
 import pathlib
@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-# After Okabe and Ito.
+# The colours are those of Okabe and Ito.
 COLORS = {"single": "#0072B2", "pair": "#56B4E9", "search": "#009E73"}
 
 

@@ -1,9 +1,9 @@
-# Where this machine gets its distribution from, for scripts that need more of it than is configured. Sourced, by setup.sh,
-# portable.sh and fetch_basisu.sh; expects fail().
+# Finds where this machine gets its distribution from, for scripts that need more of it than is configured. setup.sh,
+# portable.sh and fetch_basisu.sh source this file. It expects fail().
 # shellcheck shell=bash
 
-# Prints the Signed-By field of an apt source, as lines of a deb822 stanza; nothing where it has none.
-# ENTRY is what apt calls it: FILE:STANZA for .sources, FILE:LINE for .list.
+# Prints the Signed-By field of an apt source as lines of a deb822 stanza, or nothing if it has none. ENTRY is
+# apt's name for the source: FILE:STANZA for .sources, FILE:LINE for .list.
 signed_by() {
     local file=${1%:*} place=${1##*:}
     if [[ $file == *.sources ]]; then
@@ -20,14 +20,15 @@ signed_by() {
     fi
 }
 
-# Prints the configured binary indices, a line each: RELEASE|COMPONENT|ORIGIN|URI|ENTRY.
+# Prints the configured binary indices, one in each line: RELEASE|COMPONENT|ORIGIN|URI|ENTRY.
 apt_indices() {
     # shellcheck disable=SC2016 # apt expands these, not the shell
     apt-get indextargets --format '$(RELEASE)|$(COMPONENT)|$(ORIGIN)|$(REPO_URI)|$(SOURCESENTRY)' 'Created-By: Packages'
 }
 
-# mirror_stanza TYPE SUITE [COMPONENT]: a deb822 stanza for a suite of Debian or Ubuntu (its component main), from the
-# mirror and under the key that this machine uses for its own release of it. Status 1 where it uses none.
+# mirror_stanza TYPE SUITE [COMPONENT]: prints a deb822 stanza for a suite of Debian or Ubuntu (component main
+# by default). It uses the mirror and the key that this machine uses for its own release of it. The status is
+# 1 if the machine uses none.
 mirror_stanza() {
     local release component origin uri entry own
     # shellcheck source=/dev/null
@@ -42,8 +43,9 @@ mirror_stanza() {
     return 1
 }
 
-# private_apt FOLDER: sets the array private_apt_options, by which apt-get reads the sources in FOLDER/parts alone and
-# keeps its lists and caches below FOLDER: this machine's stay as they are. What apt fetches must be signed.
+# private_apt FOLDER: sets the array private_apt_options. With it, apt-get reads only the sources in
+# FOLDER/parts, and keeps its lists and caches below FOLDER; this machine's own do not change. Everything that
+# apt fetches must be signed.
 private_apt() {
     mkdir -p "$1/parts" "$1/lists/partial" "$1/cache/archives/partial"
     # shellcheck disable=SC2034 # for the caller

@@ -1,10 +1,10 @@
-"""Files of `glint bench --calibrate`, for the scripts that read several."""
+"""Reads files of `glint bench --calibrate` for the scripts that use several."""
 import json
 import sys
 
 
 def merged(paths):
-    """One calibration with the points of all, which have to be of one device; its command is that of each in turn."""
+    """Returns one calibration with the points of all, which must be of one device. Its command lists the command of each."""
     reports = [json.loads(path.read_text(encoding="utf-8")) for path in paths]
     whole = reports[0]
     for path, report in zip(paths[1:], reports[1:]):

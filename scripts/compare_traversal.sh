@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Renders every scene of a folder with its triangles and instances in the order of the file and in the driver's, and says
-# where the pictures differ by a bit. Exit 1 if any does.
+# Renders every scene of a folder twice, with its triangles and instances in the order of the file and in the driver's.
+# Reports the scenes whose pictures differ by a bit, and exits with 1 if there are any.
 #   scripts/compare_traversal.sh [SCENE...]      default: all of GLINT_MODELS, else of ../shared/models
-# All effects are on, so that rays of each kind are compared. GLINT: the program (default: build/release/bin/glint). GLINT_RENDER: more options of `glint render`.
+# All effects are on, so that rays of each kind are compared. GLINT: the program (default: build/release/bin/glint).
+# GLINT_RENDER: more options of `glint render`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -21,7 +21,7 @@ fail() {
     exit 1
 }
 
-# The URI of the mirror that Debian's main component comes from here, and the file of its keys.
+# Finds the URI of the mirror from which Debian's main component comes here, and the file of its keys.
 find_mirror() {
     local release component origin uri
     # shellcheck disable=SC2016 # apt expands these, not the shell
@@ -41,14 +41,14 @@ make_root() {
         DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends debootstrap
     fi
     local options=(--variant=minbase --include=ca-certificates)
-    # Keys that stand in the source itself are no file; debootstrap then takes those of Debian's own package.
+    # Keys inside the source itself are not in a file. debootstrap then uses those of Debian's own package.
     if [[ $keys == /* ]]; then
         options+=("--keyring=$keys")
     fi
     debootstrap "${options[@]}" trixie "$root" "$mirror"
 }
 
-# Through a pack of commits, so that files that stay as they were keep their time stamps.
+# Copies a pack of commits, so that files that did not change keep their time stamps.
 copy_commit() {
     if [[ ! -d $root/glint/.git ]]; then
         git clone -q --no-hardlinks . "$root/glint"
@@ -77,7 +77,8 @@ version=$(sed -n 's/^VERSION_ID="\?\([0-9]*\)"\?$/\1/p' "$root/etc/os-release")
 [[ $version == 13 ]] || fail "$root holds another system than Debian 13"
 copy_commit
 
-# The mounts are those of a namespace that ends with the command. The shell in the middle is the root's own.
+# The mounts belong to a namespace that ends with the command. The shell in the middle is that of the new
+# root.
 shared=$(realpath -q ../shared || true)
 # shellcheck disable=SC2016 # the inner shell expands these
 exec unshare --mount bash -c '

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Compares the effects on the device with the oracle in double precision and writes the table of docs/effects_accuracy.md.
-# Fails where one disagrees. Build first.
+# Fails if one of them disagrees. Build first.
 #
 #   scripts/effects_accuracy.sh [FACTOR]   FACTOR times the samples of the tests, 1 if it is not given
 set -euo pipefail

@@ -23,7 +23,7 @@ say() {
     printf 'setup: %s\n' "$*"
 }
 
-# Also what apt_mirror.sh expects.
+# apt_mirror.sh also expects this function.
 fail() {
     say "KTX2 textures are left out of the build: $*"
     exit 1
@@ -34,7 +34,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/apt_mirror.sh"
 
 root=${GLINT_BASISU_ROOT:-${XDG_CACHE_HOME:-${HOME:-}/.cache}/glint-sources/basis-universal}
 
-# Suites that have the package, the one that changes least first.
+# Prints the suites that have the package. The one that changes least comes first.
 suites_of() {
     case $1 in
         debian) printf '%s main\n' forky sid ;;
@@ -42,25 +42,27 @@ suites_of() {
     esac
 }
 
-# fetch SUITE COMPONENT FOLDER: downloads the source package of that suite, whose signatures apt checks, into FOLDER.
+# fetch SUITE COMPONENT FOLDER: downloads the source package of that suite into FOLDER. apt checks its
+# signatures.
 fetch() {
     local suite=$1 component=$2 folder=$3
     rm -rf "$folder"
     private_apt "$folder"
     mirror_stanza deb-src "$suite" "$component" >"$folder/parts/source.sources" || return 1
-    # Unlike a release's, the index of these suites expires after a week. A mirror that is older has what is wanted, and its
-    # signature still holds.
+    # The index of these suites expires after a week, unlike that of a release. An older mirror still has the
+    # package, and its signature is still valid.
     private_apt_options+=(-o "Acquire::Check-Valid-Until=false")
     apt-get update "${private_apt_options[@]}" >"$folder/apt.log" 2>&1 || return 1
     (cd "$folder" && apt-get source "${private_apt_options[@]}" --download-only --only-source basis-universal) \
         >>"$folder/apt.log" 2>&1
 }
 
-# unpack FOLDER: what Glint needs of the package in FOLDER into FOLDER/kept, with Debian's patches to it.
+# unpack FOLDER: copies the parts that Glint needs of the package in FOLDER to FOLDER/kept, and applies
+# Debian's patches to them.
 unpack() {
     local folder=$1 kept=$1/kept patch
     mkdir "$kept"
-    # The archive has 300 MB of pictures and builds for browsers beside them.
+    # The archive also has 300 MB of pictures and builds for browsers.
     tar --extract --file "$(echo "$folder"/basis-universal_*.orig.tar.*)" --directory "$kept" --strip-components=1 \
         --no-same-owner --wildcards --no-wildcards-match-slash \
         '*/transcoder/*' '*/zstd/zstd.h' '*/zstd/zstd_errors.h' '*/LICENSE' || return 1

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# How long a scene takes to its first sample, by strategy: with nothing kept of earlier runs, with the pipeline cache in its
-# file, and with the driver's own cache alone; with pipelines made by one thread, and by one a core. Runs are interleaved, so
-# that a busy machine slows all alike. Prints Markdown: medians with the least and the most, milliseconds of wall clock.
+# Measures how long a scene takes to its first sample, by strategy. It does so without anything from earlier runs, with
+# the pipeline cache in its file, and with only the driver's own cache; and with pipelines made by one thread, and by one
+# thread for each core. Runs are interleaved, so that a busy machine slows all alike. Prints Markdown: medians with the
+# least and the most, in milliseconds of wall clock.
 #
 #   scripts/first_frame.sh [ROUNDS [SCENE.gltf|.glb [STRATEGIES]]]     default 5, the gallery, "uber visibility sorted-uber
 #                                                                      hit-shaders"
 #
-# GLINT: the binary, default build/release/bin/glint. SIZE: of the picture, default 320x180. PACKAGE: of the scene, with all
-# strategies; default: one that is compiled. DEVICE: as for --device.
+# GLINT: the binary, default build/release/bin/glint. SIZE: size of the picture, default 320x180. PACKAGE: a package of the
+# scene with all strategies; by default one is compiled. DEVICE: as for --device.
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
@@ -41,13 +42,13 @@ if [[ -n ${DEVICE:-} ]]; then
     options+=(--device "$DEVICE")
 fi
 
-# What a driver keeps of shaders by itself, off: NVIDIA's and Mesa's names.
+# These variables turn off the driver's own shader cache, by NVIDIA's and Mesa's names.
 nothing=(__GL_SHADER_DISK_CACHE=0 MESA_SHADER_CACHE_DISABLE=true)
 own=(__GL_SHADER_DISK_CACHE=1 "__GL_SHADER_DISK_CACHE_PATH=$PWD/$work/driver" __GL_SHADER_DISK_CACHE_SKIP_CLEANUP=1
     MESA_SHADER_CACHE_DISABLE=false "MESA_SHADER_CACHE_DIR=$PWD/$work/driver")
 mkdir -p "$work/driver"
 
-# One run; its report goes to FILE.
+# Runs once and writes the report to FILE.
 render() {
     local file=$1 strategy=$2 state=$3 threads=$4
     local variables=("${nothing[@]}") cache=none
@@ -60,7 +61,7 @@ render() {
         { cat "$work/errors.txt" "$file" >&2; exit 1; }
 }
 
-# The value of a member that the report has once: a text, or else.
+# Prints the value of a member that occurs once in the report, be it a text or not.
 member() {
     sed -n -e "s/^ *\"$1\": \"\(.*\)\",\{0,1\}\$/\1/p" -e "s/^ *\"$1\": \([^\"]*[^\",]\),\{0,1\}\$/\1/p" "$2" | head -n 1
 }
@@ -85,7 +86,7 @@ for ((round = 0; round < rounds; ++round)); do
     done
 done
 
-# Median, least and most of the numbers of a file.
+# Prints median, least and most of the numbers in a file.
 spread() {
     sort -n "$1" | awk '{ v[NR] = $1 }
         END { m = NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2; printf "%.0f (%.0f to %.0f)", m, v[1], v[NR] }'

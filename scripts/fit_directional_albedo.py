@@ -114,7 +114,7 @@ SHIFT_N = [(0, 3), (0, 3.5), (1, 2.5), (1, 3), (3, 2)]
 SHIFT_Q = [(0, 2), (0, 2.5), (0, 3.5), (1, 1), (1, 1.5), (2, 0), (2, 0.5)]
 SHEEN_N = [(0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1)]
 SHEEN_Q = [(0, 2), (0, 3), (0.5, 1), (1, 1), (1, 2), (2, 0), (2, 2)]
-# Of 1 / (cos (1 + Λ)); j are of (1 - alpha)²
+# These are the terms of 1 / (cos (1 + Λ)). The j are of (1 - alpha)².
 MASKING_N = [(0, 0), (0, 1), (0, 2), (0.5, 0), (0.5, 1), (0.5, 2), (1, 0), (1, 2), (1.5, 0), (2, 1), (3, 0), (3, 1)]
 MASKING_Q = [(1, 0), (0, 0), (0, 1), (0, 2), (0.5, 0), (0.5, 1), (0.5, 2), (1, 1), (1, 2), (1.5, 0), (2, 1), (3, 1)]
 MASKING_Q += [(3, 2)]
@@ -140,7 +140,7 @@ def fit(name, x, y, numerator, denominator, low, high, factor=1.0, cancel=None):
         limits = np.concatenate([np.zeros(2 * len(rows)), -np.ones(len(rows))])
         bounds, cost = (None, None), np.zeros(matrix.shape[1])
         if cancel:
-            # Each constant is the difference of two that are not negative.
+            # Each constant is the difference of two numbers that are not negative.
             sums = np.block([[a, 0 * b], [0 * a, b]])
             matrix = np.block([[matrix, -matrix], [(1 - cancel) * sums, (1 + cancel) * sums]])
             limits = np.concatenate([limits, np.zeros(len(sums))])
@@ -184,7 +184,8 @@ def fit_ggx():
     alpha, mu, white, weighted = grid(ggx, alphas, cosine_nodes(1e-3, 140))
     truth = 1 - white
     loss = fit("loss", mu, alpha, LOSS_N, LOSS_Q, np.maximum(truth - 5.8e-3, 0), truth + 1e-4)
-    # The rest is in the effective cosine: weighted = white (1 - cosine)^5. Where it is a mirror's, Schlick to 1e-3.
+    # The rest is in the effective cosine: weighted = white (1 - cosine)^5. For a mirror it is Schlick's to
+    # 1e-3.
     kept = 1 - rational(loss, LOSS_N, LOSS_Q, mu, alpha)
     over = np.where(mu > 100 * alpha, 9e-4, 5.75e-3)
     low = 1 - mu - np.minimum((weighted + over) / kept, 1) ** 0.2
@@ -285,7 +286,7 @@ def check_sheen(masking, constants):
     alpha, mu, truth = grid(sheen, np.geomspace(MIN_SHEEN_ALPHA, 1, 401), cosines)
     fitted = fitted_sheen(masking, constants, *single(mu, alpha))
     rounding = fitted - fitted_sheen(masking, constants, *(v.astype(float) for v in single(mu, alpha)))
-    usual = mu >= 1e-4  # the lobe's own Λ is too small nearer to grazing
+    usual = mu >= 1e-4  # nearer to grazing, the lobe's own Λ is too small
     sane = alpha[usual & (truth > 1)].max()
     print(f"sheen from cosine 1e-4: at most {truth[usual].max():.4f}; at most 1 above alpha {sane:.4f}")
     print(f"sheen above alpha {sane:.4f}: above 1 up to cosine {mu[(alpha > sane) & (truth > 1)].max():.1e}")
@@ -296,7 +297,7 @@ def check_sheen(masking, constants):
 
 
 def main():
-    # Known: white = 1 - cos ln(1 + 1 / cos) at alpha = 1.
+    # The exact value is known: white = 1 - cos ln(1 + 1 / cos) at alpha = 1.
     mu = np.geomspace(1e-3, 1, 50)
     broken = [check("quadrature at alpha 1", ggx(mu, 1.0)[0] - (1 - mu * np.log1p(1 / mu)), -5e-5, 5e-5)]
     loss, shift = fit_ggx()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fits what the merge planner's cost model knows of code, and writes tool/plan/cost_constants.h. Needs NumPy.
+"""Fits the merge planner's cost model of code, and writes tool/plan/cost_constants.h. Needs NumPy.
 
 The measurements are scripts/merge_model.csv, which scripts/measure_merge_model.py makes and describes. The fit is linear,
 least squares of relative errors, in two steps:
@@ -13,7 +13,7 @@ printed and stand in the header. The same measurements give the same header, byt
 
     scripts/fit_merge_model.py [--check]
 
---check writes nothing and exits 1 where the header is not what the measurements give.
+--check writes nothing, and exits with 1 if the header is not what the measurements give.
 """
 import argparse
 import csv

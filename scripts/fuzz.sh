@@ -56,11 +56,11 @@ while [[ $# -gt 0 ]]; do
 done
 [[ ${#targets[@]} -gt 0 ]] || targets=("${all[@]}")
 
-# Bounds for inputs of a few KB: what asks for more is a finding.
+# These bounds are for inputs of a few KB. A target that asks for more is a finding.
 kRssMb=1024
 kMallocMb=300
 kTimeout=20
-# A run of --executions ends after that many seconds, to be counted; the next goes on.
+# A run of --executions ends after this many seconds, so that it can be counted. The next run continues it.
 kSlice=300
 
 build=${GLINT_FUZZ_BUILD:-build/fuzz}
@@ -71,12 +71,12 @@ fi
 state=$build/state
 mkdir -p "$build/findings" "$build/logs" "$state"
 
-# Inputs are files, thousands a second: in memory where there is such a folder.
+# Inputs are files, thousands each second. They are kept in memory if there is such a folder.
 scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/glint-fuzz-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 
-# The longest input that a target makes. What a longer one could show lies in the bounds of the readers, which the
-# corpora and the tests reach; shorter ones run several times as fast.
+# Prints the length of the longest input that a target makes. Longer ones would only test bounds of the
+# readers, which the corpora and the tests reach. Shorter ones run several times as fast.
 longest() {
     case $1 in
         lock) echo 1024 ;;
@@ -86,17 +86,17 @@ longest() {
     esac
 }
 
-# run_target NAME FLAG…: never fails; what it found lies in the log and in findings/.
+# run_target NAME FLAG…: never fails. Its findings are in the log and in findings/.
 run_target() {
     local name=$1 flags=("${@:2}")
     local words=tests/fuzz/dictionaries/$name.dict
     [[ $name == gltf_* ]] && words=tests/fuzz/dictionaries/gltf.dict
     [[ -f $words ]] && flags+=("-dict=$words")
     mkdir -p "$build/corpus/$name" "$scratch/$name"
-    # To weigh inputs by their rare features takes longer than importing them.
+    # Weighing inputs by their rare features takes longer than importing them.
     [[ $name == gltf_* ]] && flags+=(-entropic=0)
-    # Allocations don't record who asked for them: run a finding again without these options to see that. The
-    # quarantine of freed memory holds that of many inputs. Crashes of libraries are findings, too.
+    # Allocations don't record their callers; run a finding again without these options to see them. The
+    # quarantine of freed memory holds the memory of many inputs. Crashes of libraries are findings, too.
     TMPDIR=$scratch/$name UBSAN_OPTIONS=print_stacktrace=1 \
         ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0:malloc_context_size=0:quarantine_size_mb=16 \
         nice -n "${GLINT_FUZZ_NICE:-19}" "$build/tests/fuzz_$name" "${flags[@]}" \
@@ -105,7 +105,7 @@ run_target() {
         "$build/corpus/$name" "tests/fuzz/corpus/$name" >"$build/logs/$name.log" 2>&1 || true
 }
 
-# The last number after WORD in the lines of progress.
+# Prints the last number after WORD in the lines of progress.
 last() {
     grep -oE "$2: [0-9]+" "$1" | tail -n 1 | grep -oE '[0-9]+' || echo 0
 }
@@ -113,7 +113,7 @@ last() {
 executions_of() {
     local count
     count=$(grep -oE 'stat::number_of_executed_units: [0-9]+' "$1" | grep -oE '[0-9]+$' || true)
-    # A run that was killed has no statistics; its last line of progress begins with the number.
+    # A run that was killed has no statistics, but its last line of progress begins with the number.
     echo "${count:-$(grep -oE '^#[0-9]+' "$1" | tail -n 1 | tr -d '#' || true)}"
 }
 
@@ -121,12 +121,12 @@ found() {
     grep -qE '^SUMMARY: ' "$1"
 }
 
-# counted NAME FILE: a number of the state; 0 where there is none yet.
+# counted NAME FILE: prints a number of the state, or 0 if there is none yet.
 counted() {
     cat "$state/$1.$2" 2>/dev/null || echo 0
 }
 
-# count_run NAME SECONDS: adds the run of the log to the state, which a finding sets back to 0.
+# count_run NAME SECONDS: adds the run in the log to the state. A finding sets the state back to 0.
 count_run() {
     local name=$1 log=$build/logs/$1.log ran
     ran=$(executions_of "$log")
@@ -139,7 +139,7 @@ count_run() {
     fi
 }
 
-# run_until NAME: runs until the target has its executions, has a finding, or has had its time.
+# run_until NAME: runs until the target has its executions, has a finding, or has used its time.
 run_until() {
     local name=$1 spent=0 left slice began
     while left=$((executions - $(counted "$name" executions))) && [[ $left -gt 0 ]]; do
@@ -154,7 +154,7 @@ run_until() {
         spent=$((spent + SECONDS - began))
         printf 'fuzz: %s: %s executions since the last finding\n' "$name" "$(counted "$name" executions)" >&2
         found "$build/logs/$name.log" && return 0
-        # A target that does not start must not start for ever.
+        # A target that does not start must not be started for ever.
         [[ $(executions_of "$build/logs/$name.log") -gt 0 ]] || return 0
     done
 }
@@ -169,7 +169,7 @@ print_counts() {
     done
 }
 
-# table_row NAME: prints its row.
+# table_row NAME: prints the row of the target.
 table_row() {
     local log=$build/logs/$1.log elapsed findings
     elapsed=$(grep -oE 'in [0-9]+ second' "$log" | tail -n 1 | grep -oE '[0-9]+' || echo '?')
@@ -178,7 +178,7 @@ table_row() {
         "$elapsed" "${findings:-none}"
 }
 
-# All of the file is read before anything runs, so that it may change under a run of hours.
+# The shell reads the whole file before anything runs, so that the file may change during a run of hours.
 main() {
     local name began
     if [[ $report == true ]]; then

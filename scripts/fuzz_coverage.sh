@@ -27,7 +27,7 @@ elif [[ $# -gt 0 ]]; then
 fi
 
 build=build/coverage
-# Clang's tools of coverage have the version of the compiler in their names, or lie in its folder.
+# Clang's coverage tools have the version of the compiler in their names, or are in its folder.
 tools=$(dirname "$(readlink -f "$(command -v clang++)")")
 
 cmake --preset fuzz -B "$build" -DCMAKE_BUILD_TYPE=Debug -DGLINT_FUZZ=OFF -DGLINT_SANITIZE=OFF \
@@ -51,7 +51,7 @@ for program in "${programs[@]:1}"; do
     objects+=(-object "$program")
 done
 
-# row NAME FILE…: the sum over the files, as llvm-cov counts lines.
+# row NAME FILE…: prints the sum over the files. Lines are counted as llvm-cov counts them.
 row() {
     local name=$1
     shift

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Measures what precision costs, the table of docs/accuracy.md: instructions, time and errors of the shaders' functions
-# as textbooks have them, as Glint has them, in 16 bits and in double precision. Build first; a few minutes, on a machine
-# that does nothing else.
+# Measures the cost of precision for the table of docs/accuracy.md: instructions, time and errors of the shaders'
+# functions as in textbooks, as in Glint, in 16 bits and in double precision. Build first. It takes a few minutes on a
+# machine that does nothing else.
 #
 #   scripts/ladder.sh                          into docs/accuracy.md, region "ladder", and out/ladder.json
 #   scripts/ladder.sh --marker NAME [OPTIONS]  into the region NAME and out/NAME.json; OPTIONS of glint_numerics:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks the formatting of every C++ file, runs clang-tidy over every source, and ShellCheck over the scripts.
+# Checks the formatting of every C++ file, runs clang-tidy over every source, and runs ShellCheck over the scripts.
 # usage: scripts/lint.sh [FILE.cpp…]   with files: clang-tidy over those only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,8 +13,8 @@ git ls-files -z '*.cpp' '*.h' | xargs -0 "$clang_format" --dry-run -Werror
 printf 'lint: shellcheck\n'
 git ls-files -z '*.sh' .ci/run | xargs -0 -r shellcheck
 
-# tidy BUILD FILE…: clang-tidy over sources that BUILD has compile commands of. The counts that it prints are of
-# warnings in headers of others, which it leaves out.
+# tidy BUILD FILE…: runs clang-tidy over sources that have compile commands in BUILD. The counts that
+# clang-tidy prints are of warnings in other projects' headers, which it leaves out.
 tidy() {
     local build=$1
     shift
@@ -23,8 +23,8 @@ tidy() {
         { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
 }
 
-# tidy_project FOLDER FILE…: of a project of its own, which is built with the Glint of this build.
-# With a standard in the commands: clang-tidy's own default is older than the compiler's.
+# tidy_project FOLDER FILE…: checks a separate project, which is built with the Glint of this build. The
+# commands name the standard, because clang-tidy's own default is older than the compiler's.
 tidy_project() {
     local folder=$1 build=build/lint/${1//\//-}
     shift
@@ -38,8 +38,8 @@ tidy_project() {
 }
 
 printf 'lint: clang-tidy\n'
-# Each file by itself, as clang-tidy reads it: this shows as well that every file includes what it uses. Generated
-# sources must be there before anything that includes them can be read.
+# Each file is compiled by itself, as clang-tidy reads it. This also shows that every file includes what it
+# uses. Generated sources must exist before anything that includes them can be read.
 cmake --preset release -B build/tidy -DGLINT_UNITY=OFF >/dev/null
 cmake --build build/tidy
 if [[ $# -gt 0 ]]; then

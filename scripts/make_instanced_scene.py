@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A glTF scene of COUNT plants on a square field, placed by EXT_mesh_gpu_instancing: one node, one mesh of two
+"""Makes a glTF scene of COUNT plants on a square field, placed by EXT_mesh_gpu_instancing: one node, one mesh of two
 primitives (a green cone and a brown stem), a translation, a rotation in 16 bits and a scale for each.
 
     scripts/make_instanced_scene.py COUNT FOLDER     writes FOLDER/instanced.gltf and instanced.bin

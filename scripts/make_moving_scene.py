@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A glTF scene of COUNT tetrahedra on a square grid, each of which moves up and down by a metre, in a phase of its own.
+"""Makes a glTF scene of COUNT tetrahedra on a square grid, each of which moves up and down by a metre, in a phase of its own.
 
     scripts/make_moving_scene.py COUNT FOLDER     writes FOLDER/moving.gltf and moving.bin
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes a synthetic scene of many materials over a given number of keys: what scripts/measure_compile.py compiles.
+"""Writes a synthetic scene of many materials over a given number of keys. scripts/measure_compile.py compiles it.
 
     scripts/make_synthetic_scene.py FOLDER [--materials N] [--keys K] [--extra-key]
 
-FOLDER gets scene.gltf, scene.bin and three images. Material i has the i mod K-th set of features and values of its own;
-a square each. --extra-key gives the last material a set of features that no other has.
+FOLDER gets scene.gltf, scene.bin and three images. Material i has the i mod K-th set of features, values of its
+own, and a square. --extra-key gives the last material a set of features that no other has.
 """
 import argparse
 import json
@@ -13,7 +13,7 @@ import struct
 
 from merge_scenes import ATTRIBUTES, complete, make_material, png_bytes
 
-# A key is a number whose bits say which of these it has, so that K keys use the first log2(K) of them.
+# A key is a number whose bits say which of these it has. K keys use the first log2(K) of them.
 SWITCHES = [
     "baseColorTexture",
     "normalTexture",

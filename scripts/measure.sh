@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what the README states of the gallery: compile time by number of jobs, package size, pass times by strategy.
+# Measures what the README states about the gallery: compile time by number of jobs, package size, pass times by strategy.
 # Runs are interleaved, so that a busy machine slows both sides alike. Prints medians with quartiles.
 #
 #   scripts/measure.sh [RUNS]     default 11
@@ -18,7 +18,7 @@ rm -f "$work"/*.txt
 "$bin/gallery" "$work/gallery" > /dev/null
 scene=$work/gallery/gallery.gltf
 
-# Median and quartiles of the numbers on stdin.
+# Prints median and quartiles of the numbers on stdin.
 quartiles() {
     sort -n | awk '{ v[NR] = $1 }
         function at(q, i) { i = 1 + q * (NR - 1); return v[int(i)] + (i - int(i)) * (v[int(i) + (int(i) < NR)] - v[int(i)]) }

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""How long `glint compile` takes, and what it does again: the figures and charts of docs/compile_times.md.
+"""Measures how long `glint compile` takes and what it repeats, for the figures and charts of docs/compile_times.md.
 
     scripts/measure_compile.py [--part edits|materials|keys|glslc] [--rounds N] [--charts FOLDER]
 
-Synthetic scenes of scripts/make_synthetic_scene.py; strategy visibility, --merge none: a shader a key. Prints Markdown.
+Scenes are those of scripts/make_synthetic_scene.py. With strategy visibility and --merge none, each key has a shader.
+Prints Markdown.
 Wall is what a clock shows, CPU the time on all cores, which other programs disturb less. Needs glslc for that part and
 matplotlib for charts.
 """

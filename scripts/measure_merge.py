@@ -1,4 +1,4 @@
-"""The measurements and tables of scripts/measure_merge.sh, which says what they are."""
+"""Makes the measurements and tables of scripts/measure_merge.sh, which describes them."""
 import argparse
 import json
 import math
@@ -16,15 +16,17 @@ from replace_module import replace
 
 POLICIES = ["none", "family", "auto", "all"]
 SIZE = "96x54"
-# Scenes whose switch is measured: as many cases as compile in reasonable time without folding, and a few.
+# The switch is measured on these scenes. They have at most as many cases as compile in reasonable time
+# without folding, and some have few.
 SWITCH_SCENES = ["SheenChair", "ClearCoatTest", "gallery"]
 SWITCH_RUNS = 2
-# What a naive switch may take; more is told as more. One that takes longer than LONG_MS is made once.
+# The time that a naive switch may take; a longer time is reported as more. A switch that takes longer than
+# LONG_MS is made once.
 PATIENCE_S = 240
 LONG_MS = 20_000
-# Images with warm pipelines, of which the fastest counts.
+# The number of images with warm pipelines. The fastest counts.
 FRAMES = 3
-# Above this many keys the driver's compiler gets no switch with everything inlined.
+# With more keys than this, the driver's compiler gets no switch with everything inlined.
 MOST_INLINED_KEYS = 16
 
 

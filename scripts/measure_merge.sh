@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Compares merge policies on every scene, and the naive switch with what Glint makes: SPIR-V, compile time, pipeline
-# creation, render time. The scenes are the gallery, a synthetic one of 48 keys, and all below FOLDERs. Policies of a
+# Compares merge policies on every scene, and the naive switch with Glint's result: SPIR-V, compile time, pipeline
+# creation, render time. The scenes are the gallery, a synthetic one of 48 keys, and all below the FOLDERs. Policies of a
 # scene are interleaved, so that a busy machine slows all alike. Prints Markdown. Needs python3-xxhash.
 #
-#   scripts/measure_merge.sh [RUNS [FOLDER…]]     default 2, those of scripts/models.sh that are there
+#   scripts/measure_merge.sh [RUNS [FOLDER…]]     default 2, and those of scripts/models.sh that exist
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
@@ -33,7 +33,7 @@ if [[ ${#folders[@]} -gt 0 ]]; then
         scenes+=("$scene")
     done < <(find "${folders[@]}" -name '*.gltf' -o -name '*.glb' | sort)
 fi
-# A distribution's own Python has the distribution's modules.
+# A distribution's own Python has the modules that the distribution installs.
 python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 exec "$python" -B scripts/measure_merge.py --glint "$bin/glint" --work "$work" --runs "$runs" "${scenes[@]}"

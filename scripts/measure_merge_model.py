@@ -2,11 +2,11 @@
 """Measures the code of cases for scripts/fit_merge_model.py, and writes scripts/merge_model.csv.
 
 Synthetic scenes (scripts/merge_scenes.py) are compiled by `glint compile --strategy visibility`; the manifest of each
-package has the instructions and texture fetches of its cases' SPIR-V. One row of the CSV is one case:
+package has the instructions and texture fetches of its cases' SPIR-V. Each row of the CSV is one case:
 
-    set            what it is measured for, below
-    always         features that all of its keys have, separated by blanks
-    sometimes      features that it branches on
+    set            the purpose of the measurement, below
+    always         the features that all of its keys have, separated by blanks
+    sometimes      the features on which it branches
     instructions   of the SPIR-V, and so are the next two
     fetches
     bytes
@@ -35,7 +35,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MEASUREMENTS = ROOT / "scripts/merge_model.csv"
 COLUMNS = ["set", "always", "sometimes", "instructions", "fetches", "bytes"]
 SEED = 20250321
-# What replaces the lobes of metal and roughness mixes with no other.
+# These features replace the lobes of metal and roughness, and mix with no other.
 EXCLUSIVE = ("unlit", "specularGlossiness")
 
 
@@ -62,7 +62,7 @@ def measure(glint):
     def random_key(most):
         return complete(rng.sample(mixable, 1 + rng.randrange(most)))
 
-    # Not alphaMask: rays test alpha before a case is reached.
+    # alphaMask is left out, because rays test alpha before a case is reached.
     alone = [complete({f}) for f in FEATURES] + [complete({f, "normals", "baseColorTexture"}) for f in FEATURES]
     alone += [frozenset(), complete({"unlit", "vertexColor"}), complete({"unlit", "baseColorTexture", "vertexColor"})]
     together = [random_key(9) for _ in range(120)]

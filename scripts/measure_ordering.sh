@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Measures the orderings of hits: device time of all their passes, by number of hits, of buckets and spread of the hits,
-# beside a plain copy. Prints a table in Markdown; options are those of bench_ordering (--help).
+# Measures the orderings of hits: the device time of all their passes, by number of hits, number of buckets and spread of
+# the hits. A plain copy is measured for comparison. Prints a table in Markdown. The options are those of bench_ordering
+# (--help).
 #
 #   scripts/measure_ordering.sh [OPTIONS]
 set -euo pipefail

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Device times of an animated scene's updates: BLASes and TLAS refitted always, built anew always, and by rule; and of the
-# frames that are traced afterwards. Runs are interleaved, so that a busy machine slows all alike. Prints Markdown:
-# medians with quartiles over all frames but the first, milliseconds; and refits over rebuilds of the same frame and round.
+# Measures device times of an animated scene's updates, with BLASes and TLAS always refitted, always rebuilt, or by
+# rule, and of the frames traced afterwards. Runs are interleaved, so that a busy machine slows all alike. Prints
+# Markdown: medians with quartiles over all frames but the first, in ms, and ratios of refits to rebuilds in each frame.
 #
 #   scripts/measure_refit.sh SCENE.gltf|.glb [RUNS [FRAMES [FPS]]]     default 5 runs of frames 0:24, 8 a second
 set -euo pipefail

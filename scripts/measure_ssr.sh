@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what the march in screen space costs and saves: error against rays only, rays, pass times. Runs are
+# Measures cost and gain of the march in screen space: error against rays only, rays, pass times. Runs are
 # interleaved, so that a busy machine slows all alike. Prints a table in Markdown for each scene: medians with quartiles.
 #
 #   scripts/measure_ssr.sh [RUNS [SCENE...]]     default: 5 runs of the gallery
@@ -25,14 +25,14 @@ fi
 read -ra options <<< "${GLINT_RENDER_OPTIONS:-}"
 settings=(off 16 64 512)
 
-# Median and quartiles of the numbers on stdin.
+# Prints median and quartiles of the numbers on stdin.
 quartiles() {
     sort -n | awk '{ v[NR] = $1 }
         function at(q, i) { i = 1 + q * (NR - 1); return v[int(i)] + (i - int(i)) * (v[int(i) + (int(i) < NR)] - v[int(i)]) }
         END { printf "%.1f (%.1f to %.1f)", at(0.5), at(0.25), at(0.75) }'
 }
 
-# A number of the report of `glint compare`, by the beginning of its line.
+# Prints a number from the report of `glint compare`. The beginning of its line identifies it.
 field() {
     awk -v name="$1" 'index($0, name) == 1 { sub(name, ""); print $1 }' "$2"
 }

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# Pass times of every strategy with every tracer on the gallery and, if given, another scene; every surface sends its ray,
-# whatever its roughness. Runs are interleaved, so
-# that a busy machine slows all alike. Prints Markdown: medians with quartiles, milliseconds; and each total over that of
-# uber with ray queries in the same round.
+# Measures pass times of every strategy with every tracer on the gallery and, if given, on another scene. Every surface
+# sends its ray, whatever its roughness. Runs are interleaved, so that a busy machine slows all alike. Prints Markdown:
+# medians with quartiles in milliseconds, and the ratio of each total to that of uber with ray queries in the same round.
 #
 #   scripts/measure_strategies.sh [RUNS [SCENE.gltf|.glb]]     default 5, the gallery alone
 set -euo pipefail
@@ -23,14 +22,14 @@ mkdir -p "$work"
 ways=("uber ray-query" "visibility ray-query" "sorted-uber ray-query" "uber ray-pipeline" "visibility ray-pipeline"
     "sorted-uber ray-pipeline" "hit-shaders ray-pipeline")
 
-# Median and quartiles of the numbers on stdin.
+# Prints median and quartiles of the numbers on stdin.
 quartiles() {
     sort -n | awk '{ v[NR] = $1 }
         function at(q, i) { i = 1 + q * (NR - 1); return v[int(i)] + (i - int(i)) * (v[int(i) + (int(i) < NR)] - v[int(i)]) }
         END { printf "%.2f (%.2f to %.2f)", at(0.5), at(0.25), at(0.75) }'
 }
 
-# One run: a file a group of passes, to which a line is added.
+# Runs once, and adds a line to the file of each group of passes.
 render() {
     local name=$1 scene=$2 strategy=$3 tracer=$4
     local stem=$work/$name-$strategy-$tracer

@@ -1,8 +1,8 @@
-"""Synthetic scenes that ask for given features, which scripts/measure_merge_model.py and scripts/measure_merge.sh
+"""Makes synthetic scenes that ask for given features, which scripts/measure_merge_model.py and scripts/measure_merge.sh
 compile.
 
-A wish is a set of features by their names in the feature table, "clearcoat" or "normalTexture". What a feature needs to
-be in a key comes with it: see complete().
+A wish is a set of features by their names in the feature table, "clearcoat" or "normalTexture". complete() adds
+the features that a feature needs to be in a key.
 """
 import base64
 import json
@@ -27,7 +27,7 @@ EXTENSION_TEXTURES = {
 }
 TEXTURES = ["baseColorTexture", "metallicRoughnessTexture", "normalTexture", "occlusionTexture", "emissiveTexture"]
 TEXTURES += EXTENSION_TEXTURES
-# Values under which the lobe is in the key.
+# With these values the lobe is in the key.
 LOBES = {
     "unlit": ("unlit", {}),
     "specularGlossiness": ("pbrSpecularGlossiness", {"glossinessFactor": 0.6}),
@@ -127,7 +127,7 @@ def png(pixel):
     return "data:image/png;base64," + base64.b64encode(png_bytes(pixel)).decode()
 
 
-# One unit square in z = 0 that faces +z; attributes of four vertices each, then the indices.
+# This is a unit square in z = 0 that faces +z: first the attributes of four vertices, then the indices.
 ATTRIBUTES = {
     "POSITION": ("VEC3", [(-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0)]),
     "NORMAL": ("VEC3", [(0, 0, 1)] * 4),

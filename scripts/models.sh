@@ -17,15 +17,15 @@ A model that can't be had is named, and what needs it is skipped. Exit 1 only wh
 TEXT
 }
 
-# A line a model: folder, repository on GitHub, commit, path, how sure the origin is, checksum.
+# Each line is a model: folder, repository on GitHub, commit, path, certainty of the origin, checksum.
 #   hash    a file of that repository has the checksum of the model's file
 #   size    the .gltf at that commit and path is as long as the model's
-#   path    the path is there at that commit; its contents were not compared
-#   folder  the model's folder is there at that commit; this path of it was not seen
+#   path    the path exists at that commit; its contents were not compared
+#   folder  the model's folder exists at that commit; this path in it was not seen
 #   other   the .gltf at that commit is another version than the model's: the checksum differs
-#   local   rebuilt by hand after KhronosGroup/glTF-Sample-Assets Models/DiffuseTransmissionTest: nowhere to fetch it
-# The checksum is that of `sha256sum` of the folder's files in the order of their names, 16 digits of it; of invalid,
-# which is a selection of the validator's data, there is none.
+#   local   rebuilt by hand after KhronosGroup/glTF-Sample-Assets Models/DiffuseTransmissionTest; it can't be fetched
+# The checksum is the first 16 digits of `sha256sum` over the folder's files in the order of their names. The folder
+# "invalid", a selection of the validator's data, has none.
 readonly kAssets=KhronosGroup/glTF-Sample-Assets
 readonly kModels=KhronosGroup/glTF-Sample-Models
 table() {
@@ -61,7 +61,7 @@ large/VC $kModels 3a23e287d204b894425987cd1e46e68cb1861d71 2.0/VC/glTF-Binary pa
 TEXT
 }
 
-# checksum FOLDER
+# checksum FOLDER: prints the checksum of the folder.
 checksum() {
     (cd "$1" && find . -type f -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum | cut -c1-16)
 }
@@ -70,7 +70,8 @@ say() {
     printf 'models.sh: %s\n' "$*" >&2
 }
 
-# fetch FOLDER REPOSITORY COMMIT PATH: copies the path at that commit into the folder; false where that can't be.
+# fetch FOLDER REPOSITORY COMMIT PATH: copies the path at that commit into the folder. Returns false if that
+# is not possible.
 fetch() {
     local folder=$1 repository=$2 commit=$3 path=$4 clone kept
     clone=$models/.git-${repository//\//-}
@@ -79,7 +80,7 @@ fetch() {
         git -C "$clone" remote add origin "https://github.com/$repository"
         git -C "$clone" config core.sparseCheckout true
     fi
-    # Of a commit only what lies at the path.
+    # Only the files at the path are fetched from the commit.
     printf '/%s\n' "$path" >"$clone/.git/info/sparse-checkout"
     GIT_TERMINAL_PROMPT=0 timeout 300 git -C "$clone" fetch -q --depth 1 --filter=blob:none origin "$commit" 2>/dev/null &&
         GIT_TERMINAL_PROMPT=0 timeout 300 git -C "$clone" checkout -q --force FETCH_HEAD 2>/dev/null || return 1
@@ -92,7 +93,7 @@ fetch() {
         rmdir "$kept"
         return 1
     fi
-    # The models have other names than their files in two repositories.
+    # In two repositories, the files have other names than the models.
     if [[ ! -e $kept/${folder##*/}.glb && $(find "$kept" -name '*.glb' | wc -l) -eq 1 ]]; then
         mv "$kept"/*.glb "$kept/${folder##*/}.glb"
     fi

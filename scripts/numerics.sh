@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures the error of the shaders' functions and writes the table of docs/numerics.md. Fails where one is out of its
+# Measures the error of the shaders' functions and writes the table of docs/numerics.md. Fails if one is out of its
 # bounds. Build first.
 #
 #   scripts/numerics.sh             200,000 inputs a function, into docs/numerics.md and out/numerics.json

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Theoretical occupancy of the pipelines in a file of glint render --stats FILE --pipeline-statistics, as Markdown.
+"""Computes the theoretical occupancy of the pipelines in a file of glint render --stats FILE --pipeline-statistics, as Markdown.
 
   scripts/occupancy.py STATS.json [THREADS]     THREADS: of a workgroup, default 64
 
 For NVIDIA GPUs of compute capability 9.0 (Hopper), where the driver says how many registers a thread has. The limits are those of
 the CUDA C++ Programming Guide, "Technical Specifications per Compute Capability": 65,536 registers, 64 warps (2,048 threads) and
 32 workgroups a multiprocessor, 255 registers a thread. Registers are given to warps 256 at a time, by each of the four
-schedulers from its quarter (CUDA occupancy calculator). Shared memory is left out of account. Of a ray tracing pipeline the
-driver decides how its shaders are launched: the number is what registers alone would allow.
+schedulers from its quarter (CUDA occupancy calculator). Shared memory is left out of account. The driver decides
+how the shaders of a ray tracing pipeline are launched, so their number is what registers alone would allow.
 """
 import json
 import sys

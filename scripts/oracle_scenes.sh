@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders real scenes on the device and in double precision on the CPU (glint_oracle), compares the two, and writes the
-# tables of docs/accuracy.md. Build first. Models that are not there are left out, with a message.
+# tables of docs/accuracy.md. Build first. Missing models are left out with a message.
 #
 #   scripts/oracle_scenes.sh [MODELS [SAMPLES]]   the folder of scripts/models.sh; samples a pixel of the converged
 #                                                 pictures, default 256
@@ -48,7 +48,7 @@ render() {
     "$bin/glint" render "$@" --size "$size" --sky 1 --effects shadow,reflection --max-roughness 0.05 --mirror-roughness 0.05 \
         --texture-lod mip0 --alpha tested --hit-record full --quiet
 }
-# Of the device's default, and filtering textures in single precision; llvmpipe alone knows the difference.
+# Turns off the device's default, and filters textures in single precision. Only llvmpipe has such a choice.
 in_floats() {
     GALLIVM_PERF=no_aos_sampling "$@"
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The chart and tables of what bench_ordering --json and cub_sort measured. Needs python3-matplotlib.
+"""Makes the chart and tables of the measurements of bench_ordering --json and cub_sort. Needs python3-matplotlib.
 
     scripts/ordering_chart.py CHART.png CUB.jsonl ORDERING.json...      tables go to standard output, in Markdown
 
-The chart has the times of tile-sort, of CUB's sort of pairs and of a plain copy against the number of buckets, a panel
+The chart shows the times of tile-sort, of CUB's sort of pairs and of a plain copy against the number of buckets, a panel
 for each number of hits.
 """
 import json
@@ -16,8 +16,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 SPREADS = {"random": "uniform", "Zipf": "Zipf", "picture": "picture"}
-# A run in which the clock of the GPU was down shows in its copy: times beside a copy that took that many times the fastest
-# one of the file are left out.
+# A run in which the GPU's clock was lower shows in its copy. Times are left out if the copy beside them took
+# this many times the fastest copy of the file.
 SLOW_CLOCK = 1.3
 
 

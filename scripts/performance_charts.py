@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Charts and tables of what `glint bench --calibrate` measured. Needs python3-matplotlib.
+"""Makes charts and tables of the measurements of `glint bench --calibrate`. Needs python3-matplotlib.
 
     scripts/performance_charts.py CALIBRATION.json... CHARTS.png      the tables go to standard output, in Markdown
 
@@ -20,7 +20,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-# After Okabe and Ito.
+# The colours are those of Okabe and Ito.
 COLORS = {"uber": "black", "visibility": "#0072B2", "sorted-uber": "#D55E00", "hit-shaders": "#009E73"}
 MEGA = 1e6
 

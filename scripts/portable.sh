@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds a glint that runs wherever there is a C library of 2022 or later and a Vulkan driver, and packs it.
+# Builds and packs a glint that runs on every machine with a C library of 2022 or later and a Vulkan driver.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -33,7 +33,7 @@ fail() {
 # shellcheck source=scripts/apt_mirror.sh
 source scripts/apt_mirror.sh
 
-# Newest version of the C library's symbols that may be needed: Debian 12's. Ubuntu 24.04 has 2.39.
+# The newest version of the C library whose symbols may be needed is that of Debian 12. Ubuntu 24.04 has 2.39.
 kNewestGlibc=2.36
 kPrograms=(glint gallery glint_numerics bench_ordering)
 build=$PWD/build/portable
@@ -42,7 +42,8 @@ jobs=$(nproc)
 
 # --- Static libraries ------------------------------------------------------------------------------
 
-# Source packages that are built, in this order, each with what its CMake is told. Tests, tools and documents are left out.
+# These source packages are built in this order, each with its CMake options. Tests, tools and documents are
+# left out.
 kSources=(
     "fmtlib|-DFMT_TEST=OFF -DFMT_DOC=OFF"
     "mimalloc|-DMI_BUILD_SHARED=OFF -DMI_BUILD_OBJECT=OFF -DMI_BUILD_TESTS=OFF -DMI_INSTALL_TOPLEVEL=ON"
@@ -51,11 +52,12 @@ kSources=(
     "openexr|-DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF -DDOCS=OFF -DINSTALL_DOCS=OFF"
     "tinygltf|-DTINYGLTF_BUILD_LOADER_EXAMPLE=OFF -Dstb_LIBRARY=$deps/lib/libstb.a"
 )
-# Debian's own static archives, which are taken where a shared library of the same name would be found first.
+# Debian's own static archives are used here, because a shared library of the same name would otherwise be
+# found first.
 kArchives=(libstb.a libwebp.a libxxhash.a libz.a libzstd.a)
 
-# Fetches and unpacks the source packages in the folder, with sources and lists of apt of its own: this machine's stay as
-# they are. Checked by apt, as packages are.
+# Fetches and unpacks the source packages in the folder, with separate apt sources and lists, so that this
+# machine's own do not change. apt checks the sources as it checks packages.
 fetch_sources() {
     local folder=$1 names=()
     private_apt "$folder"
@@ -68,7 +70,7 @@ fetch_sources() {
     done
     (cd "$folder" && apt-get source "${private_apt_options[@]}" --download-only "${names[@]}") >> "$folder/apt.log"
     for source in "${names[@]}"; do
-        # apt has checked the files by their sums; the uploaders' own keys need not be here.
+        # apt has verified the checksums of the files, so the uploaders' own keys are not needed here.
         dpkg-source -q --no-check -x "$folder/$source"_*.dsc "$folder/$source" >> "$folder/apt.log" 2>&1
     done
 }
@@ -108,7 +110,7 @@ build_deps() {
 
 # --- Checks ----------------------------------------------------------------------------------------
 
-# Libraries that belong to the C library.
+# Returns whether a library belongs to the C library.
 is_of_libc() {
     case $1 in
         libc.so.6 | libm.so.6 | libdl.so.2 | libpthread.so.0 | librt.so.1 | ld-linux-*.so.*) return 0 ;;
@@ -133,7 +135,7 @@ check_program() {
 
 # --- Archive ---------------------------------------------------------------------------------------
 
-# Debian's packages of what is linked, whose copyright files go along.
+# These are Debian's packages of the linked libraries. Their copyright files are included.
 kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
     libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
     libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
@@ -170,7 +172,7 @@ pack() {
 
 # --- Test ------------------------------------------------------------------------------------------
 
-# In a root that has never seen a compiler.
+# Tests the archive in a root that has never had a compiler.
 test_in() {
     local root=$1 name
     name=$(basename "$archive" .tar.gz)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Puts other SPIR-V in the place of a package's module, so that `glint render --package` runs it. Needs python3-xxhash.
 
-For measurements alone: a package says of each module how long it is and what its hash is, and the loader refuses any
-other. What is put there must have the bindings and push constants of what it replaces. The manifest stays as it was.
+This is for measurements alone. A package states the length and the hash of each module, and the loader refuses any
+other. The new module must have the bindings and push constants of the old one. The manifest is not changed.
 
     scripts/replace_module.py PACKAGE MODULE.spv OTHER.spv     MODULE.spv: a file of the package
 
@@ -16,7 +16,7 @@ import xxhash
 
 HEADER_BYTES = 72
 CONTENT_HASH = slice(24, 32)
-SECTION = struct.Struct("<IIQQ")  # kind, bytes of an element, offset, elements
+SECTION = struct.Struct("<IIQQ")  # kind, bytes of an element, offset, number of elements
 MODULE = struct.Struct("<IIIIIIQQ")  # role, index, tracer, pad, offset and length of the file's name, bytes, hash
 KIND_MODULES, KIND_STRINGS = 1, 6
 

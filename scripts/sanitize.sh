@@ -24,7 +24,7 @@ if [[ $# -gt 0 ]]; then
 fi
 
 build=build/sanitize
-# Not an exit code of the command: a report shows whatever the command was about to return.
+# The command has no such exit code, so that a report is noticed whatever the command would have returned.
 export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=exitcode=99
 export NO_COLOR=1
 models=${GLINT_MODELS:-../shared/models}
@@ -48,7 +48,8 @@ trap 'rm -rf "$work"' EXIT
 mkdir "$work/failed" "$work/packages"
 export GLINT_CACHE=$work/cache
 
-# check ALLOWED COMMAND…: runs it; keeps what it says where its exit code is none of ALLOWED ("0", "01").
+# check ALLOWED COMMAND…: runs the command, and keeps its output if its exit code is none of ALLOWED ("0",
+# "01").
 check() {
     local allowed=$1 code=0 log
     shift
@@ -61,7 +62,7 @@ check() {
     fi
 }
 
-# check_scene SCENE: all that reads it or its package.
+# check_scene SCENE: runs everything that reads the scene or its package.
 check_scene() {
     local scene=$1 glint=$build/bin/glint package
     package=$(mktemp -d "$work/packages/XXXXXX")
@@ -83,7 +84,7 @@ check_scene() {
     rm -rf "$package"
 }
 
-# check_farm SCENE…: the commands that build several scenes, and modules one by one.
+# check_farm SCENE…: runs the commands that build several scenes, and modules one by one.
 check_farm() {
     local glint=$build/bin/glint folder=$work/farm
     check 0 "$glint" compile "$@" --plan-only "$folder/plan" -o "$folder/package" --merge all
@@ -96,7 +97,8 @@ check_farm() {
     done
 }
 
-# check_input FILE: a file of tests/fuzz/corpus, by its folder, or a scene that may be invalid.
+# check_input FILE: runs the reader of a file of tests/fuzz/corpus, which its folder determines, or of a scene
+# that may be invalid.
 check_input() {
     local file=$1 glint=$build/bin/glint scene=examples/cmake-consumer/scene/cubes.gltf package
     package=$(mktemp -d "$work/packages/XXXXXX")
@@ -122,14 +124,15 @@ check_input() {
                 check 01 "$glint" compare "$package/picture.$end" "$package/picture.$end"
             done
             ;;
-        */corpus/cache/*) ;; # its replay has the folder of a cache
-        */corpus/ktx2/*) ;;  # its replay decodes it; a scene around it would add nothing
+        */corpus/cache/*) ;; # the replay of its target has the folder of a cache
+        */corpus/ktx2/*) ;;  # the replay of its target decodes it; a scene around it would add nothing
         *) check 01 "$glint" compile "$file" --dry-run ;;
     esac
     rm -rf "$package"
 }
 
-# each BATCH FUNCTION FILE…: calls it for every file, as many processes as there are cores, BATCH files a process.
+# each BATCH FUNCTION FILE…: calls the function for every file, with as many processes as there are cores and
+# BATCH files for each process.
 each() {
     local batch=$1 function=$2
     shift 2
@@ -156,10 +159,10 @@ check 0 "$build/bin/gallery" "$work/gallery"
 say "a plan of two scenes, by Ninja"
 check_farm examples/cmake-consumer/scene/cubes.gltf "$work/gallery/gallery.gltf"
 
-# The gallery first: it takes longest.
+# The gallery comes first, because it takes longest.
 mapfile -d '' scenes < <(find "$work/gallery" "$models/large" examples "$models/features" \
     \( -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
-# A scene whose textures are KTX2 alone is an error in a build without the transcoder.
+# A scene with only KTX2 textures is an error in a build without the transcoder.
 if "$build/bin/glint" --version | grep -q 'KTX2.*not built in'; then
     for i in "${!scenes[@]}"; do
         [[ ${scenes[i]} == *-ktx2/* ]] && unset "scenes[i]"

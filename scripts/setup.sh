@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Glint needs to build, test and run. Does nothing where all of it is there.
+# Installs what Glint needs to build, test and run. Does nothing if everything is there.
 set -euo pipefail
 
 usage() {
@@ -19,7 +19,7 @@ they can't be had, that is said, and Glint builds without.
 TEXT
 }
 
-# What must be there, and the packages that bring it, the first that the distribution has is taken.
+# Each need, and the packages that provide it. The first package that the distribution has is used.
 #   command NAME   a program on the PATH
 #   file PATTERN   a file
 kNeeds=(
@@ -69,7 +69,7 @@ kPortableNeeds=(
     "command dpkg-source|dpkg-dev"
     "command debootstrap|debootstrap"
 )
-# The first Mesa whose software driver has ray queries is of this series.
+# Mesa's software driver has ray queries from this series on.
 kOldestMesa=24
 kBackportsFile=/etc/apt/sources.list.d/glint-backports.sources
 
@@ -110,7 +110,7 @@ mesa_version() {
     dpkg-query -W -f '${Version}' mesa-vulkan-drivers 2>/dev/null || true
 }
 
-# Debian 12 with a Mesa of its own.
+# Returns whether this is Debian 12 with its original Mesa.
 mesa_too_old() {
     [[ $distribution == "debian 12" ]] || return 1
     local version
@@ -118,8 +118,8 @@ mesa_too_old() {
     [[ -z $version ]] || dpkg --compare-versions "$version" lt "$kOldestMesa"
 }
 
-# Adds a browser and what drives it. Ubuntu has browsers as snaps only, which containers can't install: there the
-# test of the page in a browser is skipped.
+# Adds a browser and its driver. Ubuntu has browsers only as snaps, which containers can't install, so the
+# test of the page in a browser is skipped there.
 add_browser_needs() {
     [[ $distribution == debian\ * ]] || return 0
     needs+=(
@@ -129,10 +129,10 @@ add_browser_needs() {
     )
 }
 
-# Adds Clang, its run-time libraries, and what gives their reports names and lines.
+# Adds Clang, its run-time libraries, and the tool that adds names and lines to their reports.
 add_sanitizer_needs() {
     local version
-    # Debian's packages of the run-time libraries are for one version: that of the package clang.
+    # Debian's packages of the run-time libraries are for one version, that of the package clang.
     case $distribution in
         "debian 12") version=14 ;;
         "ubuntu 24.04") version=18 ;;
@@ -179,7 +179,7 @@ choose_package() {
     fail "no package for this system among: $* ($hint)"
 }
 
-# Adds backports to the sources, from the mirror and under the key that this machine uses for Debian itself.
+# Adds backports to the sources. They use the mirror and the key that this machine uses for Debian itself.
 configure_backports() {
     local stanza
     if [[ $'\n'$(apt_indices) == *$'\n'"bookworm-backports|main|"* ]]; then
@@ -216,7 +216,7 @@ install_packages() {
     apt_get install -q -y --no-install-recommends "${packages[@]}"
 }
 
-# The sources for KTX2 textures. Glint builds without them, so that nothing here fails.
+# Fetches the sources for KTX2 textures. Glint builds without them, so nothing here fails.
 fetch_basisu() {
     local script root
     script=$(dirname "${BASH_SOURCE[0]}")/fetch_basisu.sh
@@ -229,7 +229,7 @@ fetch_basisu() {
         say "not there: the sources for KTX2 textures, in $root (optional)"
         return
     fi
-    # A new machine may not have read its package lists yet, and the mirror is found by them.
+    # A new machine may not have read its package lists yet. The mirror is found through them.
     if ! apt_indices 2>/dev/null | grep -qi '|main|\(debian\|ubuntu\)|'; then
         apt_get update -q || true
     fi

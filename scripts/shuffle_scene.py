@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Copies a glTF scene with its triangles, and the nodes of each parent, in a random order: what traversal is measured on.
+"""Copies a glTF scene with its triangles, and the nodes of each parent, in a random order, to measure traversal.
 
     scripts/shuffle_scene.py SCENE.gltf|SCENE.glb FOLDER [SEED]     writes FOLDER/ with all that the scene needs
 

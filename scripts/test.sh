@@ -41,7 +41,7 @@ cmake --preset release -DGLINT_WARNINGS_AS_ERRORS=ON
 cmake --build --preset release
 status=0
 ctest --preset release -j2 --output-on-failure --no-tests=error || status=$?
-# Tests say in these words why they are skipped (tests/support/models.cpp).
+# Skipped tests give their reason in these words (tests/support/models.cpp).
 skipped=$(grep -c '^no models: ' build/release/Testing/Temporary/LastTest.log || true)
 if [[ $skipped -gt 0 ]]; then
     printf '%s tests were skipped because their models are not there: scripts/models.sh --help\n' "$skipped"

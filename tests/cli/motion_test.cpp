@@ -112,7 +112,7 @@ TEST_F(MovingScene, PlaysTheAnimationThatIsAskedFor) {
     expectOther("all.exr", "slide.exr");
     expectOther("all.exr", "look.exr");
     expectSame("look.exr", "one.exr");
-    // The last pose holds.
+    // After the end, the last pose remains.
     ASSERT_EQ(render("later.exr", {"--time", "9"}).exit, 0);
     expectSame("slide.exr", "later.exr");
     const Outcome unknown = render("x.exr", {"--time", "1", "--animation", "Slid"});
@@ -157,7 +157,7 @@ TEST_F(MovingScene, IsExplained) {
     EXPECT_NE(run({"explain", scene_}).out.find("Slide"), std::string::npos);
 }
 
-// The names of the effects that `explain` finds chosen.
+// Returns the names of the effects that `explain` reports as chosen.
 std::set<std::string> chosenEffects(const Json& explained) {
     std::set<std::string> names;
     for (const Json& effect : explained.at("effects")) {
@@ -168,7 +168,7 @@ std::set<std::string> chosenEffects(const Json& explained) {
     return names;
 }
 
-// Of values that pass, effects and keys are those that any of them calls for.
+// If values change over time, effects and keys include everything that any of the values needs.
 TEST_F(MovingScene, PointersArePlannedFor) {
     Json gltf = Json::parse(readText(scene_));
     Json& floor = gltf["materials"][0];
@@ -182,7 +182,7 @@ TEST_F(MovingScene, PointersArePlannedFor) {
     EXPECT_EQ(chosenEffects(still), std::set<std::string>());
     EXPECT_TRUE(still.at("materials")[0].at("animated").empty());
 
-    // From 0 to 1, each: the weights' own sampler.
+    // Each value goes from 0 to 1. The channels use the sampler of the weights.
     Json& animation = gltf["animations"][0];
     for (const char* pointer :
          {"/materials/0/pbrMetallicRoughness/roughnessFactor",

@@ -1,5 +1,5 @@
-// What a folder of the cache holds: an entry's file as a crash or another program left it, and the values in
-// it as other versions may have packed them. Nothing of it may do more than to be no entry.
+// Fuzzes a folder of the cache: the file of an entry as a crash or another program left it, and the values in
+// it as other versions may have packed them. The worst result may be that there is no entry.
 #include "cache/action.h"
 #include "cache/module_cache.h"
 #include "cache/packing.h"
@@ -20,7 +20,7 @@ using glint::fuzz::require;
 constexpr std::string_view kCompiler = "compiler";
 constexpr std::string_view kSource = "source";
 
-// All keys of a kind have one file, the hash 0, so that its name is known.
+// All keys of a kind share one file, that of hash 0, so that its name is known.
 glint::CacheStore& store() {
     static const glint::test::TemporaryFolder folder;
     static glint::CacheStore store(
@@ -62,7 +62,7 @@ void readModule(std::string_view text) {
     require(!module || !module->spirv.empty(), "a cached module has words");
 }
 
-// The store handles all values alike, and its writing takes longer than everything else here.
+// The store handles all values alike, and writing takes longer than everything else here.
 void storeModule(std::string_view text) {
     const std::string key = glint::Packer().add(kCompiler).add(kSource).take();
     store().put("module", key, text);
@@ -77,7 +77,7 @@ void storeModule(std::string_view text) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = glint::fuzz::asText(data, size);
     constexpr std::size_t kStoredSizes = 64;
-    // The first time makes the folder.
+    // The first call makes the folder.
     static bool isFirst = true;
     if (std::exchange(isFirst, false) || size % kStoredSizes == 0) {
         storeModule(text);

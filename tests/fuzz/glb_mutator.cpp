@@ -1,5 +1,5 @@
-// Mutates one of the two chunks of a .glb file, and then makes the container fit again. Most of what matters
-// lies behind lengths that a blind change would contradict.
+// Mutates one of the two chunks of a .glb file, and then makes the container fit again. A blind change would
+// contradict the lengths in the container, and nothing behind them would be reached.
 #include "fuzz/fuzz_target.h"
 
 #include <algorithm>

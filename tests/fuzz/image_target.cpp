@@ -1,4 +1,4 @@
-// Fuzzes pictures that compare and --environment read. The first bytes of an input decide its format.
+// Fuzzes the pictures that compare and --environment read. The first bytes of an input decide its format.
 #include "fuzz/fuzz_target.h"
 #include "image/exr.h"
 #include "image/hdr.h"

@@ -48,7 +48,7 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive) {
             "every vertex follows as many joints");
 }
 
-// Of channels of that path.
+// Returns how many targets the channels of that path can have.
 std::size_t targetsOf(const Scene& scene, AnimationPath path) {
     switch (path) {
         case AnimationPath::Material:

@@ -1,4 +1,4 @@
-// KTX2 images of glTF scenes, and the transcoder of Basis Universal behind them, where the build has it.
+// Fuzzes KTX2 images of glTF scenes, and the transcoder of Basis Universal behind them if the build has it.
 #include "fuzz/fuzz_target.h"
 #include "gltf/basisu.h"
 #include "gltf/codecs.h"

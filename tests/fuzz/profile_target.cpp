@@ -1,4 +1,4 @@
-// A profile of counted hits.
+// Fuzzes a profile of counted hits.
 #include "cli/profile.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch_file.h"

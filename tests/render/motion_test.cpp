@@ -139,15 +139,15 @@ TEST(Motion, TheTopLevelFollowsItsRule) {
     expectSameImage(moving.render(), renderStill(moving.scene), "updated, though it went far");
 }
 
-// On a CPU's driver the order of instances is the tree: a build takes it from where they are, an update keeps
-// it.
+// On a CPU's driver the order of instances determines the tree. A build orders them by their current places,
+// and an update keeps the order.
 TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
     constexpr std::uint32_t kCount = 64;
     Scene scene = emptyScene();
     const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
     const int mesh = addMesh(scene, makeQuad(material, {-0.4F, -0.4F, 0}, {0.8F, 0, 0}, {0, 0.8F, 0}));
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        // Neighbours in the file are far from each other, as 27 and 64 share no factor.
+        // 27 and 64 share no factor, so neighbours in the file are far from each other.
         const std::uint32_t place = 27 * i % kCount;
         addInstance(scene, mesh, placed(place % 8, place / 8, -20));
     }
@@ -161,7 +161,7 @@ TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
         }
         return instances;
     };
-    // Of the tree, as a multiple of the least.
+    // Returns the cost of the tree as a multiple of the least cost.
     const auto cost = [&] {
         std::vector<LeafBox> leaves;
         for (const Node& node : moving.scene.nodes) {
@@ -339,7 +339,8 @@ Scene paintedScene() {
     return scene;
 }
 
-// The same with the values of a time as if they were the file's: its key has what these alone call for.
+// Returns the scene with the values of a time in place of the file's. Its key then has only the features that
+// these values need.
 Scene plainScene(Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     const int painted = scene.animatedMaterials[0].material;
@@ -363,7 +364,7 @@ TEST(Motion, MaterialsChange) {
         expectSameImage(images.back(), renderStill(plain), "at " + std::to_string(time));
     }
     expectUnlike(images[1], images[0], "painted");
-    // Uploaded as it is at a time, a scene that stays shows that, too.
+    // A scene that does not move, but was uploaded with the values of a time, shows the same picture.
     Scene posed = scene;
     posed.materials[painted] = plainScene(scene, 1.0).materials[painted];
     expectSameImage(renderStill(posed), images[1], "uploaded as painted");
@@ -391,13 +392,13 @@ TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
     moving.scene.lights[0].shown = true;
     moving.update();
     expectSameImage(moving.render(), whole, "shown again");
-    // What is never shown is not uploaded.
+    // A node that is never shown is not uploaded.
     scene.nodes[1].shown = false;
     scene.nodes[1].canShow = false;
     EXPECT_EQ(makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
 }
 
-// Placements of one node are drawn as nodes in these places are, by fewer calls; one of them is mirrored.
+// Placements of one node are drawn like nodes at the same places, with fewer calls. One of them is mirrored.
 TEST(Motion, InstancesAreDrawnAsNodesAre) {
     Scene nodes = rigidScene();
     Primitive second = nodes.meshes[1].primitives[0];
@@ -427,8 +428,9 @@ TEST(Motion, InstancesAreDrawnAsNodesAre) {
     const Moving still(instanced, false);
     ASSERT_TRUE(still.ok());
     expectSameImage(still.render(), renderStill(nodes), "instanced");
-    // The floor; two primitives in three places, in one that is mirrored, and of the other node. Places
-    // share structures: there are at most as many as primitives.
+    // One batch is the floor. Each of the two primitives has three more: the plain placements, the mirrored
+    // one, and the other node. Places share structures, so there are at most as many structures as
+    // primitives.
     EXPECT_EQ(still.gpuScene->state().batches.size(), 7U);
     EXPECT_EQ(still.gpuScene->statistics().instances, 6U);
     EXPECT_LE(still.gpuScene->statistics().blasCount, still.data.primitives.size());

@@ -1,5 +1,5 @@
-// The order of triangles and instances in acceleration structures: pictures don't show it, and the device has
-// it.
+// Tests the order of triangles and instances in acceleration structures: pictures do not depend on it, and
+// the device uses it.
 #include "context_state.h"
 #include "leaf_order.h"
 #include "render/hit_kernel.h"
@@ -15,9 +15,9 @@
 namespace glint::testing {
 namespace {
 
-constexpr std::uint32_t kWidth = 16;  // quads of the hills, either way
+constexpr std::uint32_t kWidth = 16;  // quads of the hills in each direction
 
-// A square of hills under the camera, 4 m wide, as `material` has it; the even or odd columns of quads.
+// Returns the even or odd columns of quads of a square of hills under the camera, 4 m wide, with `material`.
 Primitive hills(int material, std::uint32_t parity) {
     Primitive primitive = makeQuad(material, {-2, -1, -4}, {4, 0, 0}, {0, 0, -4});
     primitive.positions.clear();
@@ -56,7 +56,7 @@ void shuffleTriangles(Primitive& primitive) {
     }
 }
 
-// Mirrors and masked stripes in one mesh, nine times, under a wall that they show.
+// Returns mirrors and masked stripes in one mesh, nine times, under a wall that they reflect.
 Scene stripes(bool shuffled) {
     Scene scene = emptyScene();
     const int mirror = addMaterial(scene, mirrorMaterial());
@@ -107,12 +107,12 @@ TEST(Traversal, PicturesDoNotShowTheOrder) {
     const LinearImage input = render(stripes(false), TraversalOrder::Input);
     ASSERT_FALSE(input.pixels.empty());
     EXPECT_EQ(render(stripes(true), TraversalOrder::Halving).pixels, input.pixels);
-    // A mirror that shows sky and wall has more than a few colours.
+    // A mirror that reflects sky and wall has more than a few colours.
     EXPECT_NE(input.pixels[2200], input.pixels[1100]);
     expectNoValidationMessages();
 }
 
-// Rays straight down on the centre of each triangle say which number it has for the driver.
+// Rays go straight down to the centre of each triangle. They return the number that the driver gives it.
 TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     Scene scene = emptyScene();
     Primitive primitive = hills(addMaterial(scene, unlitMaterial({1, 1, 1})), 0);

@@ -1,5 +1,5 @@
-// The tree that a driver makes which halves its leaves in the order in which they come, as Mesa's lavapipe
-// does: what an order is worth, without a device.
+// Computes the tree of a driver that halves its leaves in their given order, as Mesa's lavapipe does. It
+// shows without a device how good an order is.
 #pragma once
 
 #include "leaf_order.h"
@@ -12,11 +12,11 @@ namespace glint::test {
 
 struct HalvedNode {
     LeafBox box;
-    double surfaces = 0.0;  // of this node and all below it, leaves included
+    double surfaces = 0.0;  // of this node and all below it, including leaves
 };
 
-// The node over order[first] to order[first + count - 1]. lvp_build_internal_node(): the first half has the
-// odd one.
+// Returns the node over order[first] to order[first + count - 1]. As in lvp_build_internal_node(), the first
+// half has the odd leaf.
 inline HalvedNode halvedNode(std::span<const LeafBox> leaves, std::span<const std::uint32_t> order,
                              std::size_t first, std::size_t count) {
     if (count == 1) {
@@ -31,9 +31,9 @@ inline HalvedNode halvedNode(std::span<const LeafBox> leaves, std::span<const st
     return node;
 }
 
-// How many nodes and leaves a ray that meets the root meets on average, by the surface area heuristic
+// Returns how many nodes and leaves a ray that meets the root meets on average, by the surface area heuristic
 // (MacDonald and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990): the surface of all nodes
-// over that of the root.
+// divided by that of the root.
 inline double halvedTreeCost(std::span<const LeafBox> leaves, std::span<const std::uint32_t> order) {
     const HalvedNode root = halvedNode(leaves, order, 0, order.size());
     return root.surfaces / root.box.surface();

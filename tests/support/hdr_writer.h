@@ -1,4 +1,4 @@
-// Radiance RGBE pictures for tests, by the format's description in Ward, "Real Pixels" (Graphics Gems II,
+// Writes Radiance RGBE pictures for tests. The format is described in Ward, "Real Pixels" (Graphics Gems II,
 // 1991).
 #pragma once
 
@@ -24,7 +24,7 @@ inline std::array<std::uint8_t, 4> toRgbe(const std::array<float, 3>& color) {
             static_cast<std::uint8_t>(color[2] * scale), static_cast<std::uint8_t>(exponent + 128)};
 }
 
-// Run-length encoding needs a width of 8 to 32767. This writes no runs, but pieces of at most 128 bytes.
+// Run-length encoding needs a width of 8 to 32767. This code writes no runs, but pieces of at most 128 bytes.
 inline std::vector<std::uint8_t> encodeHdr(int width, int height,
                                            const std::vector<std::array<float, 3>>& pixels,
                                            HdrEncoding encoding) {

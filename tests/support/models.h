@@ -1,4 +1,4 @@
-// Where scenes by others are, which the repository does not hold: scripts/models.sh says what they are.
+// Finds scenes by others, which the repository does not contain. scripts/models.sh lists them.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,12 @@
 
 namespace glint::test {
 
-// The folder that the environment variable GLINT_MODELS names; without it the CMake variable of that name.
+// Returns the folder in the environment variable GLINT_MODELS, or without it the one in the CMake variable of
+// that name.
 std::filesystem::path modelsFolder();
 
-// Why a test is skipped that needs `path`, which is not there. scripts/test.sh counts tests by this text.
+// Returns the reason for skipping a test because `path` is missing. scripts/test.sh counts tests by this
+// text.
 std::string noModels(const std::filesystem::path& path);
 
 }  // namespace glint::test

@@ -1,4 +1,4 @@
-// A folder for a test's files.
+// Provides a folder for a test's files.
 #pragma once
 
 #include <cstdlib>

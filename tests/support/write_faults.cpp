@@ -100,7 +100,7 @@ Act judge(Call call) {
     std::abort();  // not reached
 }
 
-// For calls that are either done or not: returns false if this one is not done.
+// For calls that happen either completely or not at all. Returns false if this one must not happen.
 bool allow(Call call) {
     const Act act = judge(call);
     if (act == Act::Half) {
@@ -138,7 +138,7 @@ bool isForWriting(const char* mode) {
 
 }  // namespace
 
-// The calls of the C library by which the command and the C++ standard library change files.
+// The command and the C++ standard library change files through these calls of the C library.
 extern "C" {
 
 int open(const char* path, int flags, ...) {
@@ -172,7 +172,7 @@ ssize_t write(int file, const void* data, size_t size) {
         die();
     }
     errno = error;
-    // Writes what fits; the next call then fails.
+    // Writes as much as fits. The next call then fails.
     return written > 0 ? written : -1;
 }
 

@@ -32,7 +32,8 @@ std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t widt
             break;
         }
         if (type == "IDAT") {
-            // stb_image would copy it to a null pointer. PNG allows it, but no encoder begins with it.
+            // stb_image would copy an empty chunk to a null pointer. PNG allows it, but no encoder begins
+            // with one.
             if (length == 0 && !hasData) {
                 return "its first chunk of data is empty";
             }

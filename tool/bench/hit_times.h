@@ -6,14 +6,14 @@
 
 namespace glint::bench {
 
-// What a pass counts for.
+// The part of the work on hits to which a pass belongs.
 enum class HitPart : std::uint8_t {
-    None,      // of primary surfaces or of the picture, or a check
-    Dispatch,  // indirect arguments of the list of rays
-    Trace,     // rays to hit records, where a pass of its own does that
-    Order,     // those records by bucket
-    Shade,     // hits; of uber and hit-shaders with their tracing
-    Shadow,    // deferred shadow rays, with their dispatch
+    None,      // passes of primary surfaces or of the picture, and checks
+    Dispatch,  // makes the indirect arguments of the list of rays
+    Trace,     // traces rays and writes hit records, in strategies with a pass of its own for that
+    Order,     // sorts those records by bucket
+    Shade,     // shades hits; uber and hit-shaders also trace here
+    Shadow,    // traces deferred shadow rays, and dispatches them
 };
 
 struct PassTime {
@@ -21,7 +21,7 @@ struct PassTime {
     double milliseconds = 0.0;
 };
 
-// Milliseconds, from the list of rays to their shaded hits; the members as HitPart says.
+// Milliseconds from the list of rays to their shaded hits, split by HitPart.
 struct HitTimes {
     double dispatch = 0.0;
     double trace = 0.0;
@@ -36,7 +36,7 @@ struct HitTimes {
     HitTimes& operator/=(double count);
 };
 
-// Of all passes of a sample.
+// Adds up all passes of a sample.
 HitTimes hitTimesOf(std::span<const PassTime> passes);
 
 }  // namespace glint::bench

@@ -39,7 +39,7 @@ struct Exposure {
 
 // Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.
 double stretchMs(std::span<const PassTiming> stretches, Pass pass);
-// Of the passes of one sample (Timing::Passes) those that strategies differ in.
+// Adds up the passes of one sample (Timing::Passes) in which strategies differ.
 bench::HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // A package, and the scene on the device in the form that the package needs.

@@ -38,7 +38,7 @@ constexpr std::string_view nameOf(AnimationPath path) {
     return "weights";
 }
 
-// Whether a channel of that path drives a node.
+// Returns whether a channel of that path drives a node.
 bool drivesNode(AnimationPath path) {
     return path != AnimationPath::Material && path != AnimationPath::Light && path != AnimationPath::Camera;
 }
@@ -47,7 +47,7 @@ constexpr AnimationPath kPaths[] = {
     AnimationPath::Translation, AnimationPath::Rotation, AnimationPath::Scale, AnimationPath::Weights,
     AnimationPath::Visible,     AnimationPath::Material, AnimationPath::Light, AnimationPath::Camera};
 
-// Channels by what they move; those of one weight are among those of all.
+// Counts channels by the property that they move. A channel of one weight counts with those of all weights.
 std::map<AnimationPath, std::size_t> channelsOf(const Animation& animation) {
     std::map<AnimationPath, std::size_t> counts;
     for (const AnimationChannel& channel : animation.channels) {
@@ -66,11 +66,11 @@ std::size_t nodesOf(const Animation& animation) {
     return nodes.size();
 }
 
-// A mesh together with a node that draws it.
+// A mesh, and a node that draws it.
 struct Deformed {
     const Node* node = nullptr;
-    std::size_t joints = 0;      // of its skin; 0: it follows none
-    std::size_t influences = 0;  // joints that a vertex follows at most
+    std::size_t joints = 0;      // joints of its skin; 0 if it follows none
+    std::size_t influences = 0;  // the most joints that a vertex follows
     std::size_t targets = 0;
     std::size_t vertices = 0;
 };

@@ -111,7 +111,7 @@ std::string leavingText(const KeyCost& cost) {
                                   : fmt::format("apart it would cost {:.2f} more", cost.leavingAdds);
 }
 
-// Of a case of several keys.
+// Describes a case of several keys.
 std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Detail detail) {
     const Case& shaderCase = caseOf(planned, entry.shaderId);
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},

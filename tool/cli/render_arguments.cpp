@@ -42,8 +42,9 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             ""))
         ->group(group);
     addText(command, "--sky", arguments.sky, "auto|FACTOR",
-            "times the radiance of the default sky, 0 to 1e9; auto: as\nmuch light as the scene's lights "
-            "bring, 1 if it has none\n"
+            "factor of the default sky's radiance, 0 to 1e9; auto: the\n"
+            "sky brings as much light as the scene's lights, and the\n"
+            "factor is 1 if the scene has none\n"
             "(default: auto; excludes --environment)")
         .check(CLI::Validator(
             [](const std::string& text) {
@@ -148,7 +149,7 @@ void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments
     checkEnvironmentOptions(command);
     if (command.count("--sky") > 0 && !arguments.environment.file.empty()) {
         throw CLI::ValidationError("--sky",
-                                   "is of the sky that --environment replaces; leave out one of them");
+                                   "sets the sky that --environment replaces; leave out one of them");
     }
     checkTracingChoice(arguments.tracing);
     checkEffects(arguments.effects);

@@ -120,7 +120,7 @@ public:
         return image;
     }
 
-    // Of the last picture: exposes its surfaces.
+    // Returns the exposure for the surfaces of the last picture.
     Result<double> exposureOf(const LinearImage& image) {
         const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
         return surfaces ? Result<double>(automaticExposure(image, *surfaces)) : surfaces.error();

@@ -21,8 +21,8 @@ CompileSettings compileSettings(const RenderArguments& arguments, const PlanOpti
 
 RendererOptions rendererOptions(const RenderArguments& arguments);
 
-// The sky that --sky asks for; with `auto`, that of the lights at the pose of `scene`, from which `view` was
-// made. A scene without lights of its own keeps the default sky, whose sun belongs to it.
+// Returns the sky that --sky asks for. With `auto` it follows the lights at the pose of `scene`, from which
+// `view` was made. A scene without lights of its own keeps the default sky, to which the sun belongs.
 SkyChoice chooseSky(const RenderArguments& arguments, const Scene& scene, const SceneViewData& view);
 
 // `environment` may be null.

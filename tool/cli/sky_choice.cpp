@@ -35,7 +35,7 @@ Double3 transformed(const std::array<float, 12>& rows, const Double3& point) {
     return world;
 }
 
-// 1, or -1 where the transform mirrors, which swaps the sides of a triangle.
+// Returns 1, or -1 if the transform mirrors, which swaps the sides of a triangle.
 double handedness(const std::array<float, 12>& rows) {
     const Double3 x{rows[0], rows[1], rows[2]};
     const Double3 y{rows[4], rows[5], rows[6]};
@@ -43,7 +43,7 @@ double handedness(const std::array<float, 12>& rows) {
     return dot(cross(x, y), z) < 0.0 ? -1.0 : 1.0;
 }
 
-// Positions of a primitive of an instance in world space.
+// Returns the positions of a primitive of an instance in world space.
 std::vector<Double3> worldPositions(const Scene& scene, const Node& node, const InstanceView& instance,
                                     const Primitive& primitive) {
     std::vector<Double3> positions;
@@ -66,13 +66,13 @@ std::vector<Double3> worldPositions(const Scene& scene, const Node& node, const 
     return positions;
 }
 
-// Twice the triangle's area along the normal of its front.
+// Returns a vector along the normal of the triangle's front; its length is twice the area.
 Double3 areaVector(const Corners& corners) {
     return cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
 }
 
-// Calls `visit` with the corners of each triangle of all visible instances that has an area, in a fixed
-// order; the corners are counter-clockwise as seen from the front.
+// Calls `visit` for each triangle of all visible instances that has an area, in a fixed order. The corners
+// are counter-clockwise as seen from the front.
 void visitTriangles(const Scene& scene, const SceneViewData& view,
                     const std::function<void(const Corners&, double area)>& visit) {
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
@@ -100,7 +100,7 @@ void visitTriangles(const Scene& scene, const SceneViewData& view,
     }
 }
 
-// The middle of a triangle.
+// Returns the middle of a triangle.
 SurfacePoint centreOf(const Corners& corners) {
     SurfacePoint point;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -120,7 +120,7 @@ Double3 between(const Double3& a, const Double3& b) {
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
 }
 
-// Whether a light is so near that what it brings varies over the triangle.
+// Returns whether a light is so near that its illuminance varies over the triangle.
 bool varies(const Corners& corners, const Double3& centre, std::span<const LightView> lights) {
     double radius = 0.0;
     for (const Double3& corner : corners) {
@@ -132,11 +132,11 @@ bool varies(const Corners& corners, const Double3& centre, std::span<const Light
     });
 }
 
-// A triangle of this area in patches.
+// Divides a triangle of this area into patches.
 void addPatches(const Corners& corners, double area, std::span<const LightView> lights, int divisions,
                 std::vector<LitPatch>& patches) {
     const SurfacePoint centre = centreOf(corners);
-    // Bounds the evaluations of lights, where these are many.
+    // This bounds the evaluations of lights if there are many lights.
     constexpr std::size_t kMostEvaluations = 1U << 20U;
     if (divisions > 0 && patches.size() * lights.size() < kMostEvaluations &&
         varies(corners, centre.position, lights)) {
@@ -165,7 +165,7 @@ double luminanceOf(const std::array<float, 3>& color) {
 std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
                                  std::span<const LightView> lights) {
     constexpr double kParts = 8192.0;
-    constexpr int kDivisions = 20;  // a plane of a hundred kilometres into tenths of a metre
+    constexpr int kDivisions = 20;  // enough to divide a plane of a hundred kilometres into tenths of a metre
     double whole = 0.0;
     visitTriangles(scene, view, [&](const Corners&, double area) { whole += area; });
     std::vector<LitPatch> patches;
@@ -173,13 +173,14 @@ std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
         return patches;
     }
     const double part = whole / kParts;
-    double small = 0.0;  // area of small triangles that no patch stands for yet
+    double small = 0.0;  // area of small triangles for which no patch stands yet
     visitTriangles(scene, view, [&](const Corners& corners, double area) {
         if (area >= part) {
             addPatches(corners, area, lights, kDivisions, patches);
             return;
         }
-        // Systematic sampling: one triangle for each part of the area that small ones have together.
+        // This is systematic sampling: one triangle is chosen for each part of the area that the small ones
+        // have together.
         small += area;
         if (small > 0.5 * part) {
             addPatches(corners, part, lights, 0, patches);
@@ -242,7 +243,7 @@ std::optional<double> typicalIlluminance(std::vector<LitPatch> patches) {
 }
 
 double meanIlluminance(const SkyView& sky) {
-    // The gradient is linear in the height, over which the sphere's area is even.
+    // The gradient is linear in the height, and the area of the sphere is uniform over the height.
     return std::numbers::pi * 0.25 *
            (2.0 * luminanceOf(sky.horizon) + luminanceOf(sky.zenith) + luminanceOf(sky.ground));
 }
@@ -258,7 +259,7 @@ SkyView SkyChoice::sky() const {
 }
 
 SkyChoice skyForLights(std::vector<LitPatch> patches) {
-    constexpr double kMost = 1e18;  // as of an environment map
+    constexpr double kMost = 1e18;  // the same limit as for an environment map
     SkyChoice choice;
     choice.automatic = true;
     choice.lights = typicalIlluminance(std::move(patches));

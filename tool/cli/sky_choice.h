@@ -1,4 +1,4 @@
-// How bright the sky is where no environment map lights the scene: it follows the lights.
+// Chooses how bright the sky is in a scene without an environment map: it follows the lights.
 #pragma once
 
 #include "cli/scene_view.h"
@@ -22,49 +22,51 @@ struct SurfacePoint {
     std::array<double, 3> normal{};
 };
 
-// Illuminance that a light brings to a surface if nothing shadows it, in lux: the luminance (Rec. 709) of its
-// colour times the formulas of KHR_lights_punctual (inverse square law, window of the range, cone) times the
-// cosine. Light within 1 mm counts as 1 mm away, as in shaders/hit/punctual.glsl.
+// Returns the illuminance that a light gives a surface without shadows, in lux. It is the luminance (Rec.
+// 709) of the light's colour, times the formulas of KHR_lights_punctual (inverse square law, window of the
+// range, cone), times the cosine. A light that is nearer than 1 mm counts as 1 mm away, as in
+// shaders/hit/punctual.glsl.
 double illuminanceAt(const LightView& light, const SurfacePoint& point);
 
-// A piece of a surface on which illuminance hardly varies, but for the edges of cones.
+// A piece of a surface on which the illuminance hardly varies, except at the edges of cones.
 struct LitPatch {
-    double illuminance = 0.0;  // lux, of all lights together
+    double illuminance = 0.0;  // lux, from all lights together
     double area = 0.0;         // square metres
 };
 
-// The surfaces of all instances at the pose of `scene`, from which `view` was made, in at most some ten
-// thousand patches: triangles, divided where a point or spot light is near, and of many small ones some that
-// stand for all. Deterministic. Triangles that are not finite are left out.
+// Returns the surfaces of all instances as at most some ten thousand patches, at the pose of `scene` from
+// which `view` was made. A patch is a triangle, or a part of one if a point or spot light is near. If there
+// are many small triangles, some of them stand for all. The result is deterministic. Triangles that are not
+// finite are left out.
 std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
                                  std::span<const LightView> lights);
 
-// What the lights bring to a surface that they light: the log-average by area (Reinhard et al. 2002,
+// Returns the illuminance of a typical lit surface. It is the log-average by area (Reinhard et al. 2002,
 // "Photographic Tone Reproduction for Digital Images", equation 1) over the brightest patches that together
-// receive three quarters of all light. So neither a ground without end counts, which a lamp hardly reaches,
-// nor a small shade around the lamp itself. Nothing where no light arrives.
+// receive three quarters of all light. So an endless ground that a lamp hardly reaches does not count, nor
+// does a small shade around the lamp itself. Returns nothing if no light arrives.
 std::optional<double> typicalIlluminance(std::vector<LitPatch> patches);
 
-// Illuminance that a sky brings to a surface without shadows, the mean over all directions that the surface
-// may face, in lux: π times the mean of the sky's luminance over the sphere.
+// Returns the illuminance that a sky gives a surface without shadows, in lux, as the mean over all directions
+// that the surface may face. It is π times the mean of the sky's luminance over the sphere.
 double meanIlluminance(const SkyView& sky);
 
-// The sky of a picture, and why it is so bright.
+// The sky of a picture, and the reason for its brightness.
 struct SkyChoice {
-    double scale = 1.0;      // times the radiance of SkyView{}
-    bool automatic = false;  // by the lights; otherwise as asked for
-    // Lux, of the lights that the scale follows; nothing where there are none.
+    double scale = 1.0;      // factor for the radiance of SkyView{}
+    bool automatic = false;  // chosen by the lights; otherwise by the user
+    // The illuminance in lux that the scale follows. It is empty if there are no lights.
     std::optional<double> lights;
 
     SkyView sky() const;
 };
 
-// The sky that brings as much light as the scene's lights do: meanIlluminance() of the sky is their
-// typicalIlluminance(). Scale 1 where there is none. The radiance stays between 1e-18 and 1e18 of the
-// default.
+// Returns the sky that gives as much light as the scene's lights: its meanIlluminance() equals their
+// typicalIlluminance(). The scale is 1 if no light arrives. The radiance stays between 1e-18 and 1e18 times
+// the default.
 SkyChoice skyForLights(std::vector<LitPatch> patches);
 
-// One line for people.
+// Describes the choice in one line for people.
 std::string toText(const SkyChoice& choice);
 
 }  // namespace glint

@@ -18,7 +18,7 @@ std::size_t displayWidth(const std::string& text) {
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-// "12 Clearcoat…", as shaderTitle() makes it.
+// Returns whether the cell is a title such as "12 Clearcoat…", which shaderTitle() makes.
 bool isTitle(const std::string& cell) {
     const std::size_t end = cell.find_first_not_of("0123456789");
     return end != std::string::npos && cell[end] == ' ' && end + 1 < cell.size() &&
@@ -34,7 +34,8 @@ bool looksNumeric(const std::string& cell) {
 
 constexpr std::string_view kEllipsis = "…";
 
-// Its first or last characters, so many; whole code points, so that UTF-8 stays UTF-8.
+// These return the first or last `count` characters of a text. They cut between code points, so that UTF-8
+// stays valid.
 std::string firstCharacters(const std::string& text, std::size_t count) {
     std::size_t end = 0;
     for (std::size_t seen = 0; end < text.size(); ++end) {
@@ -49,7 +50,7 @@ std::string lastCharacters(const std::string& text, std::size_t count) {
     return text.substr(firstCharacters(text, displayWidth(text) - count).size());
 }
 
-// A path's end says which file it is, other texts' beginning what they are.
+// Cuts a path at its beginning, because its end identifies the file, and other texts at their end.
 std::string cut(const std::string& text, std::size_t width) {
     if (displayWidth(text) <= width) {
         return text;
@@ -61,7 +62,7 @@ std::string cut(const std::string& text, std::size_t width) {
 
 struct Column {
     std::size_t width = 0;
-    std::size_t head = 0;  // width of the first row's cell
+    std::size_t head = 0;  // width of the cell in the first row
     bool numeric = true;
 };
 
@@ -88,7 +89,8 @@ std::size_t widthOf(const std::vector<Column>& columns) {
     return width;
 }
 
-// Narrows the widest columns of text until the table has this width, or each has `least` or its head.
+// Narrows the widest columns of text until the table has this width, or until each has `least` or the width
+// of its head.
 void narrow(std::vector<Column>& columns, std::size_t width, std::size_t least) {
     while (widthOf(columns) > width) {
         Column* widest = nullptr;
@@ -117,7 +119,7 @@ std::string lineOf(const std::vector<std::string>& row, const std::vector<Column
     return line + "\n";
 }
 
-// Lines of at most `width` characters, broken at spaces; a longer word has a line of its own.
+// Breaks a text at spaces into lines of at most `width` characters. A longer word has a line of its own.
 std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
     std::vector<std::string> lines{""};
     std::size_t begin = 0;
@@ -139,7 +141,8 @@ std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
 std::string formatTable(const Rows& rows, Detail detail) {
     std::vector<Column> columns = measure(rows, true);
     if (detail == Detail::Short) {
-        // Names that are told apart by less are rare; below that a table may be wider.
+        // Cells rarely need more characters than this to be told apart. Before they get shorter, the table
+        // becomes wider.
         constexpr std::size_t kReadable = 28;
         constexpr std::size_t kLeast = 12;
         narrow(columns, kTableWidth, kReadable);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kDamaged = "the file is damaged: export it again";
 
-// Elements of a run of bytes.
+// The elements in a run of bytes.
 struct ElementLayout {
     ByteView bytes;
     std::size_t offset = 0;
@@ -69,7 +69,7 @@ std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
     }
 }
 
-// The largest value of an unsigned component type; 0 for other types.
+// Returns the largest value of an unsigned component type, or 0 for other types.
 std::uint32_t largestUnsigned(int componentType) {
     switch (componentType) {
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
@@ -123,7 +123,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
     return okStatus();
 }
 
-// Reads a part of a sparse accessor; nothing is in it where `count` is 0.
+// Reads a part of a sparse accessor. The part is empty if `count` is 0.
 Result<ElementLayout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
                                    std::size_t offset, std::size_t elementSize, std::size_t count) {
     const Result<ByteView> bytes = document.bufferView(bufferView);
@@ -180,7 +180,7 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     return okStatus();
 }
 
-// All elements, tightly packed.
+// Returns all elements, tightly packed.
 Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
     const tinygltf::Accessor& accessor = accessorOf(document, index);
     if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
@@ -205,7 +205,8 @@ void appendIntegers(const Bytes& bytes, bool normalized, std::vector<float>& val
     values.reserve(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
         const float value = load<T>(&bytes[i]);
-        // Division, not a product with the reciprocal: the largest integer must give 1 exactly.
+        // This divides instead of multiplying by the reciprocal, because the largest integer must give
+        // exactly 1.
         values.push_back(normalized ? std::max(value / largest, -1.0F) : value);
     }
 }

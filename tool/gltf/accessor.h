@@ -1,4 +1,4 @@
-// Typed reads of accessors, every byte checked to be inside its buffer view.
+// Reads accessors as typed values. Every byte is checked to lie inside its buffer view.
 #pragma once
 
 #include "gltf/document.h"
@@ -18,7 +18,7 @@ struct FloatElements {
     std::vector<float> values;  // components * count
 };
 
-// How integers that are not marked as normalised become floats.
+// How integers become floats if the accessor does not mark them as normalised.
 enum class Integers : std::uint8_t { AsValues, Normalized };
 
 // What the elements of an accessor look like.
@@ -28,18 +28,19 @@ struct ElementFormat {
     std::size_t componentSize = 0;  // bytes
 };
 
-// The format of a vector or scalar accessor of any component type but 32-bit integers; an error for others.
+// Returns the format of a vector or scalar accessor. 32-bit integers are an error.
 Result<ElementFormat> floatFormat(const Document& document, int accessor);
 
-// Converts elements of that accessor's format, packed tightly.
+// Converts elements of that accessor's format, which are packed tightly.
 FloatElements toFloats(const Document& document, int accessor, Integers integers,
                        const std::vector<std::uint8_t>& bytes);
 
-// Reads an accessor that floatFormat() takes. Normalised integers map to
-// [0, 1] or [-1, 1]; floats come as stored, NaN and infinities too.
+// Reads an accessor that floatFormat() accepts. Normalised integers map to [0, 1] or [-1, 1]. Floats stay as
+// they are stored, including NaN and infinities.
 Result<FloatElements> readFloats(Document& document, int accessor, Integers integers = Integers::AsValues);
 
-// Reads an accessor of 4 x 4 matrices of floats, as stored. Error "accessor-type" for others.
+// Reads an accessor of 4 x 4 matrices of floats as they are stored. Any other accessor is the error
+// "accessor-type".
 Result<std::vector<Matrix4>> readMatrices(Document& document, int accessor);
 
 struct IndexElements {
@@ -50,7 +51,7 @@ struct IndexElements {
 // Reads a scalar accessor of unsigned integers.
 Result<IndexElements> readIndices(Document& document, int accessor);
 
-// Elements of the accessor, read or not.
+// Returns how many elements the accessor has. It need not have been read.
 std::size_t elementCount(const Document& document, int accessor);
 
 }  // namespace glint::gltf

@@ -21,7 +21,8 @@ double convertIor(double value) {
     return value == 0.0 ? 0.0 : std::max(value, 1.0);
 }
 
-// As the importer reads it: 0 for an infinite distance, and a micrometre for none.
+// The importer reads distances in the same way: 0 means infinite, and a distance that is not above 0 becomes
+// a micrometre.
 double convertDistance(double value) {
     constexpr double kLeast = 1e-6;
     return value >= kMax ? 0.0 : std::max(value, kLeast);
@@ -105,7 +106,7 @@ constexpr LightProperty kLightValues[] = {
     {"spot/outerConeAngle", 1, 0.0, std::numbers::pi / 2, [](Light& light) { return &light.outerConeAngle; }},
 };
 
-// The importer refuses lenses beyond these; an animation stops at them.
+// The importer refuses lenses beyond these bounds, and an animation stops at them.
 constexpr double kLeastLens = 1e-4;
 constexpr CameraProperty kCameras[] = {
     {"perspective/yfov", 1, kLeastLens, std::numbers::pi - kLeastLens, [](Camera& c) { return &c.yfov; }},
@@ -127,7 +128,7 @@ std::optional<int> findByName(const AnimatableProperty<Object, Number> (&table)[
                                     : std::optional(static_cast<int>(found - std::begin(table)));
 }
 
-// KHR_texture_transform: three of each slot, after the factors.
+// Each slot has three properties of KHR_texture_transform. They come after the factors.
 enum TransformPart : int { kOffset = 0, kRotation = 1, kScale = 2 };
 constexpr std::string_view kTransformParts[] = {"offset", "rotation", "scale"};
 constexpr int kPartCount = 3;
@@ -151,7 +152,7 @@ std::string transformName(const gltf::TexturePlace& place, std::string_view part
                        owner.empty() ? "" : "/", place.member, part);
 }
 
-// The first of a material property's numbers.
+// Returns the first number of a material property.
 float* firstOf(Material& material, int property) {
     if (isFactor(property)) {
         return kFactors[property].first(material);
@@ -173,7 +174,7 @@ double settled(const AnimatableProperty<Object, Number>& row, double value) {
     return std::clamp(converted, row.low, row.high);
 }
 
-// As a material holds the value of a number.
+// Returns the value as the material stores it.
 float heldValue(int property, double value) {
     return static_cast<float>(isFactor(property) ? settled(kFactors[property], value)
                                                  : std::clamp(value, -kMax, kMax));
@@ -183,7 +184,7 @@ bool isNamed(int property, std::string_view name) {
     return isFactor(property) && kFactors[property].name == name;
 }
 
-// Of the two base models a material reads one.
+// A material reads only one of the two base models.
 bool isRead(const Material& material, int property) {
     if (!isFactor(property)) {
         return true;
@@ -266,7 +267,7 @@ void settleLight(Light& light) {
 }
 
 void settleCamera(Camera& camera) {
-    // A hair of depth: 0 would be an infinite distance.
+    // This leaves a little depth, because 0 would mean an infinite distance.
     constexpr double kLeastDepth = 1.001;
     if (camera.zfar > 0.0 || camera.orthographic) {
         camera.zfar = std::max({camera.zfar, kLeastDepth * camera.znear, camera.znear + kLeastLens});
@@ -293,7 +294,7 @@ bool setGenericValue(Material& material, int property, std::size_t number, Value
         target = low;
         return false;
     }
-    // Cut-offs are compared with the alpha: the highest cuts most, and the least alpha is cut most.
+    // The alpha is compared with the cut-off. The highest cut-off and the lowest alpha cut most.
     if (isNamed(property, "alphaCutoff")) {
         target = high;
         return true;
@@ -302,8 +303,9 @@ bool setGenericValue(Material& material, int property, std::size_t number, Value
         target = low;
         return true;
     }
-    // A fraction of its own: two numbers that vary are not taken for equal, as those of the normal textures
-    // of base and coat would be. None lands on 0, 1 or 1.5, at which rules call features neutral.
+    // Each number has a fraction of its own, so that two numbers that vary are not taken for equal. The
+    // normal textures of base and coat would be otherwise. No value may be 0, 1 or 1.5, at which rules call
+    // features neutral.
     double fraction = 0.437 + 0.001 * property + 0.0001 * static_cast<double>(number);
     const double from = isIor ? std::max<double>(low, 1.0) : low;
     const double to = isIor ? std::max<double>(high, from + 1.0) : high;

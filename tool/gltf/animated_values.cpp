@@ -21,8 +21,9 @@ void extend(ValueRange& range, double value) {
     range.high = std::max(range.high, value);
 }
 
-// Every value of one number of a sampler. A cubic spline leaves the span of its keyframes by no more than
-// 4/27 of each tangent times the seconds between them: the largest value of t (1 - t)^2.
+// Extends the range by every value of one number of a sampler. A cubic spline exceeds the values of its
+// keyframes by at most 4/27 of each tangent times the seconds between them, because 4/27 is the largest value
+// of t (1 - t)^2.
 void extend(ValueRange& range, const AnimationSampler& sampler, std::size_t number) {
     const bool cubic = sampler.interpolation == Interpolation::CubicSpline;
     const std::size_t parts = cubic ? 3 : 1;
@@ -66,7 +67,8 @@ bool drives(const Scene& scene, AnimationPath path) {
     return found;
 }
 
-// By (index into Scene::animatedMaterials, property): of each of its numbers.
+// The key is (index into Scene::animatedMaterials, property). The value has a range for each number of the
+// property.
 using MaterialRanges = std::map<std::pair<int, int>, std::vector<ValueRange>>;
 
 MaterialRanges materialRanges(const Scene& scene) {
@@ -141,7 +143,8 @@ void settleVisibility(Scene& scene) {
     }
 }
 
-// An intensity and a colour that are above 0 at some time, not necessarily at the same.
+// A light can shine if its intensity and its colour are above 0 at some time, not necessarily at the same
+// time.
 void settleLights(Scene& scene) {
     std::vector<std::array<bool, 2>> positive;  // intensity, colour
     for (const Light& light : scene.lights) {

@@ -1,12 +1,12 @@
-// What animations can make of a scene, at all times together: what planning decides by.
+// Finds the values that animations can give a scene over all times. Planning decides by them.
 #pragma once
 
 #include "gltf/scene.h"
 
 namespace glint::gltf {
 
-// Fills, once the animations are imported: AnimatedMaterial::generic, smoothest and changes, Node::canShow,
-// Light::canShine, and the visibility at rest of nodes and lights.
+// Fills AnimatedMaterial::generic, smoothest and changes, Node::canShow, Light::canShine, and the visibility
+// of nodes and lights at rest. The animations must have been imported.
 void settleAnimatedValues(Scene& scene);
 
 }  // namespace glint::gltf

@@ -42,8 +42,8 @@ PointerTarget known(AnimationPath path, std::size_t width, std::vector<int> targ
     return target;
 }
 
-// RFC 6901: "/a/b~1c" into "a" and "b/c". Nothing where it does not start with a slash, or has another
-// escape.
+// Splits "/a/b~1c" into "a" and "b/c" (RFC 6901). Returns nothing if the text does not start with a slash or
+// has an unknown escape.
 std::optional<std::vector<std::string>> tokensOf(const std::string& pointer) {
     if (!pointer.starts_with('/')) {
         return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<std::vector<std::string>> tokensOf(const std::string& pointer) {
     return tokens;
 }
 
-// A number without leading zeros.
+// Parses a number without leading zeros.
 std::optional<std::size_t> indexOf(const std::string& token) {
     std::size_t index = 0;
     const char* const end = token.data() + token.size();
@@ -73,7 +73,7 @@ std::optional<std::size_t> indexOf(const std::string& token) {
     return whole ? std::optional(index) : std::nullopt;
 }
 
-// Where a chain of members and indices leads; null where one is missing.
+// Follows a chain of members and indices. Returns null if one of them is missing.
 const Json* follow(const Json& from, Tokens tokens) {
     const Json* at = &from;
     for (const std::string& token : tokens) {
@@ -117,7 +117,8 @@ public:
     }
 
 private:
-    // The index at tokens_[place] goes into the array of the tokens before it; `member` sees the rest.
+    // The token at tokens_[place] is an index into the array that the tokens before it name. `member` gets
+    // the rest of the tokens.
     PointerTarget element(std::size_t place,
                           PointerTarget (PointerResolver::*member)(std::size_t index, Tokens rest)
                               const) const {
@@ -135,7 +136,8 @@ private:
         return (this->*member)(*index, tokens_.subspan(place + 1));
     }
 
-    // Whether the object that holds the property is in the file (a property with a default is then defined).
+    // Returns whether the file has the object that holds the property. A property with a default value is
+    // then defined.
     bool hasOwner() const {
         const Json* const owner = follow(json_, tokens_.first(tokens_.size() - 1));
         return owner != nullptr && owner->is_object();
@@ -192,7 +194,7 @@ private:
                    : known(name == "scale" ? AnimationPath::Scale : AnimationPath::Translation, 3, targets);
     }
 
-    // The default weights: of those nodes that have none of their own.
+    // These are the default weights. They apply to the nodes that have no weights of their own.
     PointerTarget mesh(std::size_t index, Tokens rest) const {
         if (rest[0] != "weights") {
             return unknown();
@@ -232,10 +234,10 @@ private:
     PointerTarget camera(std::size_t index, Tokens rest) const {
         const std::optional<int> property = findCameraProperty(nameOf(rest));
         if (!property) {
-            return unknown();  // aspectRatio among them: the picture's size decides that
+            return unknown();  // this includes aspectRatio, which the picture's size decides
         }
         const bool isOfType = json_["cameras"][index]["type"] == rest[0];
-        // Each property of a camera is required, but for zfar, which has no default.
+        // Every property of a camera is required, except zfar, which has no default.
         return isOfType && isDefined()
                    ? known(AnimationPath::Camera, 1, placesOf(scene_.cameras, index), *property)
                    : undefined();

@@ -1,4 +1,4 @@
-// KHR_animation_pointer: what a JSON pointer lets an animation change.
+// Resolves JSON pointers of KHR_animation_pointer to the properties that they animate.
 #pragma once
 
 #include "gltf/animation.h"
@@ -12,29 +12,29 @@
 
 namespace glint::gltf {
 
-// What the accessor of the keyframes must have.
+// The form that the accessor of the keyframes must have.
 enum class ValueKind : std::uint8_t {
-    Vector,  // an element a keyframe, as wide as the property
-    Array,   // scalars, as many a keyframe as the property has numbers
-    Bool     // unsigned bytes, and STEP
+    Vector,  // one element for each keyframe, as wide as the property
+    Array,   // scalars; each keyframe has as many as the property has numbers
+    Bool     // unsigned bytes, with STEP interpolation
 };
 
 struct PointerTarget {
     enum class Verdict : std::uint8_t {
         Known,
-        Unknown,  // nothing that Glint has data for
-        Wrong     // the pointer breaks a rule: `why`
+        Unknown,  // Glint has no data for it
+        Wrong     // the pointer breaks a rule, which `why` names
     };
     Verdict verdict = Verdict::Unknown;
     std::string why{};
     AnimationPath path = AnimationPath::Translation;
     int property = 0;          // as AnimationChannel::property
-    std::vector<int> targets;  // as AnimationChannel::target; empty: the scene does not show it
+    std::vector<int> targets;  // as AnimationChannel::target; empty if the scene shows none
     std::size_t width = 0;
     ValueKind kind = ValueKind::Vector;
 };
 
-// Of a material, `targets` holds its index into Scene::materials.
+// If the pointer leads to a material, `targets` holds the index into Scene::materials.
 PointerTarget resolvePointer(const Document& document, const Scene& scene, const NodeNumbers& numbers,
                              const std::string& pointer);
 

@@ -51,7 +51,7 @@ bool areFinite(const std::vector<float>& values) {
     return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
-// What the keyframe times break of what AnimationSampler promises; empty: nothing.
+// Returns which promise of AnimationSampler the keyframe times break, or an empty text if they break none.
 std::string flawOfTimes(const FloatElements& times) {
     if (times.components != 1 || times.count == 0) {
         return "its times are no list of numbers";
@@ -62,10 +62,11 @@ std::string flawOfTimes(const FloatElements& times) {
     return std::ranges::is_sorted(times.values, std::less_equal<>{}) ? "" : "its times do not ascend";
 }
 
-// What of a sampler's keyframes a property reads.
+// How a property reads the keyframes of a sampler.
 struct KeyframeForm {
     std::size_t width = 0;
-    // None: that of a node's property, whose integers are fractions and whose elements may be of any width.
+    // This is empty for a property of a node. Its integers are fractions, and its elements may have any
+    // width.
     std::optional<ValueKind> kind{};
 
     auto operator<=>(const KeyframeForm&) const = default;
@@ -100,7 +101,8 @@ private:
         document_.warn("animation-channel", pointer, why + "; the channel is not played", kExportAnimation);
     }
 
-    // Values of a keyframe of that property; 0 where the node has no such property to animate.
+    // Returns how many values a keyframe of that property has, or 0 if the node has no such property to
+    // animate.
     std::size_t widthOf(AnimationPath path, const Node& node, const std::string& pointer) {
         if (path == AnimationPath::Weights) {
             if (node.restWeights.empty()) {
@@ -127,7 +129,7 @@ private:
         const Json* inFile = find(target, "node");
         const int node = inFile == nullptr ? -1 : numbers_.inScene(inFile->get<int>());
         if (node < 0) {
-            return;  // of an extension, or of a node that this scene does not draw
+            return;  // an extension's channel, or one of a node that this scene does not draw
         }
         const std::optional<AnimationPath> path = pathOf(pathName);
         if (!path) {
@@ -155,7 +157,8 @@ private:
         }
         if (target.verdict == PointerTarget::Verdict::Wrong) {
             document_.warn("animation-pointer", where,
-                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why), kExportAnimation);
+                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why),
+                           kExportAnimation);
             return;
         }
         const int sampler =
@@ -168,7 +171,7 @@ private:
         }
     }
 
-    // The material's place among those that animations change.
+    // Returns the material's index among the materials that animations change.
     int animatedMaterial(int material) {
         std::vector<AnimatedMaterial>& all = scene_.animatedMaterials;
         const auto found = std::ranges::find(all, material, &AnimatedMaterial::material);
@@ -181,7 +184,7 @@ private:
         return static_cast<int>(all.size()) - 1;
     }
 
-    // Index into animation_.samplers; -1 where there is none that can be used.
+    // Returns an index into animation_.samplers, or -1 if there is no usable sampler.
     int samplerOf(const Json& channel, const std::string& pointer, const KeyframeForm& form) {
         const auto inFile = channel["sampler"].get<std::size_t>();
         const Json& samplers = json_["samplers"];
@@ -209,7 +212,8 @@ private:
         return std::nullopt;
     }
 
-    // What the accessor breaks of what a pointer's property asks for; empty: nothing.
+    // Returns which demand of a pointer's property the accessor does not meet, or an empty text if it meets
+    // all.
     std::string flawOfForm(int accessor, const KeyframeForm& form, Interpolation interpolation) const {
         const tinygltf::Accessor& values = document_.model().accessors[static_cast<std::size_t>(accessor)];
         const auto components = static_cast<std::size_t>(
@@ -248,8 +252,8 @@ private:
             !flaw.empty()) {
             return refuse(pointer, flaw);
         }
-        // Of a node's property integers stand for fractions, marked as normalised or not: glTF has no others
-        // there. Those that a pointer's property reads are what they are marked as.
+        // For a property of a node, integers stand for fractions even if they are not marked as normalised,
+        // because glTF allows no others there. For a property that a pointer names, the mark decides.
         Result<FloatElements> values =
             readFloats(document_, output, form.kind ? Integers::AsValues : Integers::Normalized);
         if (!values) {

@@ -38,14 +38,13 @@ std::string dracoPointer(const Reader& reader) {
     return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDraco);
 }
 
-// An accessor of a compressed primitive that has neither compressed data nor a buffer view would read as
-// zeros.
+// In a compressed primitive, an accessor with neither compressed data nor a buffer view would read as zeros.
 bool isBare(const Document& document, int accessor) {
     return accessor >= 0 &&
            find(document.json()["accessors"][static_cast<std::size_t>(accessor)], "bufferView") == nullptr;
 }
 
-// The attribute's elements out of the Draco data.
+// Reads the attribute's elements from the Draco data.
 Result<FloatElements> readPacked(const Reader& reader, const char* attribute, int accessor, std::uint32_t id,
                                  Integers integers) {
     Document& document = reader.document();
@@ -79,8 +78,8 @@ Result<FloatElements> readElements(const Reader& reader, const char* attribute, 
     return readFloats(reader.document(), accessor, integers);
 }
 
-// Reads an attribute of `components` or fewer (at least `fewest`), the rest filled with 1; leaves `values`
-// empty where the primitive lacks it.
+// Reads an attribute of at least `fewest` and at most `components` components, and fills the missing ones
+// with 1. Leaves `values` empty if the primitive lacks the attribute.
 template <std::size_t N>
 Status readAttribute(const Reader& reader, const char* attribute, std::size_t fewest, Integers integers,
                      std::vector<std::array<float, N>>& values) {
@@ -233,7 +232,7 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
     return std::move(indices->values);
 }
 
-// Draco drops degenerate triangles, and not every exporter corrects the accessor then.
+// Draco drops degenerate triangles. Not every exporter corrects the accessor afterwards.
 void compareIndexCount(const Reader& reader, bool isList) {
     const int accessor = reader.source.model.indices;
     const std::size_t packed = reader.draco->indices().size();

@@ -1,4 +1,4 @@
-// Vertex attributes and vertex order of one primitive, from accessors or from Draco data.
+// Reads vertex attributes and the vertex order of one primitive, from accessors or from Draco data.
 #pragma once
 
 #include "gltf/document.h"
@@ -11,19 +11,19 @@
 
 namespace glint::gltf {
 
-// One primitive on its way from the file to the scene.
+// One primitive while it is imported.
 struct PrimitiveSource {
     Document& document;
     const tinygltf::Primitive& model;
     const Json& json;  // the same primitive
 };
 
-// The accessor of the attribute of that name; -1 where the primitive lacks it.
+// Returns the accessor of the attribute with that name, or -1 if the primitive has no such attribute.
 int attributeAccessor(const PrimitiveSource& source, const char* attribute);
 
-// Fills the attribute arrays of `primitive`, whose pointer is set, as the file has them: not yet repaired.
-// Returns the order in which the primitive's mode takes the vertices, each index below the count of
-// positions. `isList` is set where that order is a triangle list whatever the mode says. Requires POSITION.
+// Fills the attribute arrays of `primitive`, whose pointer is set. The values are those of the file, before
+// repairs. Returns the order in which the primitive's mode uses the vertices; each index is below the number
+// of positions. Sets `isList` if that order is a triangle list whatever the mode is. Requires POSITION.
 Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
                                                 bool& isList);
 

@@ -1,4 +1,4 @@
-// KTX2 images through the transcoder of Basis Universal.
+// Decodes KTX2 images with the transcoder of Basis Universal.
 #include "gltf/basisu.h"
 
 #include "gltf/codecs.h"
@@ -13,7 +13,7 @@ namespace glint::gltf {
 
 namespace {
 
-// Tables that all transcoders share.
+// Makes tables that all transcoders share.
 void makeTables() {
     static const bool made = [] {
         basist::basisu_transcoder_init();
@@ -22,8 +22,8 @@ void makeTables() {
     static_cast<void>(made);
 }
 
-// The transcoder sees a file only after readKtx2() has checked its lengths: it adds some of them up without a
-// look at overflow.
+// The transcoder sees a file only after readKtx2() has checked its lengths, because it adds some of them
+// without checking for overflow.
 bool decode(ByteView bytes, Image& image, std::string& problem) {
     makeTables();
     // Blocks lie at multiples of 16 bytes in the file, but a buffer view may start anywhere.

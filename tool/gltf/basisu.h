@@ -1,13 +1,14 @@
-// KTX2 images (KHR_texture_basisu), which take sources that not every build has.
+// Tells whether KTX2 images (KHR_texture_basisu) can be decoded. Not every build has the sources that this
+// needs.
 #pragma once
 
 namespace glint::gltf {
 
-// Whether this build decodes KTX2 images: whether the transcoder of Basis Universal was there when it was
-// configured.
+// Returns whether this build decodes KTX2 images, that is, whether the transcoder of Basis Universal was
+// present at configuration.
 bool hasBasisu();
 
-// What to do where it does not.
+// Tells users what to do in a build that does not.
 inline constexpr const char* kBasisuHint =
     "run scripts/setup.sh, which fetches the transcoder of Basis Universal, and build Glint again; or store "
     "the image as PNG, JPEG or WebP";

@@ -1,4 +1,4 @@
-// A build without the transcoder of Basis Universal.
+// Replaces basisu.cpp in a build without the transcoder of Basis Universal.
 #include "gltf/basisu.h"
 #include "gltf/codecs.h"
 #include "gltf/ktx2.h"

@@ -1,4 +1,4 @@
-// The image formats that Glint decodes, found by their first bytes.
+// The image formats that Glint decodes, which it recognises by their first bytes.
 #pragma once
 
 #include "gltf/document.h"
@@ -8,26 +8,26 @@
 
 namespace glint::gltf {
 
-// One format. Both functions are false on failure, with what the decoder said in `problem`.
+// Describes one format. Both functions return false on failure, and `problem` then has the decoder's message.
 struct Codec {
     const char* name;
-    // Sets the image's size and format; allocates nothing by them.
+    // Sets the image's size and format. It allocates nothing that depends on them.
     bool (*readHeader)(ByteView bytes, Image& image, std::string& problem);
-    // Fills the pixels of an image whose header was read from the same bytes, and found to be of a size that
-    // may be allocated.
+    // Fills the pixels of an image. Its header must have been read from the same bytes, and its size must
+    // have been accepted.
     bool (*decode)(ByteView bytes, Image& image, std::string& problem);
 };
 
 extern const Codec kPng;
 extern const Codec kJpeg;
 extern const Codec kWebp;
-// In a build without hasBasisu() its decode() fails, and says why.
+// In a build without hasBasisu(), decode() of this codec fails and says why.
 extern const Codec kBasisu;
 
-// The codec for what the bytes start with; null for none.
+// Returns the codec that matches the first bytes, or null if there is none.
 const Codec* findCodec(ByteView bytes);
 
-// The name of what the bytes hold, where it is a format that Glint knows and does not read; empty otherwise.
+// Returns the name of the format if Glint recognises it but does not read it, and an empty text otherwise.
 const char* foreignFormat(ByteView bytes);
 
 }  // namespace glint::gltf

@@ -10,10 +10,10 @@ namespace glint::gltf {
 
 namespace {
 
-// Above this, a double skips integers.
+// Above this value, doubles no longer represent every integer.
 constexpr double kMaxSize = 9007199254740991.0;
 constexpr double kMaxAttributeId = 4294967295.0;
-// Of the largest vertex that the extension allows, in bytes.
+// The size in bytes of the largest vertex that the extension allows.
 constexpr double kMaxStride = 256.0;
 
 constexpr Rule size(std::string_view name, bool required) {
@@ -38,7 +38,7 @@ constexpr std::array kSource{
 
 constexpr std::array<std::string_view, 2> kMeshoptNames{"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-// Checks the extension of that name, where `owner` has it.
+// Checks the extension of that name if `owner` has it.
 std::optional<SchemaError> checkExtension(const Json& root, Json& owner, std::string_view name,
                                           std::span<const Rule> rules, const std::string& pointer) {
     if (findExtension(owner, name) == nullptr) {

@@ -19,7 +19,7 @@ constexpr std::size_t kChunkHeaderSize = 8;
 
 constexpr const char* kExportHint = "the file is damaged or incomplete: export or download it again";
 
-// Little-endian, as are all the machines that Glint is for.
+// Reads a little-endian word. All machines that Glint supports are little-endian.
 std::uint32_t readWord(std::span<const std::uint8_t> bytes, std::size_t offset) {
     std::uint32_t word = 0;
     std::memcpy(&word, bytes.data() + offset, sizeof word);

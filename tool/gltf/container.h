@@ -1,4 +1,4 @@
-// The outer layer of a glTF file: GLB chunks, and JSON text into values.
+// Reads the outer layer of a glTF file: splits GLB chunks and parses JSON text.
 #pragma once
 
 #include "base/files.h"
@@ -19,12 +19,12 @@ struct Container {
     std::optional<std::span<const std::uint8_t>> binary;  // the BIN chunk
 };
 
-// Splits a GLB; a file without GLB's magic number is JSON as a whole. The spans view `bytes`.
-// Errors: "glb-version", "glb-length", "glb-chunk".
+// Splits a GLB. A file without GLB's magic number is JSON as a whole. The spans view `bytes`. Errors:
+// "glb-version", "glb-length", "glb-chunk".
 Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std::string& file,
                                  std::vector<Diagnostic>& warnings);
 
-// Errors: "json-depth", "json-syntax", "json-type" (the root is no object).
+// Errors: "json-depth", "json-syntax", and "json-type" if the root is not an object.
 Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file);
 
 }  // namespace glint::gltf

@@ -17,14 +17,14 @@ namespace glint::gltf {
 namespace {
 
 // A hostile file can name one small image many times, and an image of one colour takes a few bytes whatever
-// its size. So a scene's images may decode to the first of these numbers, and to as many bytes more as the
-// second is times the bytes of its files, up to the third. Photographs stay below 100 : 1, drawings seldom
-// reach 1000 : 1.
+// its size. A scene's images may therefore decode to kFreeImageBytes plus kMaxImageRatio times the bytes of
+// its files, but to kMaxImageBytes at most. Photographs stay below 100 : 1, and drawings seldom reach 1000 :
+// 1.
 constexpr std::uint64_t kFreeImageBytes = 1ULL << 28;
 constexpr std::uint64_t kMaxImageRatio = 1024;
 constexpr std::uint64_t kMaxImageBytes = 1ULL << 33;
 
-// Hints by the kind of failure; the pointer and the message already say where and what.
+// Chooses a hint by the kind of failure. The pointer and the message already say where and what.
 std::string hintFor(const std::string& id) {
     if (id == "index-range") {
         return "the file refers to something it does not hold: export it again";
@@ -104,7 +104,7 @@ Status Document::parseModel() {
     return okStatus();
 }
 
-// Whether tinygltf left nothing out, so that the indices of one hold for the other.
+// Returns whether tinygltf kept every element, so that the indices of one are valid for the other.
 bool Document::mirrorsJson() const {
     const auto same = [&](std::size_t size, std::string_view pointer) {
         return size == arraySize(json_, pointer);
@@ -267,7 +267,7 @@ bool Document::chargeZeroElements(std::uint64_t count) {
 }
 
 bool Document::chargeImageBytes(std::uint64_t bytes) {
-    // No overflow: what the files hold is below 2^54, as memory is.
+    // This can't overflow, because the contents of the files are below 2^54 bytes, as memory is.
     std::uint64_t limit = kFreeImageBytes;
     for (const SourceFile& file : files()) {
         limit += kMaxImageRatio * file.bytes;

@@ -1,4 +1,4 @@
-// A glTF document, opened and checked: what every part of the importer reads from.
+// An opened and checked glTF document. Every part of the importer reads from it.
 #pragma once
 
 #include "gltf/file_source.h"
@@ -24,12 +24,12 @@ using ByteView = std::span<const std::uint8_t>;
 
 class Document {
 public:
-    // Reads, parses and checks the file; opens no other.
+    // Reads, parses and checks the file. It opens no other file.
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const ImportOptions& options);
 
-    // The file's JSON, for extensions and images, and tinygltf's view of it (projectDocument()) for the rest.
-    // All references in both are in range.
+    // The file's JSON serves extensions and images; tinygltf's view of it (projectDocument()) serves
+    // everything else. All references in both are in range.
     const Json& json() const {
         return json_;
     }
@@ -40,23 +40,23 @@ public:
         return options_;
     }
 
-    // The bytes of a buffer view, unpacked where they are compressed. Opens its buffer on first use.
+    // Returns the bytes of a buffer view, decompressed if necessary. The first use of a buffer opens it.
     Result<ByteView> bufferView(int index);
     // Reads the file that a relative URI names.
     Result<Bytes> readFile(std::string_view uri, const std::string& pointer);
-    // Takes `count` elements off the budget of ImportOptions::maxVertices; "vertex-limit" at `pointer` where
-    // that is exhausted.
+    // Takes `count` elements from the budget of ImportOptions::maxVertices. The error is "vertex-limit" at
+    // `pointer` if the budget is exhausted.
     Status chargeVertices(std::uint64_t count, std::string_view pointer);
-    // Takes bytes off the budget of unpacked buffer views, ImportOptions::maxFileBytes; false where that is
-    // exhausted.
+    // Takes bytes from the budget of unpacked buffer views, ImportOptions::maxFileBytes. Returns false if it
+    // is exhausted.
     bool chargeUnpackedBytes(std::uint64_t bytes);
-    // Elements of accessors without a buffer view cost the file nothing, so that its size doesn't bound them.
-    // Each time that a primitive reads one counts.
+    // Elements of accessors without a buffer view take no bytes of the file, so the file's size doesn't bound
+    // them. They count each time that a primitive reads such an accessor.
     static constexpr std::uint64_t kMaxZeroElements = 1ULL << 22;
-    // Takes elements off that budget; false where it is exhausted.
+    // Takes elements from that budget. Returns false if it is exhausted.
     bool chargeZeroElements(std::uint64_t count);
-    // Takes bytes off the budget of decoded images, which grows with the files that were read; false where
-    // that is exhausted.
+    // Takes bytes from the budget of decoded images, which grows with the files that were read. Returns false
+    // if it is exhausted.
     bool chargeImageBytes(std::uint64_t bytes);
 
     // "scene.gltf#/materials/3"
@@ -66,7 +66,7 @@ public:
     void warn(std::string id, std::string_view pointer, std::string message, std::string hint = {});
     void note(std::string id, std::string_view pointer, std::string message, std::string hint = {});
 
-    // Notes, too.
+    // These include notes.
     std::vector<Diagnostic>& warnings() {
         return warnings_;
     }

@@ -19,16 +19,16 @@ namespace {
 
 constexpr const char* kExportWithoutDraco = "export the scene again, or without Draco compression";
 
-// Regular connectivity with values that are predicted without a residue comes near a hundredth of a bit a
-// face; nothing sensible comes near this.
+// Regular connectivity whose values are predicted without a residue takes nearly a hundredth of a bit for
+// each face. No sensible file comes near this limit.
 constexpr std::uint64_t kMaxFacesPerByte = 1ULL << 11;
-// What attributes may take for a byte of the file: 64 bytes for each of half as many points.
+// The bytes that attributes may take for each byte of the file: 64 bytes for each of half as many points.
 constexpr std::uint64_t kMaxAttributeRatio = 1ULL << 16;
 
 struct HeaderClaim {
     std::uint64_t faces = 0;
-    std::uint64_t points = 0;  // at least
-    // Sets of attributes that have seams of their own, each with a table of all corners.
+    std::uint64_t points = 0;  // a lower bound
+    // Sets of attributes that have seams of their own. Each has a table of all corners.
     std::uint64_t seamTables = 0;
     bool isSequential = false;
 };
@@ -39,9 +39,9 @@ draco::DecoderBuffer bufferOf(ByteView bytes) {
     return buffer;
 }
 
-// What the header says is in the data; the library allocates by it before it reads more. Layout: Draco
-// bitstream specification 2.2, "Draco Decoder" to "Edgebreaker Connectivity Data"; empty where it is another
-// version, no mesh, or cut short.
+// Reads which amounts of data the header claims, because the library allocates by them before it reads more.
+// The layout is that of the Draco bitstream specification 2.2, "Draco Decoder" to "Edgebreaker Connectivity
+// Data". Returns nothing if the data have another version, are not a mesh, or are cut short.
 std::optional<HeaderClaim> readClaim(ByteView bytes) {
     draco::DecoderBuffer buffer = bufferOf(bytes);
     draco::DracoHeader header{};
@@ -69,7 +69,8 @@ std::optional<HeaderClaim> readClaim(ByteView bytes) {
     return isSequential ? HeaderClaim{first, second, 0, true} : HeaderClaim{second, first, seamTables, false};
 }
 
-// Room that the decoder makes for attributes of a mesh of `packed` bytes before it reads their values.
+// Accounts for the memory that the decoder allocates for attributes before it reads their values. The mesh
+// has `packed` bytes.
 Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t packed,
                         const std::string& pointer) {
     if (needed / kMaxAttributeRatio > packed) {
@@ -87,7 +88,7 @@ Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t pa
 
 Status checkClaim(Document& document, const HeaderClaim& claim, std::size_t packed,
                   const std::string& pointer) {
-    // Each point is a corner of a face.
+    // Each point is a corner of at least one face.
     if (claim.faces / kMaxFacesPerByte > packed || claim.points > 3 * claim.faces) {
         return document.error("draco-size", pointer,
                               fmt::format("its {} bytes say they hold {} triangles and {} points", packed,
@@ -102,8 +103,9 @@ Status checkClaim(Document& document, const HeaderClaim& claim, std::size_t pack
     return document.chargeVertices(3 * claim.faces, pointer);
 }
 
-// One of the library's two decoders. Between the descriptions of the attributes and their values it looks at
-// how much memory the values take: the number and the size of the attributes are bounded by nothing else.
+// Adds a bound to one of the library's two decoders. It checks how much memory the values take, after the
+// descriptions of the attributes and before their values are read. Nothing else bounds the number and the
+// size of the attributes.
 template <typename Decoder>
 class BoundedDecoder : public Decoder {
 public:
@@ -134,7 +136,7 @@ private:
     Status status_ = okStatus();
 };
 
-// Fills `mesh`; `error` is what the library says where it fails.
+// Fills `mesh`. If that fails, `error` is the library's message.
 template <typename Decoder>
 Status decodeMesh(Document& document, ByteView bytes, const std::string& pointer, draco::Mesh& mesh,
                   std::string& error) {
@@ -147,14 +149,15 @@ Status decodeMesh(Document& document, ByteView bytes, const std::string& pointer
     return decoder.status();
 }
 
-// Whether the attribute has a type that glTF gives to vertices. Others are damage; of a boolean, bytes above
-// 1 must not even be loaded.
+// Returns whether the attribute has a type that glTF allows for vertices. Other types mean damage. Boolean
+// bytes above 1 must not even be loaded.
 bool isVertexType(draco::DataType type) {
     return type == draco::DT_INT8 || type == draco::DT_UINT8 || type == draco::DT_INT16 ||
            type == draco::DT_UINT16 || type == draco::DT_FLOAT32;
 }
 
-// Appends each point's value, converted to T, which must hold it. False where one can't be had.
+// Appends each point's value, converted to T, which must be able to hold it. Returns false if a value can't
+// be read.
 template <typename T>
 bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, std::size_t components,
                   Bytes& bytes) {

@@ -1,4 +1,4 @@
-// Primitives that KHR_draco_mesh_compression packs.
+// Decodes primitives that are compressed with KHR_draco_mesh_compression.
 #pragma once
 
 #include "gltf/accessor.h"
@@ -20,9 +20,9 @@ namespace glint::gltf {
 
 class DracoMesh {
 public:
-    // Decodes what the extension object refers to, which checkCompression() passed. `pointer` is the
-    // extension's. Errors: "draco-decode" (with what the decoder said), "draco-size" (a header that claims
-    // more than its data can hold), "vertex-limit", those of reading the buffer view.
+    // Decodes the data of the extension object, which checkCompression() accepted. `pointer` is that of the
+    // extension. Errors: "draco-decode" with the decoder's message, "draco-size" if the header claims more
+    // than its data can hold, "vertex-limit", and those of reading the buffer view.
     static Result<DracoMesh> decode(Document& document, const Json& extension, const std::string& pointer);
 
     DracoMesh(DracoMesh&& other) noexcept;
@@ -30,12 +30,13 @@ public:
     ~DracoMesh();
 
     std::size_t pointCount() const;
-    // A triangle list; each index is below pointCount().
+    // Returns a triangle list. Each index is below pointCount().
     const std::vector<std::uint32_t>& indices() const {
         return indices_;
     }
-    // The elements of the attribute with that unique identifier, packed tightly in the format that their
-    // accessor has. Error "draco-attribute": there is none, or its values have another form.
+    // Returns the elements of the attribute with that unique identifier, packed tightly in the format of
+    // their accessor. The error is "draco-attribute" if there is no such attribute or its values have another
+    // form.
     Result<Bytes> attribute(const Document& document, std::uint32_t id, const ElementFormat& format,
                             const std::string& pointer) const;
 

@@ -17,7 +17,7 @@ Vector column(const Matrix4& matrix, std::size_t index) {
     return {matrix[4 * index], matrix[4 * index + 1], matrix[4 * index + 2]};
 }
 
-// Columns of the cofactors of the upper 3 x 3: they take area vectors into the world.
+// The columns of the cofactors of the upper 3 x 3 matrix, which transform area vectors to the world.
 using Cofactors = std::array<Vector, 3>;
 
 Cofactors cofactorsOf(const Matrix4& matrix) {
@@ -50,13 +50,14 @@ double areaOf(const Primitive& primitive, const Cofactors& cofactors) {
     return std::isfinite(sum) ? sum : 0.0;
 }
 
-// Where a mesh is drawn, and how many placements this one stands for.
+// A place where a mesh is drawn, and how many placements it stands for.
 struct Place {
     Cofactors cofactors{};
     double count = 1.0;
 };
 
-// Of many instances an even selection: a shear or an uneven scale costs a pass over the triangles for each.
+// If there are more instances than this, an even selection of them is used, because a shear or an uneven
+// scale costs a pass over the triangles for each instance.
 constexpr std::size_t kMaxInstances = 1024;
 
 void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places) {
@@ -73,9 +74,10 @@ void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places)
     }
 }
 
-// How much the upper 3 x 3 scales every area, if it does so whatever its direction; else negative.
+// Returns the factor by which the upper 3 x 3 matrix scales every area. It is negative if the factor depends
+// on the direction.
 double uniformAreaScale(const Cofactors& cofactors) {
-    // Equal but for what single precision leaves of a rotation.
+    // Single precision makes the columns of a rotation differ by less than this.
     constexpr double kTolerance = 1e-5;
     const double scale = dot(cofactors[0], cofactors[0]);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -88,7 +90,8 @@ double uniformAreaScale(const Cofactors& cofactors) {
     return std::sqrt(scale);
 }
 
-// The area at each place of a mesh. One pass over the triangles serves all places that scale uniformly.
+// Returns the area at each place of a mesh. One pass over the triangles serves all places with a uniform
+// scale.
 std::vector<double> areasOf(const Primitive& primitive, const std::vector<Place>& places) {
     constexpr Cofactors kIdentity{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
     const double local = places.empty() ? 0.0 : areaOf(primitive, kIdentity);
@@ -102,7 +105,7 @@ std::vector<double> areasOf(const Primitive& primitive, const std::vector<Place>
     return areas;
 }
 
-// Of the areas above 0; 0 if there is none.
+// Returns the median of the areas above 0, or 0 if there is none.
 double medianOf(const std::vector<std::vector<double>>& areas) {
     std::vector<double> all;
     for (const std::vector<double>& list : areas) {

@@ -14,7 +14,7 @@ namespace glint::gltf {
 
 namespace {
 
-// KHR_texture_basisu is here whether this build decodes it or not: textures.cpp says what becomes of each
+// KHR_texture_basisu is listed even if this build does not decode it. textures.cpp decides about each
 // texture.
 constexpr auto kSupported = std::to_array<std::string_view>({"EXT_mesh_gpu_instancing",
                                                              "EXT_meshopt_compression",
@@ -42,13 +42,13 @@ constexpr auto kSupported = std::to_array<std::string_view>({"EXT_mesh_gpu_insta
                                                              "KHR_texture_basisu",
                                                              "KHR_texture_transform"});
 
-// Ratified or registered extensions whose data a renderer may leave unread, even where a file requires them.
+// Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
 constexpr auto kNoPicture = std::to_array<std::string_view>(
     {"AGI_stk_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
      "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root", "KHR_node_hoverability",
      "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
 
-// Members of both lists of a document that change no picture, in alphabetical order.
+// Returns the extensions in either list of a document that change no picture, in alphabetical order.
 std::set<std::string> unreadOf(const Document& document) {
     std::set<std::string> names;
     for (const char* list : {"extensionsRequired", "extensionsUsed"}) {

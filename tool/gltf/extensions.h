@@ -1,4 +1,4 @@
-// Which glTF extensions Glint reads, and what it says of the others.
+// Defines which glTF extensions Glint reads, and which messages others cause.
 #pragma once
 
 #include <glint/result.h>
@@ -10,19 +10,19 @@ namespace glint::gltf {
 
 class Document;
 
-// Errors on extensionsRequired that Glint can't honour; warns once of each other extension it doesn't read,
-// but for those that change no picture, which one note names together.
+// Returns an error for extensionsRequired that Glint can't honour. Warns once about each other extension that
+// it doesn't read. One note names all those that change no picture.
 Status checkExtensions(Document& document);
 
 bool isSupportedExtension(std::string_view name);
 
-// Whether the extension holds what no picture shows: metadata, and what users may select.
+// Returns whether the extension holds only data that no picture shows: metadata, and choices for users.
 bool changesNoPicture(std::string_view name);
 
-// Whether the checked document lists the extension as required.
+// Returns whether the checked document lists the extension as required.
 bool requiresExtension(const Document& document, std::string_view name);
 
-// "extension-unsupported" at `pointer`.
+// Returns the error "extension-unsupported" at `pointer`.
 Diagnostic unsupportedExtension(const Document& document, std::string_view name, std::string_view pointer);
 
 }  // namespace glint::gltf

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whether `path`, links followed, lies below `folder`.
+// Returns whether `path` lies below `folder` after following links.
 bool liesWithin(const fs::path& path, const fs::path& folder) {
     std::error_code error;
     const fs::path canonicalFolder = fs::canonical(folder.empty() ? fs::path(".") : folder, error);

@@ -1,4 +1,5 @@
-// The files of a scene: named relative to its folder, bounded in total, recorded.
+// Reads the files of a scene. They are named relative to its folder, their total size is bounded, and they
+// are recorded.
 #pragma once
 
 #include "base/files.h"
@@ -14,22 +15,22 @@
 
 namespace glint::gltf {
 
-// Symbolic links that lead out of the scene's folder.
+// What to do with symbolic links that lead out of the scene's folder.
 enum class OuterLinks : std::uint8_t { Follow, Refuse };
 
 class FileSource {
 public:
-    // `maxBytes` bounds the sum over all files.
+    // `maxBytes` bounds the sum of the sizes of all files.
     FileSource(const std::filesystem::path& scenePath, std::uint64_t maxBytes, OuterLinks links);
 
     // Reads the scene's own file.
     Result<Bytes> readScene();
 
-    // Reads what a relative URI of the scene names. Errors have `where` as their place: "uri-unsafe",
+    // Reads the file that a relative URI of the scene names. The place of errors is `where`: "uri-unsafe",
     // "file-open", "file-size", "file-read".
     Result<Bytes> readRelative(std::string_view uri, const std::string& where);
 
-    // In the order of opening, each file once.
+    // Lists each file once, in the order of opening.
     const std::vector<SourceFile>& files() const {
         return files_;
     }

@@ -53,7 +53,7 @@ std::string nameOf(const Json& json, int image) {
     return fmt::format("image {}", image);
 }
 
-// The encoded bytes. `storage` keeps them where no buffer view does.
+// Returns the encoded bytes. `storage` owns them if they are not in a buffer view.
 Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
     const Json& json = imageJson(document, image);
     if (const Json* view = find(json, "bufferView")) {

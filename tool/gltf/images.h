@@ -1,4 +1,4 @@
-// Images: which can be used, and their pixels.
+// Finds which images can be used, and reads their pixels.
 #pragma once
 
 #include "gltf/document.h"
@@ -16,11 +16,11 @@ enum class Decodable : std::uint8_t {
     NeedsBasisu,  // a KTX2 image, in a build without hasBasisu()
 };
 
-// Whether Glint can decode the image, by its type and its file's name; opens nothing.
+// Returns whether Glint can decode the image, judging by its type and the name of its file. It opens no file.
 Decodable decodability(const Document& document, int image);
 
-// The image's name, and its pixels where ImportOptions::decodeImages.
-// Errors: "image-data" (no or two sources), "image-decode", "image-size", those of reading.
+// Reads the image's name, and its pixels if ImportOptions::decodeImages is set. Errors: "image-data" (no
+// source or two), "image-decode", "image-size", and those of reading files.
 Result<Image> importImage(Document& document, int image);
 
 }  // namespace glint::gltf

@@ -71,7 +71,7 @@ Status fillScene(Document& document, Scene& scene) {
 }  // namespace
 
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
-    // The JSON library and the allocator throw; nothing may leave this function.
+    // The JSON library and the allocator throw exceptions, which must not leave this function.
     try {
         const auto document = Document::open(path, options);
         if (!document) {

@@ -1,4 +1,4 @@
-// glTF 2.0 files into a Scene.
+// Imports glTF 2.0 files as a Scene.
 #pragma once
 
 #include "gltf/scene.h"
@@ -13,29 +13,31 @@
 namespace glint {
 
 struct ImportOptions {
-    // Decode images. The compiler needs none of them; the renderer needs all.
+    // Whether to decode images. The compiler needs none of them, and the renderer needs all.
     bool decodeImages = false;
-    // Limits that keep hostile files from asking for the machine's memory.
+    // These limits keep hostile files from using up the machine's memory.
     std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
     std::uint64_t maxFileBytes = 1ULL << 32;
-    int maxImageSize = 16384;  // pixels, either way
-    // Refuses symbolic links that lead out of the scene's folder. Off, links are followed: build systems give
-    // each action a folder of them. On, nothing outside of that folder is read: for scenes by strangers.
+    int maxImageSize = 16384;  // pixels, for width and for height
+    // Refuses symbolic links that lead out of the scene's folder. They are followed by default, because build
+    // systems give each action a folder of links. Set this for scenes by strangers: nothing outside the
+    // folder is then read.
     bool strictPaths = false;
-    // KHR_materials_variants: the name of the variant whose materials are used; empty: the default materials.
+    // The name of the variant (KHR_materials_variants) whose materials are used. An empty name selects the
+    // default materials.
     std::string variant{};
 };
 
-// Reads `path` (.gltf or .glb), its buffers and its images. A URI that is absolute or leads above the scene's
-// folder is refused.
-// On success, Scene::warnings holds what was skipped. Error "variant-unknown" where the file lacks the
-// variant. The error names the file and, where there is one, the JSON pointer of the culprit.
+// Reads `path` (.gltf or .glb), its buffers and its images. It refuses a URI that is absolute or leads above
+// the scene's folder. On success, Scene::warnings lists everything that was skipped. The error is
+// "variant-unknown" if the file has no such variant. Each error names the file and, if possible, the JSON
+// pointer of the cause.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
-// The materials as planning sees them: those that animations change stand for all their values.
+// Returns the materials as planning sees them. A material that animations change stands for all its values.
 std::vector<Material> planningMaterials(const Scene& scene);
 
-// The primitives of all meshes, mesh by mesh, as planning sees them.
+// Returns the primitives of all meshes as planning sees them, mesh by mesh.
 std::vector<PrimitiveInputs> planningInputs(const Scene& scene);
 
 }  // namespace glint

@@ -27,7 +27,7 @@ public:
     InstanceReader(Document& document, const Json& attributes, std::string pointer)
         : document_(document), attributes_(attributes), pointer_(std::move(pointer)) {}
 
-    // Without an attribute of the three: one placement, as all of them would coincide.
+    // Without any of the three attributes there is one placement, because all of them would coincide.
     Result<Instancing> read() {
         Instancing instancing;
         if (Status status = readArray("TRANSLATION", instancing.translations); !status) {
@@ -52,7 +52,7 @@ private:
             return okStatus();
         }
         const std::string where = fmt::format("{}/{}", pointer_, name);
-        // Only rotations may be integers, which are fractions then.
+        // Only rotations may be integers, which then are fractions.
         Result<FloatElements> elements =
             readFloats(document_, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues);
         if (!elements) {
@@ -88,7 +88,7 @@ private:
     }
 
     void normalize(std::vector<Float4>& rotations) {
-        // Quaternions of 8 bits are off by less than this.
+        // The rounding of quaternions to 8 bits causes a smaller error.
         constexpr float kTolerance = 0.02F;
         std::size_t off = 0;
         for (Float4& rotation : rotations) {

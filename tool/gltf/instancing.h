@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing: many placements of the mesh of one node.
+// Imports EXT_mesh_gpu_instancing: many placements of the mesh of one node.
 #pragma once
 
 #include "gltf/document.h"
@@ -8,9 +8,9 @@
 
 namespace glint::gltf {
 
-// Fills scene.instancings and Node::instancing, after meshes and skins. Attributes that Glint has no use for
-// are noted ("node-instances"). Errors: those of accessors; "attribute-type", "attribute-count",
-// "node-transform".
+// Fills scene.instancings and Node::instancing. Call it after importing meshes and skins. A note
+// ("node-instances") names attributes that Glint does not use. Errors: "attribute-type", "attribute-count",
+// "node-transform", and those of accessors.
 Status importInstances(Document& document, Scene& scene);
 
 }  // namespace glint::gltf

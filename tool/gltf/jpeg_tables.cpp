@@ -12,10 +12,10 @@ constexpr std::uint8_t kTables = 0xC4;
 constexpr std::uint8_t kScan = 0xDA;
 constexpr std::uint8_t kEnd = 0xD9;
 constexpr std::size_t kLengthBytes = 2;
-// Encoders make about ten, and those that try for the smallest file make less than a hundred.
+// Encoders make about ten scans. Those that try for the smallest file make fewer than a hundred.
 constexpr int kMaxScans = 256;
 
-// `rest` begins with the length of a segment; 0 where there is none.
+// `rest` begins with the length of a segment. Returns 0 if there is none.
 std::size_t segmentLength(std::span<const std::uint8_t> rest) {
     return rest.size() < kLengthBytes ? 0 : std::size_t{rest[0]} << 8U | rest[1];
 }
@@ -46,7 +46,7 @@ bool isSoundSegment(std::span<const std::uint8_t> rest) {
 
 std::string findJpegExcess(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t kStartBytes = 2;
-    // Behind the first scan any marker counts: only a decoder knows where a scan ends.
+    // After the first scan every marker counts, because only a decoder knows where a scan ends.
     int scans = 0;
     for (std::size_t at = kStartBytes; at + 1 < bytes.size();) {
         if (bytes[at] != kMarker || bytes[at + 1] == kMarker) {

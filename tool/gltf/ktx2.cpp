@@ -13,18 +13,18 @@ namespace glint::gltf {
 namespace {
 
 constexpr std::uint64_t kHeaderBytes = 80;
-constexpr std::uint64_t kLevelBytes = 24;  // an entry of the level index
-// Both formats have blocks of 4 x 4 pixels; those of UASTC have 16 bytes.
+constexpr std::uint64_t kLevelBytes = 24;  // one entry of the level index
+// Both formats have blocks of 4 x 4 pixels. A block of UASTC has 16 bytes.
 constexpr std::uint64_t kBlockBytes = 16;
-// The basic descriptor block with one sample, and with two.
+// The length of the basic descriptor block with one sample, and with two.
 constexpr std::uint32_t kOneSample = 44;
 constexpr std::uint32_t kTwoSamples = 60;
-// Before the endpoints of ETC1S data: a header, then a description of each image.
+// ETC1S data begin with a header and a description of each image. The endpoints follow.
 constexpr std::uint64_t kEtc1sHeaderBytes = 20;
 constexpr std::uint64_t kEtc1sImageBytes = 20;
 
 enum class Scheme : std::uint32_t { None = 0, BasisLz = 1, Zstandard = 2 };
-// Of the data format descriptor (khr_df.h).
+// The colour models of the data format descriptor (khr_df.h).
 enum class Model : std::uint8_t {
     Etc1s = 163,
     Uastc = 166,
@@ -43,7 +43,7 @@ constexpr std::uint8_t kTransferLinear = 1;
 constexpr std::uint8_t kTransferSrgb = 2;
 constexpr std::uint8_t kPremultiplied = 1;
 
-// Little-endian numbers at places that were found to lie in the file.
+// Reads little-endian numbers at places that were found to lie in the file.
 class Ktx2Reader {
 public:
     explicit Ktx2Reader(ByteView bytes) : bytes_(bytes) {}
@@ -79,7 +79,7 @@ struct Header {
     bool twoSamples = false;
 };
 
-// Each of these says what is wrong, or nothing.
+// Each of these functions returns what is wrong, or an empty text.
 
 std::string checkShape(const Ktx2Reader& file, Header& header) {
     const std::uint32_t format = file.word(12);
@@ -119,7 +119,7 @@ std::string nameOf(Model model) {
     }
 }
 
-// The data format descriptor.
+// Checks the data format descriptor.
 std::string checkFormat(const Ktx2Reader& file, Header& header, Ktx2& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
@@ -172,7 +172,8 @@ std::string checkFormat(const Ktx2Reader& file, Header& header, Ktx2& image) {
     return "";
 }
 
-// The key and value data: pairs of text, each with its length before it, at multiples of 4 bytes.
+// Checks the key and value data. They are pairs of text, each with its length before it, at multiples of 4
+// bytes.
 std::string checkMetadata(const Ktx2Reader& file, Ktx2& image) {
     std::uint64_t place = file.word(56);
     const std::uint64_t length = file.word(60);
@@ -214,14 +215,14 @@ std::string checkMetadata(const Ktx2Reader& file, Ktx2& image) {
     return "";
 }
 
-// The sizes of level `level`, in blocks.
+// Returns how many blocks the level has.
 std::uint64_t blocksOf(const Header& header, std::uint32_t level) {
     const std::uint64_t width = std::max(header.width >> level, 1U);
     const std::uint64_t height = std::max(header.height >> level, 1U);
     return (width + 3) / 4 * ((height + 3) / 4);
 }
 
-// The code books of ETC1S data, and where the data of each level lie in it.
+// Checks the code books of ETC1S data, and where the data of each level lie in it.
 std::string checkGlobalData(const Ktx2Reader& file, const Header& header) {
     const std::uint64_t start = file.longWord(64);
     const std::uint64_t length = file.longWord(72);
@@ -238,7 +239,7 @@ std::string checkGlobalData(const Ktx2Reader& file, const Header& header) {
     for (std::uint32_t level = 0; level < header.levels; ++level) {
         const std::uint64_t levelBytes = file.longWord(kHeaderBytes + kLevelBytes * level + 8);
         const std::uint64_t place = start + kEtc1sHeaderBytes + kEtc1sImageBytes * level;
-        // Colour, then alpha.
+        // The colour comes first, then the alpha.
         for (const std::uint64_t slice : {std::uint64_t{0}, std::uint64_t{1}}) {
             const std::uint64_t offset = file.word(place + 4 + 8 * slice);
             const std::uint64_t bytes = file.word(place + 8 + 8 * slice);
@@ -263,7 +264,7 @@ std::string checkLevels(const Ktx2Reader& file, const Header& header) {
             unpacked != wanted || (header.scheme == Scheme::None && length != wanted)) {
             return fmt::format("its level {} is damaged", level);
         }
-        // Section 3.9.7, "mipPadding"; the transcoder reads blocks as structures.
+        // Section 3.9.7, "mipPadding", requires this. The transcoder reads blocks as structures.
         if (header.scheme == Scheme::None && start % kBlockBytes != 0) {
             return fmt::format("its level {} does not start at a multiple of {} bytes", level, kBlockBytes);
         }
@@ -275,7 +276,7 @@ std::string checkLevels(const Ktx2Reader& file, const Header& header) {
 
 std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
     const Ktx2Reader file(bytes);
-    // Every file has one level, which the index names.
+    // Every file has at least one level in its index.
     if (!file.has(0, kHeaderBytes + kLevelBytes) ||
         bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
         problem =

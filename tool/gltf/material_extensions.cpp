@@ -16,7 +16,7 @@ namespace {
 void readAnisotropy(const ObjectReader& reader, Material& material) {
     material.anisotropy.given = true;
     material.anisotropy.strength = reader.number("anisotropyStrength", 0.0, kUnit);
-    // Only the angle's sine and cosine are used: reduced while it is still double.
+    // Only the sine and cosine of the angle are used, so it is reduced here in double precision.
     material.anisotropy.rotation =
         static_cast<float>(std::remainder(reader.number("anisotropyRotation", 0.0), 2.0 * std::numbers::pi));
 }
@@ -52,7 +52,7 @@ void readEmissiveStrength(const ObjectReader& reader, Material& material) {
 void readIor(const ObjectReader& reader, Material& material) {
     material.ior.given = true;
     const double ior = reader.number("ior", 1.5);
-    // 0 stands for an infinite index: it reflects everything.
+    // 0 stands for an infinite index, which reflects everything.
     const bool valid = ior == 0.0 || ior >= 1.0;
     material.ior.ior = valid ? static_cast<float>(ior) : 1.0F;
     if (!valid) {
@@ -83,7 +83,7 @@ void readSpecular(const ObjectReader& reader, Material& material) {
 
 void readSpecularGlossiness(const ObjectReader& reader, Material& material) {
     material.specularGlossiness.given = true;
-    // Unlit wins, and reads the metallic-roughness base colour.
+    // KHR_materials_unlit takes precedence, and uses the base colour of metallic-roughness.
     if (material.unlit) {
         return;
     }
@@ -91,7 +91,7 @@ void readSpecularGlossiness(const ObjectReader& reader, Material& material) {
     reader.numbers("diffuseFactor", material.baseColorFactor, kUnit);
     reader.numbers("specularFactor", material.specularGlossiness.specularFactor, kUnit);
     material.specularGlossiness.glossinessFactor = reader.number("glossinessFactor", 1.0, kUnit);
-    // What the extension replaces is not read.
+    // The values that the extension replaces are not read.
     material.metallicFactor = 0.0F;
     material.roughnessFactor = 1.0F;
 }
@@ -112,8 +112,8 @@ void readVolume(const ObjectReader& reader, Material& material) {
     reader.numbers("attenuationColor", volume.attenuationColor, kUnit);
     constexpr const char* kDistance = "attenuationDistance";
     if (find(reader.json(), kDistance) != nullptr) {
-        // A distance that a float does not hold is as good as infinite; of one that is not above 0, a
-        // micrometre, which absorbs as much as any surface shows, is the nearest that makes sense.
+        // A distance that does not fit into a float is practically infinite. For a distance that is not above
+        // 0, a micrometre is the nearest sensible value: it absorbs as much as any surface shows.
         constexpr double kLeast = 1e-6;
         const double distance = reader.number(kDistance, 0.0);
         if (distance <= 0.0) {
@@ -126,7 +126,7 @@ void readVolume(const ObjectReader& reader, Material& material) {
     }
 }
 
-// KHR_materials_unlit comes first: others ask for it.
+// KHR_materials_unlit comes first, because others depend on it.
 constexpr struct {
     const char* name;
     void (*read)(const ObjectReader& reader, Material& material);

@@ -1,4 +1,4 @@
-// The factors of KHR_materials_*; their textures are read with the others (materials.cpp).
+// Reads the factors of KHR_materials_*. materials.cpp reads their textures together with all others.
 #pragma once
 
 #include "gltf/document.h"
@@ -8,8 +8,8 @@
 
 namespace glint::gltf {
 
-// Reads every extension that Glint shades, and names the others in Material::unsupportedExtensions. Values
-// that are out of range are clamped with the warning "material-range". `json` is the material at `pointer`.
+// Reads every extension that Glint shades, and lists the others in Material::unsupportedExtensions. Values
+// out of range are clamped with the warning "material-range". `json` is the material at `pointer`.
 void readMaterialExtensions(Document& document, const Json& json, const std::string& pointer,
                             Material& material);
 

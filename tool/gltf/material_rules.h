@@ -1,4 +1,4 @@
-// What the JSON of a material must look like. Only types: values that are out of range are clamped on
+// Rules for the JSON of a material. They check only types, because values out of range are clamped while
 // reading.
 #pragma once
 
@@ -19,7 +19,7 @@ constexpr Rule texture(std::string_view name) {
     return object(name, kTextureInfo);
 }
 
-// Exporters write the largest number they know for an infinite distance, which no float need hold.
+// Exporters write the largest number they know for an infinite distance. A float need not be able to hold it.
 constexpr Rule distance(std::string_view name) {
     return {.name = name,
             .min = std::numeric_limits<double>::lowest(),

@@ -39,7 +39,7 @@ constexpr TexturePlace kTextures[] = {
      TextureSlot::DiffuseTransmissionColor},
 };
 
-// Of the two base models, the one whose textures the material does not read.
+// Returns the base model whose textures the material does not read.
 const char* ignoredModel(const Material& material) {
     return material.specularGlossiness.given && !material.unlit ? "pbrMetallicRoughness"
                                                                 : "KHR_materials_pbrSpecularGlossiness";
@@ -68,7 +68,8 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
     return okStatus();
 }
 
-// glTF says by slot which textures are colour; a KTX2 file says it of itself, and should agree.
+// glTF decides by the slot which textures are colours. A KTX2 file declares this itself, and the two should
+// agree.
 void checkTransfer(Document& document, const Scene& scene, const Material& material,
                    const std::string& pointer) {
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
@@ -106,7 +107,7 @@ AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::
 void readFactors(Document& document, const Json& json, const std::string& pointer, Material& material) {
     const ObjectReader reader(document, json, pointer);
     reader.numbers("emissiveFactor", material.emissiveFactor, kUnit);
-    // Above 1 is legal, and means that nothing is opaque.
+    // A value above 1 is legal, and means that nothing is opaque.
     material.alphaCutoff = reader.number("alphaCutoff", 0.5, kNotNegative);
     if (const Json* core = find(json, "pbrMetallicRoughness")) {
         const ObjectReader coreReader(document, *core, reader.pointerTo("pbrMetallicRoughness"));

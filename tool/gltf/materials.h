@@ -1,4 +1,4 @@
-// Materials: core metallic-roughness and the extensions that Glint shades.
+// Imports materials: core metallic-roughness and the extensions that Glint shades.
 #pragma once
 
 #include "gltf/document.h"

@@ -28,7 +28,7 @@ ColorContent contentOf(const std::vector<Float4>& colors) {
     return white ? ColorContent::White : ColorContent::Varying;
 }
 
-// Whether the primitive has a mode that makes triangles; warns or fails otherwise.
+// Returns whether the mode of the primitive makes triangles. Otherwise it warns or fails.
 Result<bool> isDrawable(const PrimitiveSource& source, const std::string& pointer) {
     const int mode = source.model.mode;
     if (mode < 0 || mode > static_cast<int>(PrimitiveMode::TriangleFan)) {
@@ -47,7 +47,7 @@ Result<bool> isDrawable(const PrimitiveSource& source, const std::string& pointe
     return true;
 }
 
-// Whether there is something to draw in `primitive` after it was read.
+// Reads the primitive. Returns whether it has anything to draw.
 Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) {
     Result<bool> drawable = isDrawable(source, primitive.pointer);
     if (!drawable || !*drawable) {
@@ -89,7 +89,8 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
         primitive.material =
             source.primitives[i].material < 0 ? defaultMaterial : source.primitives[i].material;
         const Result<bool> drawn = readPrimitive({document, source.primitives[i], primitives[i]}, primitive);
-        // Data that the file leaves to others to bring (glTF 2.0, section 3.6.1.1) is no fault of the file.
+        // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
+        // file's fault.
         if (!drawn && drawn.error().id == kNoData) {
             document.warn("buffer-external", primitive.pointer,
                           fmt::format("is left out: {} {}", drawn.error().where, drawn.error().message),

@@ -1,4 +1,4 @@
-// Meshes: attributes, indices, modes.
+// Imports meshes: attributes, indices, modes.
 #pragma once
 
 #include "gltf/document.h"
@@ -10,9 +10,9 @@
 
 namespace glint::gltf {
 
-// Fills scene.meshes, one for each mesh of the file; `placed` says by mesh whether a node draws it. A mesh
-// that no node draws and that can't be read is a warning, and left empty. Primitives without a material get
-// material `scene.materials.size()`; returns whether there are any.
+// Fills scene.meshes with one entry for each mesh of the file. `placed` says for each mesh whether a node
+// draws it. A mesh that no node draws and that can't be read causes a warning and stays empty. Primitives
+// without a material get material `scene.materials.size()`; the function returns whether there are any.
 Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene);
 
 }  // namespace glint::gltf

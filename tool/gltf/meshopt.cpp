@@ -14,8 +14,8 @@ namespace {
 constexpr const char* kExportWithoutMeshopt = "export the scene again, or without meshopt compression";
 
 // The vertex codec stores 16 values of one byte position in a quarter of a byte at best (a group header of
-// two bits), and its later version leaves out whole positions of a block of 256: 1024 : 1. Indices stay far
-// below.
+// two bits). Its later version can also leave out whole positions of a block of 256. This gives 1024 : 1.
+// Indices stay far below that.
 constexpr std::uint64_t kMaxRatio = 1024;
 
 enum class Mode : std::uint8_t { Attributes, Triangles, Indices };
@@ -51,8 +51,8 @@ std::optional<FilterKind> filterOf(const std::string& name) {
     return name == "EXPONENTIAL" ? std::optional(FilterKind::Exponential) : std::nullopt;
 }
 
-// What the extension's text demands of modes, filters, counts and strides; empty where all of it holds. The
-// library asserts the same.
+// Returns which demand of the extension's text on modes, filters, counts and strides is not met. The text is
+// empty if all are met. The library asserts the same.
 std::string contradiction(const Layout& layout) {
     if (layout.mode == Mode::Attributes) {
         if (layout.stride % 4 != 0) {
@@ -132,7 +132,7 @@ void applyFilter(const Layout& layout, Bytes& bytes) {
     }
 }
 
-// The library's error codes; -1 is a header byte that it does not know.
+// Explains the library's error codes. -1 stands for a header byte that it does not know.
 std::string explain(int code) {
     constexpr int kVersion = MESHOPTIMIZER_VERSION;
     switch (code) {
@@ -155,7 +155,7 @@ Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std
     if (!layout) {
         return layout.error();
     }
-    // No overflow: both factors passed the table's limits, 2^53 and 2^8.
+    // This can't overflow, because the factors are within the limits of the table, 2^53 and 2^8.
     if (std::uint64_t{layout->count} * layout->stride != byteLength) {
         return document.error("meshopt-layout", pointer,
                               fmt::format("{} elements of {} bytes are not its {} bytes", layout->count,

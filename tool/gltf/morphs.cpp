@@ -13,10 +13,10 @@ namespace glint::gltf {
 namespace {
 
 constexpr const char* kExportMorphs = "export the mesh again";
-// Of all nodes of a scene together: a thousand figures with a thousand targets each have a quarter of it.
+// Limits all nodes of a scene together. A thousand figures with a thousand targets each have a quarter of it.
 constexpr std::uint64_t kMaxWeights = 1ULL << 22;
 
-// One attribute of a target, where it has that.
+// Reads one attribute of a target if the target has it.
 Status readDifferences(const PrimitiveSource& source, const Json& target, const std::string& pointer,
                        const char* attribute, std::size_t vertices, std::vector<Float3>& differences) {
     const Json* accessor = find(target, attribute);
@@ -45,7 +45,7 @@ Status readDifferences(const PrimitiveSource& source, const Json& target, const 
     return okStatus();
 }
 
-// As a node or a mesh lists them; as many as there are targets.
+// Reads the weights that a node or a mesh lists. There are as many as targets.
 std::vector<double> readWeights(Document& document, const Json& list, std::size_t targets,
                                 const std::string& pointer) {
     std::vector<double> weights;

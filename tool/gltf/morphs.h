@@ -1,4 +1,4 @@
-// Morph targets and their weights.
+// Imports morph targets and their weights.
 #pragma once
 
 #include "gltf/attributes.h"
@@ -8,14 +8,15 @@
 
 namespace glint::gltf {
 
-// Fills primitive.targets, after its attributes. Differences to an attribute that the primitive lacks are
-// left out, as glTF asks for the attribute (warning "morph-attribute").
-// Errors: "attribute-count", "attribute-type", and those of accessors.
+// Fills primitive.targets. Call it after reading the primitive's attributes. Differences to an attribute that
+// the primitive lacks are left out, because glTF requires the attribute (warning "morph-attribute"). Errors:
+// "attribute-count", "attribute-type", and those of accessors.
 Status readTargets(const PrimitiveSource& source, Primitive& primitive);
 
-// Fills Mesh::weights and Node::weights, after nodes and meshes; warns "morph-weights" where their number is
-// not that of the mesh's targets. Error "morph-limit": each node has weights of its own, so that a small file
-// can ask for the product of its nodes and its targets.
+// Fills Mesh::weights and Node::weights. Call it after importing nodes and meshes. The warning
+// "morph-weights" says that a list has another number of weights than the mesh has targets. The error
+// "morph-limit" exists because each node has weights of its own, so a small file can demand the product of
+// its nodes and its targets.
 Status importMorphWeights(Document& document, Scene& scene);
 
 }  // namespace glint::gltf

@@ -1,4 +1,4 @@
-// From a node's number in the file to its place in the scene.
+// Maps a node's number in the file to its place in the scene.
 #pragma once
 
 #include "gltf/document.h"
@@ -16,7 +16,7 @@ public:
             byFile_[static_cast<std::size_t>(scene.nodes[i].source)] = static_cast<int>(i);
         }
     }
-    // Index into Scene::nodes; -1: the node is not in the scene. `inFile` is in range.
+    // Returns an index into Scene::nodes, or -1 if the node is not in the scene. `inFile` must be in range.
     int inScene(int inFile) const {
         return byFile_[static_cast<std::size_t>(inFile)];
     }

@@ -20,7 +20,7 @@ std::string pointerOf(std::size_t node) {
     return fmt::format("/nodes/{}", node);
 }
 
-// The parent of each node, -1 for roots.
+// Returns the parent of each node, which is -1 for roots.
 Result<std::vector<int>> findParents(const Document& document) {
     const auto& nodes = document.model().nodes;
     std::vector<int> parents(nodes.size(), -1);
@@ -38,7 +38,7 @@ Result<std::vector<int>> findParents(const Document& document) {
     return parents;
 }
 
-// With one parent at most, a node that no root leads to is on a cycle, or below one.
+// Every node has at most one parent, so a node that no root reaches is on a cycle or below one.
 Status checkCycles(const Document& document, const std::vector<int>& parents) {
     std::vector<bool> reached(parents.size());
     std::vector<std::size_t> open;
@@ -62,7 +62,7 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
     return okStatus();
 }
 
-// Where the default scene's traversal starts, in the file's order.
+// Returns the nodes at which the default scene starts, in the file's order.
 std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& parents) {
     const tinygltf::Model& model = document.model();
     std::vector<std::size_t> roots;
@@ -104,7 +104,7 @@ std::array<double, 4> readRotation(Document& document, const std::vector<double>
     for (const double value : values) {
         length = std::hypot(length, value);
     }
-    // Quaternions in 16-bit integers are off by less than this.
+    // The rounding of quaternions to 16-bit integers causes a smaller error.
     constexpr double kTolerance = 1e-3;
     if (std::abs(length - 1.0) > kTolerance) {
         document.warn("node-rotation", pointer + "/rotation",
@@ -135,7 +135,7 @@ Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& j
     return matrix;
 }
 
-// Its local transform into `node`; returns that as a matrix.
+// Reads the node's local transform into `node`, and returns it as a matrix.
 Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
     const tinygltf::Node& node = document.model().nodes[index];
     const Json& json = document.json()["nodes"][index];
@@ -217,7 +217,7 @@ Status importNodes(Document& document, Scene& scene) {
     if (Status status = checkCycles(document, *parents); !status) {
         return status;
     }
-    // Depth first, children in the file's order: the last on the stack is next.
+    // Nodes are visited depth first, and children in the file's order. The last one on the stack is next.
     struct Pending {
         std::size_t node;
         int parent;  // index into scene.nodes

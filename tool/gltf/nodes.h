@@ -1,4 +1,4 @@
-// The node hierarchy of the default scene, and the cameras and lights that it places.
+// Imports the node hierarchy of the default scene, and the cameras and lights that it places.
 #pragma once
 
 #include "gltf/document.h"
@@ -8,11 +8,11 @@
 
 namespace glint::gltf {
 
-// Fills nodes, cameras and lights of the scene.
-// Errors: "node-cycle", "node-parents" (a node with two), "node-transform", "camera-range".
+// Fills nodes, cameras and lights of the scene. Errors: "node-cycle", "node-parents" (a node with two
+// parents), "node-transform", "camera-range".
 Status importNodes(Document& document, Scene& scene);
 
-// A camera or light of the file, placed. Part of importNodes().
+// These import a camera or light of the file and place it. They are part of importNodes().
 Result<Camera> importCamera(Document& document, int camera, const Matrix4& world);
 Result<Light> importLight(Document& document, int light, const Matrix4& world);
 

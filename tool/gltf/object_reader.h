@@ -1,4 +1,4 @@
-// Reading numbers and textures of a material's JSON objects.
+// Reads numbers and textures from the JSON objects of a material.
 #pragma once
 
 #include "gltf/document.h"
@@ -16,10 +16,10 @@ struct Range {
     double high = 1.0;
 };
 inline constexpr Range kUnit{0.0, 1.0};
-// A float holds no more.
+// The upper bound is the largest number that a float can hold.
 inline constexpr Range kNotNegative{0.0, std::numeric_limits<float>::max()};
 
-// One object of a checked document and where it stands.
+// One object of a checked document, and its JSON pointer.
 class ObjectReader {
 public:
     ObjectReader(Document& document, const Json& object, std::string pointer)
@@ -28,11 +28,11 @@ public:
     const Json& json() const {
         return object_;
     }
-    // The pointer of a member.
+    // Returns the JSON pointer of a member.
     std::string pointerTo(std::string_view member) const;
-    // The member as it is, of any value.
+    // Returns the member as it is; any value is allowed.
     double number(std::string_view member, double fallback) const;
-    // Clamped, with the warning "material-range".
+    // Returns the member clamped to the range, with the warning "material-range".
     float number(std::string_view member, double fallback, Range range) const;
     template <std::size_t N>
     void numbers(std::string_view member, std::array<float, N>& values, Range range) const {
@@ -41,8 +41,8 @@ public:
             values[i] = clamp(elementPointer(member, i), (*array)[i].get<double>(), range);
         }
     }
-    // The texture info of that name into `info`, which stays as it is where there is none, or none that can
-    // be used.
+    // Reads the texture info of that name into `info`. If there is none, or none that can be used, `info`
+    // stays as it is.
     Status texture(std::string_view member, TextureTable& textures, TextureInfo& info) const;
     void warn(std::string_view member, std::string message, std::string hint) const;
 

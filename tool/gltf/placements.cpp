@@ -1,4 +1,4 @@
-// Cameras and lights, as a node places them.
+// Imports cameras and lights where a node places them.
 #include "gltf/nodes.h"
 #include "gltf/transform.h"
 
@@ -13,7 +13,7 @@ namespace glint::gltf {
 
 namespace {
 
-// Warns where a light's value is out of range; returns what to use.
+// Warns if a light's value is out of range. Returns the value to use.
 double clampLight(Document& document, const std::string& pointer, double value, double low, double high) {
     const double clamped = std::clamp(value, low, high);
     if (clamped != value) {
@@ -59,7 +59,7 @@ void readSpot(Document& document, const Json& json, const std::string& pointer, 
     }
 }
 
-// Metres; 0 where the file gives none, or none that is above 0: unlimited.
+// Returns the range in metres. 0 means unlimited: the file gives none, or none that is above 0.
 float readRange(Document& document, const Json& json, const std::string& pointer) {
     const Json* range = find(json, "range");
     const double metres = range == nullptr ? 0.0 : range->get<double>();
@@ -70,7 +70,7 @@ float readRange(Document& document, const Json& json, const std::string& pointer
     return static_cast<float>(std::max(metres, 0.0));
 }
 
-// Above 1 stays: a clamped channel would turn the hue.
+// Values above 1 stay, because a clamped channel would change the hue.
 float readChannel(Document& document, const std::string& pointer, double value) {
     if (value > 1.0) {
         document.warn("light-range", pointer, fmt::format("is {}, above 1; it is used as it is", value),
@@ -110,7 +110,7 @@ Result<Camera> importCamera(Document& document, int index, const Matrix4& world)
     } else {
         camera.yfov = source.perspective.yfov;
         camera.znear = source.perspective.znear;
-        camera.zfar = source.perspective.zfar;  // 0 where the file has none
+        camera.zfar = source.perspective.zfar;  // 0 if the file has none
         if (camera.yfov <= 0.0 || camera.yfov >= std::numbers::pi) {
             return fail("yfov", "between 0 and pi", camera.yfov);
         }

@@ -23,8 +23,8 @@ Double3 subtract(const Float3& a, const Float3& b) {
             static_cast<double>(a[2]) - b[2]};
 }
 
-// Unit length; nothing for zero and what is not finite. Doubles hold the squares of all floats, and products
-// of two floats squared underflow only far below what a float holds.
+// Returns a vector of unit length, or nothing if the vector is zero or not finite. Doubles can hold the
+// squares of all floats. Products of two squared floats underflow only far below what a float can hold.
 std::optional<Float3> unitVector(const Double3& v) {
     const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (!std::isfinite(largest) || largest == 0.0) {
@@ -66,7 +66,8 @@ void dropBrokenTriangles(Document& document, Primitive& primitive) {
                   kRepairHint);
 }
 
-// The geometric normals of one triangle around each vertex that `wanted` marks; +Z where there is none.
+// Returns the geometric normal of one triangle around each vertex that `wanted` marks, or +Z if there is
+// none.
 std::vector<Float3> adjacentNormals(const Primitive& primitive, const std::vector<bool>& wanted) {
     std::vector<Float3> normals(primitive.positions.size(), Float3{0.0F, 0.0F, 1.0F});
     std::vector<bool> found(primitive.positions.size());
@@ -109,7 +110,7 @@ void repairNormals(Document& document, Primitive& primitive) {
                   kRepairHint);
 }
 
-// A unit vector at right angles to `normal`.
+// Returns a unit vector at right angles to `normal`.
 Float3 anyTangent(const Float3& normal) {
     const Double3 n = widen(normal);
     const Double3 axis = std::abs(n[0]) < 0.5 ? Double3{1.0, 0.0, 0.0} : Double3{0.0, 1.0, 0.0};

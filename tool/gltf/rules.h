@@ -1,13 +1,13 @@
-// Short forms for the tables of rules that a document is checked against.
+// Short forms for the tables of rules against which a document is checked.
 #pragma once
 
 #include "gltf/schema.h"
 
 namespace glint::gltf::rules {
 
-// Above this, tinygltf's int no longer holds the value.
+// A larger value does not fit into tinygltf's int.
 inline constexpr double kMaxInt = 2147483647.0;
-// Above this, a double skips integers.
+// Above this value, doubles no longer represent every integer.
 inline constexpr double kMaxSize = 9007199254740991.0;
 
 constexpr Rule text(std::string_view name, bool required = false) {

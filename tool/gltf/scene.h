@@ -1,4 +1,5 @@
-// A scene as plain data: what the importer makes of a glTF file. Knows nothing of tinygltf or Vulkan.
+// A scene as plain data, which the importer makes from a glTF file. It depends neither on tinygltf nor on
+// Vulkan.
 #pragma once
 
 #include "gltf/animation.h"
@@ -22,38 +23,37 @@ using Float4 = std::array<float, 4>;
 // Column-major 4 x 4, column vectors: element (row r, column c) is m[4 * c + r], as in glTF.
 using Matrix4 = std::array<double, 16>;
 
-// A triangle list. Attribute arrays are empty or as long as positions; indices are always filled.
+// A triangle list. Each attribute array is empty or as long as the positions; the indices are always filled.
 struct Primitive {
     std::string pointer;  // JSON pointer, "/meshes/0/primitives/1"
     int material = 0;     // always valid: primitives without one use Scene::defaultMaterial
     std::vector<Float3> positions;
-    std::vector<Float3> normals;   // unit; empty: flat shading
-    std::vector<Float4> tangents;  // unit xyz; w = ±1; empty: the hit derives a frame from the UVs
+    std::vector<Float3> normals;   // unit length; empty: flat shading
+    std::vector<Float4> tangents;  // xyz has unit length, w = ±1; empty: the hit derives a frame from the UVs
     std::vector<Float2> texCoords0;
     std::vector<Float2> texCoords1;
     std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
     ColorContent colorContent = ColorContent::None;
-    std::vector<std::uint32_t> indices;  // 3 a triangle, each < positions.size()
-    std::vector<MorphTarget> targets;    // normals only if it has normals, tangents likewise
+    std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
+    std::vector<MorphTarget> targets;    // normals and tangents only if the primitive has them
     SkinInfluences influences;
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
-    std::vector<double> weights{};  // of the morph targets, where a node gives none; one for each target
+    std::vector<double> weights{};  // of the morph targets, one for each, for nodes that give none
 };
 
-// T * R * S.
+// The transform is the product T * R * S.
 struct Transform {
     std::array<double, 3> translation{};
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};  // unit quaternion x, y, z, w
     std::array<double, 3> scale{1.0, 1.0, 1.0};
 };
 
-// Placements of a node's mesh beside each other (EXT_mesh_gpu_instancing): the mesh is drawn once for each of
-// them, and not for the node itself. Each array is empty, where the file leaves it out, or has `count`
-// elements.
+// Placements of a node's mesh (EXT_mesh_gpu_instancing). The mesh is drawn once for each of them, and not for
+// the node itself. Each array has `count` elements, or is empty if the file leaves it out.
 struct Instancing {
     std::size_t count = 0;
     std::vector<Float3> translations;
@@ -61,8 +61,8 @@ struct Instancing {
     std::vector<Float3> scales;
 };
 
-// A node of the default scene, parents before children. Transforms are those of the rest pose until
-// applyPose() (motion/pose.h) puts the scene into another.
+// A node of the default scene. Parents come before their children. Transforms are those of the rest pose
+// until applyPose() (motion/pose.h) changes the scene's pose.
 struct Node {
     std::string name;
     int parent = -1;  // index into Scene::nodes
@@ -71,15 +71,15 @@ struct Node {
     int light = -1;
     Matrix4 world{};
     int source = -1;                  // its number in the file
-    int skin = -1;                    // index into Scene::skins: then the mesh follows that, and not `world`
-    std::optional<Matrix4> matrix{};  // where the file gives one; else `rest` is the local transform
+    int skin = -1;                    // index into Scene::skins; a skin replaces `world`
+    std::optional<Matrix4> matrix{};  // if the file gives one; else `rest` is the local transform
     Transform rest{};
-    std::vector<double> restWeights{};  // of the mesh's morph targets: one each, whoever gives them
-    std::vector<double> weights{};      // likewise, as posed
+    std::vector<double> restWeights{};  // one for each morph target of the mesh, from the node or the mesh
+    std::vector<double> weights{};      // the same weights in the current pose
     int instancing = -1;                // index into Scene::instancings
-    bool visible = true;                // KHR_node_visibility at rest: hides the node and all below it
-    bool shown = true;                  // it and all above it are visible, as posed
-    bool canShow = true;                // `shown` at rest, or an animation can make it so
+    bool visible = true;                // KHR_node_visibility at rest; false hides all descendants, too
+    bool shown = true;                  // the node and all its ancestors are visible in the current pose
+    bool canShow = true;                // `shown` is true at rest, or an animation can make it true
 };
 
 struct Camera {
@@ -90,7 +90,7 @@ struct Camera {
     double ymag = 1.0;    // half height, orthographic
     double znear = 0.01;  // metres
     double zfar = 0.0;    // 0 means infinite
-    Matrix4 world{};      // looks along its -Z, +Y up
+    Matrix4 world{};      // the camera looks along its -Z axis, with +Y up
     int source = -1;      // its number in the file
 };
 
@@ -108,7 +108,7 @@ struct Light {
     Float3 position{};
     Float3 direction{0.0F, 0.0F, -1.0F};  // unit, the way the light travels
     int source = -1;                      // its number in the file
-    bool shown = true;                    // its node is, as posed
+    bool shown = true;                    // its node is shown in the current pose
     // Whether it has an intensity at rest, or an animation can give it one.
     bool canShine = false;
 
@@ -140,20 +140,21 @@ constexpr std::size_t bytesPerPixel(PixelFormat format) {
     return format == PixelFormat::Rgba16 ? 8 : 4;
 }
 
-// How an image file says that its colours are stored.
+// How an image file declares its colours to be stored.
 enum class Transfer : std::uint8_t { Unknown, Linear, Srgb };
 
-// Pixels are empty unless ImportOptions::decodeImages.
+// The pixels are empty unless ImportOptions::decodeImages is set.
 struct Image {
     std::string name;     // glTF name, else the file's name, else "image N"
     std::string pointer;  // JSON pointer
     int width = 0;
     int height = 0;
-    PixelFormat format = PixelFormat::Rgba8;  // Rgba16 where the file has 16 bits
-    // Above 1 where the file has mips. Each level has half the size of the one before, rounded down.
+    PixelFormat format = PixelFormat::Rgba8;  // Rgba16 if the file has 16 bits for each channel
+    // This is above 1 if the file has mips. Each level has half the size of the one before, rounded down.
     int levels = 1;
-    Transfer transfer = Transfer::Unknown;  // known of KTX2 alone; what reads a texture decides how
-    // byteCount() bytes: the levels from the largest on, first row on top, as stored (not linearised).
+    Transfer transfer = Transfer::Unknown;  // only KTX2 files give it; the texture's use decides
+    // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
+    // they are stored and are not linearised.
     std::vector<std::uint8_t> pixels;
 };
 
@@ -164,7 +165,7 @@ constexpr std::uint64_t pixelCount(const Image& image, int level) {
     return (width == 0 ? 1 : width) * (height == 0 ? 1 : height);
 }
 
-// The bytes of all levels.
+// Returns the number of bytes of all levels.
 constexpr std::uint64_t byteCount(const Image& image) {
     std::uint64_t pixels = 0;
     for (int level = 0; level < image.levels; ++level) {
@@ -175,50 +176,50 @@ constexpr std::uint64_t byteCount(const Image& image) {
 
 struct Texture {
     int image = 0;
-    int sampler = 0;  // index into Scene::samplers; a default one is appended where glTF names none
+    int sampler = 0;  // index into Scene::samplers; a default sampler is appended for textures that name none
 };
 
-// A file that the scene was read from, for hashes and dependency files.
+// A file from which the scene was read; used for hashes and dependency files.
 struct SourceFile {
     std::string path;  // as opened
     std::uint64_t bytes = 0;
     std::uint64_t hash = 0;  // XXH3, 64 bits
 };
 
-// A material whose values animations change (KHR_animation_pointer). Which features it needs is decided once
-// for all times, by two materials that stand for every value between the least and the greatest that it takes
-// at rest or in a keyframe.
+// A material whose values animations change (KHR_animation_pointer). Its features are decided once for all
+// times. Two materials stand for every value between the least and the greatest that it takes at rest or in a
+// keyframe.
 struct AnimatedMaterial {
     int material = 0;  // index into Scene::materials
-    Material rest;     // as the file has it
-    // A value that varies is between its bounds, and none at which a feature changes nothing.
+    Material rest;     // as the file gives it
+    // A value that varies lies between its bounds here, and no feature is neutral at it.
     Material generic;
-    Material smoothest;                // the same, but as smooth as it gets
-    std::vector<std::string> changes;  // "metallicFactor 0 to 1": those that vary
+    Material smoothest;                // the same, but as smooth as it becomes
+    std::vector<std::string> changes;  // the values that vary, such as "metallicFactor 0 to 1"
 };
 
 struct Scene {
     std::string path;  // the .gltf or .glb
     std::vector<Material> materials;
-    int defaultMaterial = -1;  // index of the appended glTF default material, or -1 if no primitive needs it
+    int defaultMaterial = -1;  // index of the default material, which is appended; -1 if none needs it
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
     std::vector<Camera> cameras;  // those that a node places
     std::vector<Light> lights;    // those that a node places
-    std::vector<Skin> skins;      // those of nodes of the scene
+    std::vector<Skin> skins;      // those that nodes of the scene use
     std::vector<Animation> animations;
     std::vector<Instancing> instancings;
     std::vector<AnimatedMaterial> animatedMaterials;
-    // As the file has them; empty where no animation changes more of them than their place.
+    // These are the file's values. They are empty unless an animation changes more of them than their place.
     std::vector<Light> restLights;
     std::vector<Camera> restCameras;
     std::vector<Texture> textures;
     std::vector<Sampler> samplers;
     std::vector<Image> images;
     std::vector<SourceFile> files;
-    std::vector<std::string> variants;  // names that KHR_materials_variants gives, in the file's order
-    std::string variant;               // the one whose materials the primitives have; empty: the default ones
-    std::vector<Diagnostic> warnings;  // and notes
+    std::vector<std::string> variants;  // the names in KHR_materials_variants, in the file's order
+    std::string variant;                // its materials are in use; empty: the default materials
+    std::vector<Diagnostic> warnings;   // and notes
 };
 
 }  // namespace glint

@@ -1,4 +1,5 @@
-// The scenes of one package, seen as one list of materials and one of primitives: cases are shared by all.
+// Presents the scenes of one package as one list of materials and one list of primitives. All scenes share
+// the cases.
 #pragma once
 
 #include "gltf/scene.h"
@@ -12,17 +13,17 @@ namespace glint {
 
 class SceneList {
 public:
-    // At least one; they must outlive the list and stay as they are.
+    // There must be at least one scene. The scenes must outlive the list and must not change.
     explicit SceneList(std::span<const Scene> scenes);
     SceneList(const SceneList&) = delete;
     SceneList& operator=(const SceneList&) = delete;
 
-    // `count` elements of a list, from `first` on.
+    // `count` elements of a list, starting at `first`.
     struct Range {
         std::size_t first = 0;
         std::size_t count = 0;
     };
-    // A material by its scene and its index there.
+    // Locates a material: its scene, and its index there.
     struct Place {
         std::size_t scene = 0;
         int index = 0;
@@ -31,21 +32,21 @@ public:
     std::span<const Scene> scenes() const {
         return scenes_;
     }
-    // Of the file, without folder and extension; of two alike the second is "name_2".
+    // Returns the name of the file without folder and extension. If two are equal, the second is "name_2".
     const std::string& name(std::size_t scene) const {
         return names_[scene];
     }
-    // Paths of the files, for messages.
+    // Returns the paths of the files, for messages.
     std::string path() const;
-    // Names of the files without their folders.
+    // Returns the names of the files without their folders.
     std::string fileNames() const;
 
-    // Scene by scene, as planning sees them: planningMaterials().
+    // Lists the materials scene by scene, as planningMaterials() returns them.
     std::span<const Material> materials() const {
         return materials_;
     }
-    // Scene by scene; PrimitiveInputs::material is an index into materials(), mesh and primitive are the
-    // scene's.
+    // Lists the primitives scene by scene. PrimitiveInputs::material is an index into materials(); mesh and
+    // primitive are numbers within the scene.
     std::span<const PrimitiveInputs> primitives() const {
         return primitives_;
     }
@@ -55,19 +56,20 @@ public:
     Range primitivesOf(std::size_t scene) const {
         return primitiveRanges_[scene];
     }
-    // Of an index into materials().
+    // `material` is an index into materials().
     Place place(int material) const;
-    // Of an index into materials(): the glTF name, else "material N"; "(default)" for the material of
-    // primitives that have none.
+    // `material` is an index into materials(). Returns the glTF name, or "material N" if there is none, or
+    // "(default)" for the material of primitives without one.
     std::string materialName(int material) const;
-    // KHR_materials_variants: the first that a scene was read with; empty: none.
+    // Returns the first variant (KHR_materials_variants) that a scene was read with, or an empty text if
+    // there is none.
     std::string variant() const;
 
 private:
     std::span<const Scene> scenes_;
     std::vector<std::string> names_;
     std::span<const Material> materials_;
-    std::vector<Material> joined_;  // what materials_ points at, unless one scene has it all
+    std::vector<Material> joined_;  // materials_ points here unless there is only one scene
     std::vector<PrimitiveInputs> primitives_;
     std::vector<Range> materialRanges_;
     std::vector<Range> primitiveRanges_;

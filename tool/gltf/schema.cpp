@@ -44,9 +44,9 @@ std::optional<SchemaError> checkRange(const Json& value, const Rule& rule, const
     return std::nullopt;
 }
 
-// Turns 3.0 into 3: JSON knows one type of number, the parsers behind this check know two.
+// Turns 3.0 into 3. JSON has one type of number, but the parsers behind this check distinguish two.
 bool makeInteger(Json& value) {
-    // Integers above this need not have a double of their own.
+    // Above this value, a double need not represent every integer.
     constexpr double kExact = 9007199254740992.0;
     if (value.is_number_float()) {
         const double number = value.get<double>();
@@ -140,7 +140,7 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
 
 }  // namespace
 
-// Recursion goes as deep as the tables do, whatever the file holds.
+// The depth of the recursion is that of the tables, whatever the file contains.
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer) {
     if (!object.is_object()) {

@@ -1,4 +1,4 @@
-// Checks of JSON objects against tables of rules: types, ranges and references, each failure with its
+// Checks JSON objects against tables of rules: types, ranges and references. Each failure has its JSON
 // pointer.
 #pragma once
 
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 enum class Kind : std::uint8_t {
     Integer,
     Number,
-    Numbers,  // array of Rule::length numbers; of any number of them where that is 0
+    Numbers,  // array of Rule::length numbers, or of any number of them if the length is 0
     Bool,
     Text,
     Index,    // integer that indexes the array at Rule::target
@@ -28,17 +28,17 @@ enum class Kind : std::uint8_t {
     Objects,  // array of objects
 };
 
-// One member of an object. Members without a rule are not looked at.
+// A rule for one member of an object. Members without a rule are not checked.
 struct Rule {
     std::string_view name;
     Kind kind = Kind::Number;
     bool required = false;
-    // Range of Integer, Number and Numbers. A number that a float can't hold would turn into an infinity.
+    // Range of Integer, Number and Numbers. A number that does not fit into a float would become an infinity.
     double min = -static_cast<double>(std::numeric_limits<float>::max());
     double max = static_cast<double>(std::numeric_limits<float>::max());
     std::size_t length = 0;
-    std::string_view target{};      // JSON pointer of the array that an index goes into
-    std::span<const Rule> rules{};  // of Object and Objects
+    std::string_view target{};      // JSON pointer of the array into which an index points
+    std::span<const Rule> rules{};  // for Object and Objects
 };
 
 struct SchemaError {
@@ -47,18 +47,18 @@ struct SchemaError {
     std::string message;
 };
 
-// Checks `object` and what its rules reach; numbers such as 3.0 in the place of an integer become integers.
-// `root` is where Rule::target is looked up; it may hold `object`.
+// Checks `object` and everything that its rules reach. A number such as 3.0 becomes an integer if the rule
+// asks for one. Rule::target is looked up in `root`, which may contain `object`.
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer);
 
-// The member of that name, or null where it is absent or `object` is no object.
+// Returns the member of that name, or null if it is absent or `object` is not an object.
 const Json* find(const Json& object, std::string_view name);
-// The extension of that name, where it is an object; null otherwise.
+// Returns the extension of that name if it is an object, and null otherwise.
 const Json* findExtension(const Json& object, std::string_view name);
-// The array of that name; an empty one where there is none.
+// Returns the array of that name, or an empty one if there is none.
 const Json& arrayMember(const Json& object, std::string_view name);
-// Elements of the array at that JSON pointer; 0 where there is none.
+// Returns how many elements the array at that JSON pointer has, or 0 if there is no array.
 std::size_t arraySize(const Json& root, std::string_view pointer);
 
 }  // namespace glint::gltf

@@ -17,13 +17,13 @@ namespace {
 
 constexpr const char* kExportSkin = "export the scene again";
 
-// What a vertex follows, in the order of the file; not yet normalised.
+// A joint that a vertex follows, in the order of the file, before the weights are normalised.
 struct Influence {
     std::uint16_t joint = 0;
     float weight = 0.0F;
 };
 
-// Those of one vertex that count. A weight that is negative or no number counts as 0.
+// Returns the influences of one vertex that matter. A weight that is negative or NaN counts as 0.
 std::vector<Influence> influencesOf(const std::vector<InfluenceSet>& sets, std::size_t vertex) {
     std::vector<Influence> influences;
     for (const InfluenceSet& set : sets) {
@@ -45,7 +45,7 @@ double sumOf(const std::vector<Influence>& influences) {
     return sum;
 }
 
-// The inverse bind matrices of a skin; identities where it gives none.
+// Returns the inverse bind matrices of a skin, or identities if it gives none.
 Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& json,
                                               const std::string& pointer, std::size_t joints) {
     const Json* accessor = find(json, "inverseBindMatrices");
@@ -69,7 +69,7 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& js
     return matrices;
 }
 
-// Nothing where a joint is not in the scene.
+// Returns nothing if a joint is not in the scene.
 Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, const NodeNumbers& numbers) {
     const Json& json = document.json()["skins"][index];
     const std::string pointer = fmt::format("/skins/{}", index);
@@ -101,7 +101,7 @@ Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, cons
     return std::optional(std::move(skin));
 }
 
-// Whether every joint that the mesh's vertices follow is in the skin.
+// Checks that every joint that the mesh's vertices follow is in the skin.
 Status checkJoints(const Document& document, const Mesh& mesh, const Skin& skin) {
     for (const Primitive& primitive : mesh.primitives) {
         const SkinInfluences& influences = primitive.influences;
@@ -128,7 +128,7 @@ SkinInfluences joinInfluences(Document& document, const std::string& pointer,
         joined.count = std::max(joined.count, influencesOf(sets, vertex).size());
     }
     joined.count = vertices > 0 ? std::max<std::size_t>(joined.count, 1) : 0;
-    // Eight weights of 8 bits, rounded each, are off by less.
+    // Rounding eight weights to 8 bits each causes a smaller error.
     constexpr double kTolerance = 0.02;
     std::size_t off = 0;
     for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
@@ -157,7 +157,7 @@ SkinInfluences joinInfluences(Document& document, const std::string& pointer,
 
 Status importSkins(Document& document, Scene& scene) {
     const NodeNumbers numbers(document, scene);
-    std::map<std::size_t, int> known;  // by number in the file; -1: left out
+    std::map<std::size_t, int> known;  // by number in the file; -1: the skin is left out
     for (Node& node : scene.nodes) {
         const Json* skin = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "skin");
         if (skin == nullptr || node.mesh < 0) {

@@ -1,4 +1,4 @@
-// PNG and JPEG images.
+// Decodes PNG and JPEG images.
 #include "base/png_bounds.h"
 #include "gltf/codecs.h"
 #include "gltf/jpeg_tables.h"
@@ -8,7 +8,7 @@
 #include <limits>
 #include <memory>
 
-#ifndef __clang_analyzer__  // not ours to lint
+#ifndef __clang_analyzer__  // the linter skips the library's code
 #define STB_IMAGE_IMPLEMENTATION
 #endif
 #define STB_IMAGE_STATIC
@@ -21,9 +21,9 @@ namespace glint::gltf {
 
 namespace {
 
-// A block of 8 x 8 values takes one bit of its scan at least. Pixels may share them: of three components with
-// 4 x 1, 1 x 4 and 1 x 1 values for each 4 x 4 pixels, 9 blocks make 32 x 32 pixels (ITU-T T.81, A.1.1 and
-// F.1.2.1).
+// A block of 8 x 8 values takes at least one bit of its scan. Several pixels may share a block. With three
+// components that have 4 x 1, 1 x 4 and 1 x 1 values for each 4 x 4 pixels, 9 blocks make 32 x 32 pixels
+// (ITU-T T.81, A.1.1 and F.1.2.1).
 constexpr std::uint64_t kMaxPixelsPerJpegByte = 8ULL * 32 * 32 / 9 + 1;
 
 struct StbFree {
@@ -57,7 +57,7 @@ bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
 }
 
 bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
-    // The header comes after tables.
+    // The header comes after tables, so these are checked first.
     problem = findJpegExcess(bytes);
     if (!problem.empty()) {
         return false;

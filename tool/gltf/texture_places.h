@@ -1,4 +1,4 @@
-// Where each texture slot stands in the JSON of a material.
+// Locates each texture slot in the JSON of a material.
 #pragma once
 
 #include "plan/material.h"
@@ -8,12 +8,12 @@
 namespace glint::gltf {
 
 struct TexturePlace {
-    const char* owner;  // the object that holds it, of an extension its name; "": the material itself
+    const char* owner;  // the object that holds it: an extension's name, "" for the material itself
     const char* member;
     TextureSlot slot;
 };
 
-// Two places can fill one slot: those of the two base models.
+// Two places can fill one slot, because there are two base models.
 std::span<const TexturePlace> texturePlaces();
 
 }  // namespace glint::gltf

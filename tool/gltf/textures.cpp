@@ -110,16 +110,16 @@ Result<int> TextureTable::use(int texture) {
     return *known;
 }
 
-// The file's image that the texture shows; -1 and a warning where it has none of a format that Glint knows. A
-// KTX2 image that this build does not decode is an error, unless there is another image and the file does not
-// require KHR_texture_basisu.
+// Returns the image of the file that the texture shows, or -1 with a warning if it has none in a format that
+// Glint knows. A KTX2 image that this build does not decode is an error, unless there is another image and
+// the file does not require KHR_texture_basisu.
 Result<int> TextureTable::chooseImage(int texture) {
     constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
     constexpr const char* kEffect = "materials render without it";
     const Json& json = document_.json()["textures"][static_cast<std::size_t>(texture)];
     const std::string pointer = fmt::format("/textures/{}", texture);
     const int plain = document_.model().textures[static_cast<std::size_t>(texture)].source;
-    // Later ones are what a reader without the extensions would take.
+    // Later candidates are those that a reader without the extensions would take.
     int basisu = -1;
     const bool mayFallBack = !requiresExtension(document_, "KHR_texture_basisu");
     for (const int image :

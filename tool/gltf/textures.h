@@ -1,4 +1,4 @@
-// Textures and samplers: those that materials use, in the order of first use.
+// Imports the textures and samplers that materials use, in the order of first use.
 #pragma once
 
 #include "gltf/document.h"
@@ -11,16 +11,17 @@
 
 namespace glint::gltf {
 
-// scene.samplers: those of the file, in its order.
+// Fills scene.samplers with the samplers of the file, in the file's order.
 void importSamplers(Document& document, Scene& scene);
 
 class TextureTable {
 public:
     TextureTable(Document& document, Scene& scene);
 
-    // Index into scene.textures of the file's texture, appended on first use; -1 and a warning where its
-    // source is missing or of a format that Glint does not read. Error "texture-basisu": it is KTX2 without a
-    // fallback, or the file requires that, and this build does not decode it.
+    // Returns the index into scene.textures of the file's texture, which is appended on first use. Returns -1
+    // with a warning if its source is missing or has a format that Glint does not read. The error is
+    // "texture-basisu" if this build does not decode KTX2, and the texture has no fallback or the file
+    // requires the extension.
     Result<int> use(int texture);
 
 private:

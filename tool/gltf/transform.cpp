@@ -83,7 +83,7 @@ bool fitsFloat(const Matrix4& matrix) {
 
 std::optional<Double3> normalized(const Double3& v) {
     const double length = std::hypot(v[0], v[1], v[2]);
-    // Below this a float holds the vector with fewer digits, if at all.
+    // A shorter vector has fewer digits as a float, or none at all.
     constexpr double kShortest = std::numeric_limits<float>::min();
     if (!(length >= kShortest) || !std::isfinite(length)) {
         return std::nullopt;

@@ -16,7 +16,7 @@ TriangleList makeTriangles(PrimitiveMode mode, std::vector<std::uint32_t> indice
     TriangleList list;
     list.indices.reserve((indices.size() - 2) * 3);
     for (std::size_t i = 0; i + 2 < indices.size(); ++i) {
-        // As the specification orders them (glTF 2.0, section 3.7.2.1).
+        // The specification orders the vertices in this way (glTF 2.0, section 3.7.2.1).
         const std::size_t odd = i % 2;
         if (mode == PrimitiveMode::TriangleStrip) {
             list.indices.insert(list.indices.end(), {indices[i], indices[i + 1 + odd], indices[i + 2 - odd]});

@@ -1,4 +1,4 @@
-// Primitive modes into triangle lists.
+// Turns primitive modes into triangle lists.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace glint::gltf {
 
-// glTF's numbers.
+// The numbers are those of glTF.
 enum class PrimitiveMode : std::uint8_t {
     Points = 0,
     Lines = 1,
@@ -19,11 +19,11 @@ enum class PrimitiveMode : std::uint8_t {
 };
 
 struct TriangleList {
-    std::vector<std::uint32_t> indices;  // 3 a triangle
-    std::size_t leftOver = 0;            // indices at the end that make no triangle
+    std::vector<std::uint32_t> indices;  // 3 for each triangle
+    std::size_t leftOver = 0;            // number of indices at the end that form no triangle
 };
 
-// Requires a triangle mode. Keeps the winding: of a strip, every second triangle is turned.
+// The mode must be one of triangles. The winding is kept, so every second triangle of a strip is turned.
 TriangleList makeTriangles(PrimitiveMode mode, std::vector<std::uint32_t> indices);
 
 }  // namespace glint::gltf

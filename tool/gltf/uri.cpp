@@ -39,7 +39,7 @@ std::optional<Bytes> decodeBase64(std::string_view text) {
     while (!text.empty() && text.back() == '=') {
         text.remove_suffix(1);
     }
-    // One digit beyond whole groups holds six bits, less than a byte.
+    // One digit after the last whole group would hold six bits, which is less than a byte.
     if (text.size() % 4 == 1) {
         return std::nullopt;
     }
@@ -90,7 +90,7 @@ std::optional<DataUri> decodeDataUri(std::string_view uri) {
     }
     DataUri data{std::string(header.substr(0, header.find(';'))), {}};
     if (base64) {
-        // '+', '/' and '=' may stand percent-encoded.
+        // '+', '/' and '=' may be percent-encoded.
         const bool encoded = payload.find('%') != std::string_view::npos;
         std::optional<Bytes> bytes = decodeBase64(encoded ? percentDecode(payload) : payload);
         if (!bytes) {

@@ -1,4 +1,4 @@
-// URIs of glTF files: data URIs, percent encoding, and which relative ones are safe to open.
+// Handles URIs of glTF files: data URIs, percent encoding, and which relative URIs are safe to open.
 #pragma once
 
 #include "base/files.h"
@@ -16,13 +16,14 @@ struct DataUri {
 
 bool isDataUri(std::string_view uri);
 
-// Decodes "data:[type][;base64],…". Nothing where it is malformed.
+// Decodes "data:[type][;base64],…". Returns nothing if the URI is malformed.
 std::optional<DataUri> decodeDataUri(std::string_view uri);
 
-// Replaces "%20" and the like by their bytes; a '%' without two hexadecimal digits stays as it is.
+// Replaces escapes such as "%20" by their bytes. A '%' without two hexadecimal digits stays as it is.
 std::string percentDecode(std::string_view text);
 
-// Why the file that a decoded URI names must not be opened; nothing where it may. Looks at the text only.
+// Returns why the file that a decoded URI names must not be opened, or nothing if it may be. Examines only
+// the text.
 std::optional<std::string> whyUnsafe(std::string_view uri, std::string_view decoded);
 
 }  // namespace glint::gltf

@@ -13,7 +13,8 @@ namespace {
 
 using namespace rules;
 
-// Buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an int.
+// These are the rules of buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an
+// int.
 constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
 constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
                                  size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
@@ -32,7 +33,7 @@ constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
                                boolean("normalized"),
                                object("sparse", kSparse)};
 
-// Meshes
+// These are the rules of meshes.
 template <std::size_t N>
 constexpr std::array<Rule, N> accessorIndices(const char* const (&names)[N]) {
     std::array<Rule, N> rules{};
@@ -55,8 +56,8 @@ constexpr std::array kPrimitive{object("attributes", kAttributeRules, true),
                                 object("extensions", kPrimitiveExtensions)};
 constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numbers("weights", 0)};
 
-// Animations and skins. Samplers are checked where the animation is read, as the index is into an array of
-// its own.
+// These are the rules of animations and skins. Samplers are checked where the animation is read, because
+// their index is into an array of the animation itself.
 constexpr std::array kAnimationPointer{text("pointer", true)};
 constexpr std::array kAnimationExtensions{object("KHR_animation_pointer", kAnimationPointer)};
 constexpr std::array kAnimationTarget{index("node", "/nodes"), text("path", true),
@@ -70,14 +71,14 @@ constexpr std::array kAnimation{text("name"), objects("channels", kChannel, true
 constexpr std::array kSkin{text("name"), index("inverseBindMatrices", "/accessors"),
                            index("skeleton", "/nodes"), indices("joints", "/nodes", true)};
 
-// Textures
+// These are the rules of textures.
 constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
                               object("extensions", {})};
 constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
                               integer("wrapS", 0.0, kMaxInt), integer("wrapT", 0.0, kMaxInt)};
 constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
 
-// Nodes, cameras, lights
+// These are the rules of nodes, cameras and lights.
 constexpr std::array kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights", true)};
 constexpr std::array kNodeVisibility{boolean("visible")};
 constexpr std::array kInstanceRules = accessorIndices(kInstanceAttributes);
@@ -129,7 +130,8 @@ constexpr std::array kRoot{
     index("scene", "/scenes"),
 };
 
-// Calls `use(index, isIndices)` for every accessor that the member of that name refers to, if it is there.
+// Calls `use(index, isIndices)` for every accessor to which the member of that name refers, if there is such
+// a member.
 template <typename Use>
 void useAccessor(const Json& object, const char* name, bool isIndices, const Use& use) {
     if (const Json* accessor = find(object, name)) {
@@ -137,7 +139,7 @@ void useAccessor(const Json& object, const char* name, bool isIndices, const Use
     }
 }
 
-// Likewise for every accessor that the importer reads.
+// Calls `use` in the same way for every accessor that the importer reads.
 template <typename Use>
 void forEachAccessor(const Json& root, const Use& use) {
     for (const Json& mesh : arrayMember(root, "meshes")) {
@@ -180,12 +182,14 @@ bool isOneOf(std::string_view value, std::initializer_list<std::string_view> val
     return false;
 }
 
-// Copies the members of `rules` from `from`, and those of the objects they hold: as deep as the tables.
+// Copies the members in `rules` from `from`, and the members of the objects that they hold, as deep as the
+// tables go.
 Json project(const Json& from, std::span<const Rule> rules) {
     Json to = Json::object();
     for (const Rule& rule : rules) {
         const Json* member = find(from, rule.name);
-        // These are read from the file's JSON; of extensions, tinygltf narrows the integers.
+        // The importer reads these from the file's JSON. tinygltf would also narrow the integers in
+        // extensions.
         const bool apart =
             isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
         if (member == nullptr || apart) {

@@ -27,7 +27,7 @@ Diagnostic unknownVariant(const Document& document, const Scene& scene) {
                           fmt::format("use one of: {}", fmt::join(scene.variants, ", ")));
 }
 
-// The material that a primitive has in a variant.
+// Returns the material that a primitive has in a variant.
 std::optional<int> materialIn(const Json& primitive, std::size_t variant) {
     const Json* extension = findExtension(primitive, kName);
     if (extension == nullptr) {

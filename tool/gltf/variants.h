@@ -1,4 +1,4 @@
-// KHR_materials_variants: other materials for the same primitives.
+// Imports KHR_materials_variants, which gives other materials to the same primitives.
 #pragma once
 
 #include "gltf/document.h"
@@ -8,8 +8,8 @@
 
 namespace glint::gltf {
 
-// Fills Scene::variants, and gives the primitives the materials of ImportOptions::variant where they have one
-// for it. Error "variant-unknown".
+// Fills Scene::variants. Primitives get the materials of ImportOptions::variant if they have one for it. The
+// error is "variant-unknown".
 Status applyVariant(const Document& document, Scene& scene);
 
 }  // namespace glint::gltf

@@ -1,4 +1,4 @@
-// WebP images (EXT_texture_webp).
+// Decodes WebP images (EXT_texture_webp).
 #include "gltf/codecs.h"
 
 #include <webp/decode.h>

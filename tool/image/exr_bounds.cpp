@@ -111,10 +111,10 @@ std::int32_t wordAt(std::string_view value, std::size_t index) {
     return word;
 }
 
-// Of all channels, for a pixel. `value` passed isChannelList().
+// Returns the bytes of a pixel in all channels. isChannelList() must have accepted `value`.
 double bytesPerPixel(std::string_view value) {
     constexpr std::int32_t kHalf = 1;
-    constexpr std::size_t kChannelWords = 4;  // the type first
+    constexpr std::size_t kChannelWords = 4;  // the first word is the type
     double bytes = 0.0;
     ExrReader reader(value, 0);
     for (std::optional<std::string_view> name = reader.text(); name && !name->empty(); name = reader.text()) {
@@ -125,14 +125,14 @@ double bytesPerPixel(std::string_view value) {
 }
 
 double linesOfBlock(std::string_view value) {
-    // By number of the compression, from none to DWAB.
+    // The index is the number of the compression, from none to DWAB.
     constexpr std::array kLines{1.0, 1.0, 1.0, 16.0, 32.0, 16.0, 32.0, 32.0, 32.0, 256.0};
     const auto compression = static_cast<unsigned char>(value[0]);
     return compression < kLines.size() ? kLines[compression] : kLines.back();
 }
 
-// How much one block of pixels takes, by the attributes of a header. Where an attribute stands twice, the
-// larger value counts.
+// Computes how many bytes one block of pixels takes from the attributes of a header. If an attribute occurs
+// twice, the larger value counts.
 class BlockSize {
 public:
     // `value` has the size that its type asks for.
@@ -165,7 +165,7 @@ private:
     double tilePixels_ = 0.0;
 };
 
-// Whether the library reads all of the value, and no more.
+// Returns whether the library reads the whole value and nothing beyond it.
 bool fits(std::string_view type, std::string_view value) {
     const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
     if (fixed != kFixedTypes.end()) {

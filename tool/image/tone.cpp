@@ -9,10 +9,10 @@ namespace glint {
 namespace {
 
 constexpr double kMiddleGrey = 0.18;
-// Sunlight of 100,000 lux takes 17; --exposure has as many.
+// Sunlight of 100,000 lux needs 17 stops. --exposure has the same limit.
 constexpr double kMaxStops = 32.0;
-// A pixel with a smaller share of the median luminance is black: what is 20 stops below the others would move
-// the log-average by what no display shows.
+// A pixel with a smaller share of the median luminance counts as black. A pixel 20 stops below the others
+// would change the log-average by something that no display shows.
 constexpr double kBlackShare = 1e-6;
 
 // These are F90, Ks and Kd of the specification.
@@ -54,7 +54,7 @@ Rgb toneMapNeutral(const Rgb& color) {
         return mapped;
     }
 
-    // Compresses what is above the start, and moves it towards white.
+    // Compresses values above the start, and moves them towards white.
     constexpr float kRange = 1.0F - kCompressionStart;
     const float compressed = 1.0F - kRange * kRange / (peak + kRange - kCompressionStart);
     const float saturation = 1.0F / (kDesaturation * (peak - compressed) + 1.0F);

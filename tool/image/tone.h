@@ -15,7 +15,7 @@ using Rgb = std::array<float, 3>;
 // Returns the relative luminance of a linear Rec. 709 colour (ITU-R BT.709).
 double luminance(const Rgb& color);
 
-// The sRGB transfer function (IEC 61966-2-1) and its inverse, [0, 1] to [0, 1].
+// These are the sRGB transfer function (IEC 61966-2-1) and its inverse, from [0, 1] to [0, 1].
 float linearToSrgb(float value);
 float srgbToLinear(float value);
 
@@ -23,11 +23,12 @@ float srgbToLinear(float value);
 // Specification"). It keeps base colours up to 0.8 and compresses highlights; the result is within [0, 1].
 Rgb toneMapNeutral(const Rgb& color);
 
-// Exposure in stops that brings the log-average luminance of surfaces to a mid-grey of 0.18 (Reinhard et al.
-// 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to ±32 stops.
-// `surfaces`, a byte a pixel: those that are not 0 see a surface. All pixels count where it is empty or has
-// no such pixel, as in a picture of the sky alone. Left out are pixels that are not finite, or black: below a
-// millionth of the median of those above 0. 0 stops if nothing is left.
+// Returns the exposure in stops that brings the log-average luminance of surfaces to a mid-grey of 0.18
+// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to
+// ±32 stops. `surfaces` has a byte for each pixel, which is not 0 if the pixel sees a surface. All pixels
+// count if it is empty or has no such pixel, as in a picture of the sky alone. Pixels that are not finite or
+// are black do not count; a pixel is black if it is below a millionth of the median of those above 0. Returns
+// 0 stops if no pixel is left.
 double automaticExposure(const LinearImage& image, std::span<const std::uint8_t> surfaces = {});
 
 // Returns what a display shows for a linear colour, in linear light within [0, 1]: the colour times

@@ -1,4 +1,4 @@
-// Meshes that change shape: which they are, and their vertices at a pose.
+// Decides which meshes change shape, and computes their vertices at a pose.
 #pragma once
 
 #include "gltf/scene.h"
@@ -9,15 +9,15 @@
 
 namespace glint {
 
-// Whether the node draws a mesh whose vertices follow a skin or morph targets.
+// Returns whether the node draws a mesh whose vertices follow a skin or morph targets.
 bool isDeformed(const Scene& scene, const Node& node);
 
-// Whether a node of the scene does: its package then has the pass that deforms.
+// Returns whether any node of the scene does. Its package then has the deforming pass.
 bool hasDeformedMesh(const Scene& scene);
 
-// Positions of a primitive in double precision: the targets' differences times `weights`, one a target
-// (missing ones are 0), then what the joints make of the sum, if the primitive follows any and `joints` are
-// not empty (glTF 2.0, sections 3.7.2.2 and 3.7.3.3).
+// Returns the positions of a primitive in double precision. The differences of the targets are added,
+// multiplied by `weights`: one for each target, and 0 for missing ones. The joints then transform the sum if
+// the primitive follows any and `joints` is not empty (glTF 2.0, sections 3.7.2.2 and 3.7.3.3).
 std::vector<std::array<double, 3>> deformedPositions(const Primitive& primitive,
                                                      std::span<const double> weights,
                                                      std::span<const Matrix4> joints);

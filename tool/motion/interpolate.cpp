@@ -7,12 +7,12 @@ namespace glint {
 
 namespace {
 
-// Two neighbouring keyframes and where between them a time is.
+// Two neighbouring keyframes, and the place of a time between them.
 struct Segment {
     std::size_t from = 0;
-    std::size_t to = 0;    // = from at a keyframe, and outside of all
+    std::size_t to = 0;    // equal to `from` at a keyframe and outside all of them
     double amount = 0.0;   // [0, 1)
-    double seconds = 0.0;  // from one to the other
+    double seconds = 0.0;  // from one keyframe to the other
 };
 
 Segment findSegment(const std::vector<float>& times, double time) {
@@ -27,7 +27,7 @@ Segment findSegment(const std::vector<float>& times, double time) {
     return {next - 1, next, (time - begin) / seconds, seconds};
 }
 
-// Of the three parts of a keyframe of CubicSpline.
+// The three parts of a keyframe of CubicSpline.
 enum Part : std::size_t { kInTangent = 0, kValue = 1, kOutTangent = 2 };
 
 double valueAt(const AnimationSampler& sampler, std::size_t keyframe, std::size_t number,
@@ -38,7 +38,7 @@ double valueAt(const AnimationSampler& sampler, std::size_t keyframe, std::size_
     return sampler.values[keyframe * sampler.width + number];
 }
 
-// glTF 2.0, appendix C.5.
+// The formula is in glTF 2.0, appendix C.5.
 double cubic(const AnimationSampler& sampler, const Segment& at, std::size_t number) {
     const double t = at.amount;
     const double t2 = t * t;
@@ -86,11 +86,11 @@ Quaternion slerp(const Quaternion& from, Quaternion to, double amount) {
     if (dot(from, to) < 0.0) {
         to = {-to[0], -to[1], -to[2], -to[3]};
     }
-    // The angle by its chord: the arc cosine of a number near 1 has half the digits.
+    // The angle is computed from its chord, because the arc cosine of a number near 1 has half the digits.
     const Quaternion chord = weighted(from, -1.0, to, 1.0);
     const double angle = 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(dot(chord, chord))));
     const double sine = std::sin(angle);
-    // Below this the arc and its chord are the same to the last digit of a double.
+    // Below this, the arc and its chord are equal to the last digit of a double.
     constexpr double kStraight = 1e-8;
     if (sine < kStraight) {
         return normalized(weighted(from, 1.0 - amount, to, amount));

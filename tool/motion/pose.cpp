@@ -10,8 +10,7 @@ namespace glint {
 
 namespace {
 
-
-// What animations set, as far as nodes place it: local transforms. The rest is that of the pose.
+// Values that animations set, with local transforms in place of the pose's world matrices.
 struct Locals {
     std::vector<Transform> transforms;
     Pose pose;

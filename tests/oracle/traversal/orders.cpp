@@ -19,7 +19,7 @@ std::array<double, 3> centreOf(const LeafBox& leaf) {
     return centre;
 }
 
-// Of the centres of some leaves.
+// The bounds of the centres of some leaves.
 struct Extent {
     std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
     std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
@@ -37,7 +37,7 @@ Extent extentOf(std::span<const LeafBox> leaves, std::span<const std::uint32_t> 
     return extent;
 }
 
-// Which of `count` equal slices of the extent the centre is in.
+// Returns which of `count` equal slices of the extent contains the centre.
 std::uint32_t sliceOf(const Extent& extent, double centre, std::size_t axis, std::uint32_t count) {
     const double size = extent.high[axis] - extent.low[axis];
     const double share = size > 0.0 ? (centre - extent.low[axis]) / size : 0.0;
@@ -48,7 +48,7 @@ constexpr std::uint32_t kBins = 16;
 
 struct SahSplit {
     std::size_t axis = 0;
-    std::uint32_t bin = 0;  // the first of the second side
+    std::uint32_t bin = 0;  // the first bin of the second side
     double cost = kInfinity;
 };
 
@@ -86,7 +86,7 @@ SahSplit bestSplit(std::span<const LeafBox> leaves, std::span<const std::uint32_
 }
 
 void orderBySah(std::span<const LeafBox> leaves, std::span<std::uint32_t> order) {
-    // By a list of ranges, as such trees may be deep.
+    // A list of ranges replaces recursion, because such trees may be deep.
     std::vector<std::span<std::uint32_t>> open{order};
     while (!open.empty()) {
         const std::span<std::uint32_t> range = open.back();

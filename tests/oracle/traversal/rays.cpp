@@ -146,7 +146,7 @@ EmbreeScene::EmbreeScene(const std::vector<Triangle>& triangles) : embree_(std::
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcReleaseGeometry(geometry);
-    // Watertight, as the driver's intersection is, and its best tree.
+    // This makes Embree watertight, as the driver's intersection is, and selects its best tree.
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_->scene, RTC_BUILD_QUALITY_HIGH);
     rtcCommitScene(embree_->scene);
@@ -199,7 +199,8 @@ std::vector<Ray> EmbreeScene::bounces(std::span<const Ray> rays) const {
         const float angle = 2.0F * std::numbers::pi_v<float> * share(random);
         const float height = 2.0F * share(random) - 1.0F;
         const float radius = std::sqrt(std::max(1.0F - height * height, 0.0F));
-        // A point of the unit sphere about the tip of the normal is as likely as its cosine.
+        // The direction leads to a uniform point on the unit sphere about the tip of the normal, so its
+        // density is proportional to the cosine.
         const Float3 sphere{radius * std::cos(angle), radius * std::sin(angle), height};
         const Float3 direction = plus(normal, 0.999F, sphere);
         const Float3 position = plus(ray.origin, query.ray.tfar, ray.direction);

@@ -1,4 +1,4 @@
-// Rays of the benchmark, and Embree as what they are compared with.
+// Makes the rays of the benchmark, and traces them with Embree for comparison.
 #pragma once
 
 #include <glint/scene_view.h>
@@ -13,7 +13,7 @@ namespace glint::traversal {
 
 using Float3 = std::array<float, 3>;
 
-// As the kernel reads it: scalar layout.
+// The layout is that of the kernel: scalar layout.
 struct Ray {
     Float3 origin;
     Float3 direction;  // unit
@@ -23,25 +23,27 @@ struct Triangle {
     Float3 corners[3];
 };
 
-// Every triangle of every instance in the world, without joints and morph targets.
+// Returns every triangle of every instance in the world. Joints and morph targets are ignored.
 std::vector<Triangle> worldTriangles(const SceneView& scene);
 
-// Rays in tiles of 8 x 8 pixels, tile by tile in a random order, so that the first rays are a sample of all.
+// Makes rays in tiles of 8 x 8 pixels. The tiles are in a random order, so that the first rays are a sample
+// of all.
 inline constexpr std::size_t kTile = 64;
 std::vector<Ray> cameraRays(const CameraView& camera, std::uint32_t width, std::uint32_t height);
 
 class EmbreeScene {
 public:
-    // Aborts where Embree fails.
+    // Aborts if Embree fails.
     explicit EmbreeScene(const std::vector<Triangle>& triangles);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    // The distance of each ray's nearest hit, negative where there is none, from either side of a triangle.
-    // Takes as many threads as the machine runs at once; returns milliseconds.
+    // Finds the distance of each ray's nearest hit, from either side of a triangle; it is negative if there
+    // is none. Uses as many threads as the machine runs at once. Returns milliseconds.
     double trace(std::span<const Ray> rays, std::span<float> distances) const;
-    // Rays from what `rays` hit, in random directions above the surface (by the cosine), in their order.
+    // Returns rays that start where `rays` hit, in random directions above the surface (by the cosine), in
+    // the same order.
     std::vector<Ray> bounces(std::span<const Ray> rays) const;
 
 private:

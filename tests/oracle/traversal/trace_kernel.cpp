@@ -34,7 +34,7 @@ void main() {
 }
 )";
 
-// As the shader has it.
+// The members are those of the shader.
 struct Pushed {
     VkDeviceAddress rays;
     VkDeviceAddress distances;

@@ -1,4 +1,4 @@
-// The device's side of the benchmark: a compute shader that only traces.
+// Runs the benchmark's compute shader on the device. The shader only traces.
 #pragma once
 
 #include "commands.h"
@@ -15,13 +15,13 @@ namespace glint::traversal {
 
 class TraceKernel {
 public:
-    // For scenes of this context, which must outlive it, and up to `rays` rays at a time. `layout`: of any of
-    // the scenes, which all have the same.
+    // Makes a kernel for scenes of this context, which must outlive it, and for up to `rays` rays at a time.
+    // `layout` may be that of any scene, because all have the same.
     static Result<std::unique_ptr<TraceKernel>> create(Context& context, VkDescriptorSetLayout layout,
                                                        std::size_t rays);
 
-    // Device milliseconds. distances() then has each ray's nearest hit, negative where there is none, from
-    // either side of a triangle.
+    // Returns device milliseconds. distances() then has the distance of each ray's nearest hit, from either
+    // side of a triangle; it is negative if there is none.
     Result<double> trace(GpuScene& scene, std::span<const Ray> rays);
     std::span<const float> distances() const;
 

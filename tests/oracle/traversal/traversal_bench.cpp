@@ -1,6 +1,7 @@
-// bench_traversal: rays a second on the first Vulkan device by the order of triangles and instances, for
-// scenes as they are and shuffled, and what Embree makes of the same rays on as many threads. Each round
-// measures everything once, one after the other, so that what else the machine does slows all alike.
+// bench_traversal measures rays per second on the first Vulkan device by the order of triangles and
+// instances, for scenes as they are and shuffled. It compares them with Embree, which traces the same rays
+// with as many threads. Each round measures everything once, one after the other, so that other work on the
+// machine slows all alike.
 #include "cli/camera.h"
 #include "cli/scene_view.h"
 #include "cli/temporary_folder.h"
@@ -41,13 +42,13 @@ struct Arguments {
     std::string markdown;
 };
 
-// An order of a scene's leaves that is measured.
+// An order of a scene's leaves to measure.
 struct Variant {
     const char* name;
     bool shuffled;
     TraversalOrder order;
-    LeafOrder leaves;  // null: the driver's own, halvingOrder()
-    // Triangles and instances are ordered, but each mesh has one BLAS, with its geometries in sequence.
+    LeafOrder leaves;  // null: the driver's order, halvingOrder()
+    // Triangles and instances are ordered, but each mesh has one BLAS with its geometries in sequence.
     bool wholeMeshes = false;
 };
 
@@ -71,7 +72,7 @@ double quantile(std::vector<double> values, double q) {
     return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-// Indices and instances in a random order, which spans of `data` point to afterwards.
+// Puts indices and instances into a random order. Afterwards spans of `data` point to them.
 struct Shuffled {
     explicit Shuffled(SceneViewData& data) {
         std::mt19937_64 random(3);
@@ -95,8 +96,8 @@ struct Shuffled {
     std::vector<std::vector<std::uint32_t>> indices;
 };
 
-// Triangles of each primitive, and instances by their meshes, in the driver's order without its BLAS for each
-// geometry.
+// Orders the triangles of each primitive, and the instances by their meshes, as the driver's order does, but
+// without a BLAS for each geometry.
 struct OrderedMeshes {
     explicit OrderedMeshes(const SceneViewData& data)
         : primitives(data.primitives),
@@ -124,23 +125,24 @@ struct OrderedMeshes {
     std::vector<std::vector<std::uint32_t>> indices;
 };
 
-// Rays that a run takes, and rays a second of its rounds.
+// How many rays a run traces, and the rays per second of each round.
 struct Runs {
     std::size_t rays = 0;
     std::vector<double> rates;
 };
 
-// What is measured of one scene: by the variant's name, camera rays and bounces.
+// The measurements of one scene. The maps have the variant's name as key; `runs` has camera rays, then
+// bounces.
 struct Measured {
     std::string name;
-    std::size_t triangles = 0;  // of all instances
+    std::size_t triangles = 0;  // over all instances
     std::size_t instances = 0;
     std::map<std::string, std::array<Runs, 2>> runs;
     std::map<std::string, double> orderMs;
-    std::map<std::string, double> costs;  // halvedTreeCost() of the primitive with most triangles
-    double unlike = 0.0;  // share of the rays of which device and Embree disagree by more than 1 %
+    std::map<std::string, double> costs;  // halvedTreeCost() of the primitive with the most triangles
+    double unlike = 0.0;  // share of the rays for which device and Embree differ by more than 1 %
 
-    // Rays a second where camera rays and bounces are as many, round by round.
+    // Returns rays per second, round by round, for as many camera rays as bounces.
     std::vector<double> rates(const std::string& variant) const {
         std::vector<double> both;
         const auto& [camera, bounces] = runs.at(variant);
@@ -152,7 +154,7 @@ struct Measured {
     double rate(const std::string& variant) const {
         return quantile(rates(variant), 0.5);
     }
-    // Of the rates in each round.
+    // Returns the ratio of the two rates in each round.
     std::vector<double> ratios(const std::string& of, const std::string& to) const {
         std::vector<double> result = rates(of);
         const std::vector<double> base = rates(to);
@@ -161,7 +163,7 @@ struct Measured {
     }
 };
 
-// Of the driver's tree over the primitive with most triangles.
+// Returns the cost of the driver's tree over the primitive with the most triangles.
 double costOf(const SceneViewData& data, const Variant& variant) {
     const auto largest = std::ranges::max_element(
         data.primitives, {}, [](const PrimitiveView& primitive) { return primitive.indices.size(); });
@@ -174,7 +176,7 @@ double costOf(const SceneViewData& data, const Variant& variant) {
     return test::halvedTreeCost(leaves, order(leaves, 1));
 }
 
-// Compiles as little as there can be: the scene is only uploaded.
+// Compiles as little as possible, because the scene is only uploaded.
 Result<Package> packageOf(const Scene& scene) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
@@ -199,7 +201,7 @@ class SceneBench {
 public:
     SceneBench(Context& context, const Arguments& arguments) : context_(context), arguments_(arguments) {}
 
-    // Nothing where the scene has no triangles that a ray could meet.
+    // Returns nothing if the scene has no triangles that a ray could meet.
     Result<std::optional<Measured>> run(const std::filesystem::path& file) {
         ImportOptions import;
         import.decodeImages = true;
@@ -278,7 +280,7 @@ private:
         return okStatus();
     }
 
-    // Milliseconds of the first `count` rays of a kind; `scene`: null for Embree.
+    // Returns milliseconds for the first `count` rays of a kind. A null `scene` selects Embree.
     Result<double> trace(const EmbreeScene& embree, GpuScene* scene, std::size_t kind, std::size_t count) {
         const std::span<const Ray> rays = std::span(rays_[kind]).first(count);
         if (scene != nullptr) {
@@ -293,7 +295,8 @@ private:
             for (std::size_t kind = 0; kind < rays_.size(); ++kind) {
                 Runs& runs = measured.runs[name][kind];
                 if (first) {
-                    // As many rays as take the time of a run: slow orders would take minutes otherwise.
+                    // Chooses as many rays as take the time of a run, because slow orders would take minutes
+                    // otherwise.
                     runs.rays = std::min<std::size_t>(rays_[kind].size(), 16 * kTile);
                     for (int i = 0; i < 3; ++i) {
                         const Result<double> ms = trace(embree, scene, kind, runs.rays);
@@ -327,7 +330,7 @@ private:
         return compare(embree, measured);
     }
 
-    // Whether both trace the same: else the figures would not be of the same work.
+    // Checks that both find the same hits. Otherwise the figures would compare different work.
     Status compare(const EmbreeScene& embree, Measured& measured) {
         std::size_t unlike = 0;
         std::size_t count = 0;
@@ -352,7 +355,7 @@ private:
     Context& context_;
     const Arguments& arguments_;
     std::array<std::vector<Ray>, 2> rays_;
-    std::vector<std::unique_ptr<GpuScene>> scenes_;  // by kVariants
+    std::vector<std::unique_ptr<GpuScene>> scenes_;  // in the order of kVariants
     std::unique_ptr<TraceKernel> kernel_;
     std::vector<float> distances_;
 };
@@ -393,7 +396,7 @@ std::string row(const Measured& measured) {
                               spread(measured.ratios("halving", kEmbree)), measured.orderMs.at("halving"));
 }
 
-// Of each variant: the slowest scene, and the geometric mean of the ratios to the order of the input.
+// Summarises each variant: the slowest scene, and the geometric mean of the ratios to the order of the input.
 std::string summary(const std::vector<Measured>& all) {
     std::string text =
         "\nOf all scenes; means are geometric. *Tree*: surface of all nodes and leaves of the largest "
@@ -501,7 +504,7 @@ Status benchAll(const Arguments& arguments) {
     return okStatus();
 }
 
-// Every .gltf and .glb in folders of features/ and large/.
+// Returns every .gltf and .glb in the folders of features/ and large/.
 std::vector<std::string> scenesOf(const std::filesystem::path& models) {
     std::vector<std::string> found;
     for (const char* const group : {"features", "large"}) {

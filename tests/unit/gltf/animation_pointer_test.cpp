@@ -1,5 +1,5 @@
-// KHR_animation_pointer: what pointers lead to, what is said of wrong ones, and what planning makes of the
-// values.
+// Tests KHR_animation_pointer: the targets of pointers, the messages about wrong ones, and how planning uses
+// the values.
 #include "gltf/animatable.h"
 #include "gltf/scene_list.h"
 #include "motion/pose.h"
@@ -15,7 +15,7 @@
 namespace glint::test {
 namespace {
 
-// A triangle with a texture, a light and a camera, whose file has an animation of pointers.
+// A file with a triangle, a texture, a light and a camera, and an animation whose channels are pointers.
 struct Pointed {
     Pointed() {
         builder.addTriangle();
@@ -44,7 +44,7 @@ struct Pointed {
         builder.append("animations", {{"samplers", Json::array()}, {"channels", Json::array()}});
     }
 
-    // Adds a channel of keyframes at 0 and 1 s; returns its sampler.
+    // Adds a channel with keyframes at 0 and 1 s. Returns its sampler.
     template <typename T>
     Json& drive(const std::string& pointer, const std::vector<T>& values, int components,
                 bool normalized = false) {
@@ -71,7 +71,7 @@ struct Pointed {
     GltfBuilder builder;
 };
 
-// The scene at a time of its first animation.
+// Returns the scene at a time of its first animation.
 Scene posedAt(Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     applyPose(poseAt(scene, kFirst, time), scene);
@@ -86,7 +86,7 @@ TEST(AnimationPointers, MaterialValuesAreInterpolated) {
     pointed.drive<float>("/materials/0/normalTexture/scale", {1, -3}, 1);
     pointed.drive<float>("/materials/0/normalTexture/extensions/KHR_texture_transform/offset", {0, 0, 2, 4},
                          2);
-    // Out of range: clamped, as the importer does.
+    // A value out of range is clamped, as the importer does.
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/roughnessFactor", {0.5F, 2.5F}, 1);
     const Scene rest = pointed.import();
     EXPECT_TRUE(rest.warnings.empty()) << toString(rest.warnings.front());
@@ -99,14 +99,14 @@ TEST(AnimationPointers, MaterialValuesAreInterpolated) {
     EXPECT_EQ(material.texture(TextureSlot::Normal).transform.offset, (std::array{1.0F, 2.0F}));
     EXPECT_EQ(material.roughnessFactor, 1.0F);
     EXPECT_EQ(material.transmission.factor, 0.0F) << "not animated";
-    // Back to the file's values, however often the scene was posed.
+    // The file's values return, however often the scene was posed.
     Scene again = posedAt(scene, 1.0);
     applyPose(restPose(again), again);
     EXPECT_EQ(again.materials[0].baseColorFactor, rest.materials[0].baseColorFactor);
     EXPECT_EQ(again.materials[0].roughnessFactor, 0.75F);
 }
 
-// Normalised integers are fractions, others are themselves.
+// Normalised integers are fractions. Other integers keep their values.
 TEST(AnimationPointers, IntegersAreWhatTheyAreMarkedAs) {
     Pointed pointed;
     pointed.drive<std::uint8_t>("/materials/0/extensions/KHR_materials_ior/ior", {1, 3}, 1);
@@ -146,7 +146,7 @@ TEST(AnimationPointers, LightsCamerasAndNodesFollow) {
     EXPECT_TRUE(posedAt(rest, 1.0).nodes.at(0).shown);
 }
 
-// Nothing that Glint could change: a note with the pointer, once.
+// Glint can't change anything there, so a note names the pointer once.
 TEST(AnimationPointers, UnknownOnesAreNoted) {
     Pointed pointed;
     pointed.drive<float>("/cameras/0/perspective/aspectRatio", {1, 2}, 1);
@@ -178,7 +178,7 @@ TEST(AnimationPointers, WrongOnesAreWarnedOf) {
         EXPECT_EQ(scene.warnings[0].id, "animation-pointer") << pointer;
         EXPECT_EQ(scene.warnings[0].severity, Severity::Warning) << pointer;
     }
-    // A path without the extension, and a pointer that is none.
+    // One path lacks the extension, and one pointer is malformed.
     Pointed bare;
     bare.drive<float>("/nodes/0/scale", {1, 1, 1, 2, 2, 2}, 3);
     Json& target = bare.builder.root["animations"][0]["channels"][0]["target"];
@@ -214,7 +214,7 @@ TEST(AnimationPointers, AccessorsMustFit) {
 
 // Every property of every slot and extension has its own number, width and setter.
 TEST(AnimationPointers, EveryPropertySetsItsOwnValue) {
-    // 32 factors; offset, rotation and scale of 21 places of textures.
+    // There are 32 factors, and an offset, a rotation and a scale for each of 21 places of textures.
     ASSERT_EQ(materialPropertyCount(), 32 + 3 * 21);
     for (int property = 0; property < materialPropertyCount(); ++property) {
         const std::string below = materialPropertyName(property);
@@ -236,7 +236,8 @@ FeatureMask keyOf(const Scene& scene) {
     return makeKey(list.materials()[0], list.primitives()[0], {});
 }
 
-// A feature whose value passes its neutral one stays, whatever the value is at rest and in the keyframes.
+// A feature stays if its value leaves the neutral one at any time, even if it is neutral at rest and in the
+// keyframes.
 TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     const FeatureMask still = keyOf(Pointed().import());
     EXPECT_EQ(still & (bit(Feature::Clearcoat) | bit(Feature::Transmission) | bit(Feature::Ior) |
@@ -244,8 +245,8 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
               0U);
     Pointed pointed;
     pointed.drive<float>("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor", {0, 1}, 1);
-    // Both neutral at both keyframes, in turn: metal at one, an index of 1.5 at the other. Neither is between
-    // them.
+    // At each keyframe one of the two is neutral: it is metal at one, and has an index of 1.5 at the other.
+    // Between the keyframes neither is.
     pointed.drive<float>("/materials/0/extensions/KHR_materials_ior/ior", {1.5F, 2}, 1);
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/metallicFactor", {0, 1}, 1);
     pointed.drive<float>("/materials/0/normalTexture/extensions/KHR_texture_transform/rotation", {0, 1}, 1);
@@ -257,7 +258,7 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     EXPECT_EQ(key & bit(Feature::Transmission), 0U) << "always 0";
     EXPECT_EQ(scene.animatedMaterials.at(0).changes.size(), 4U);
     EXPECT_EQ(scene.animatedMaterials[0].changes[0].substr(0, 35), "pbrMetallicRoughness/metallicFactor");
-    // At each time the key holds all that the key of the values of that time does.
+    // At each time the key contains the whole key of that time's values.
     for (const double time : {0.0, 0.25, 0.5, 1.0}) {
         Scene plain = posedAt(scene, time);
         plain.animatedMaterials.clear();
@@ -265,7 +266,7 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     }
 }
 
-// A value that never changes is no animated one.
+// A value that never changes is not animated.
 TEST(AnimationPlanning, ConstantKeyframesAreConstants) {
     Pointed pointed;
     pointed.drive<float>("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor", {0, 0}, 1);
@@ -275,7 +276,7 @@ TEST(AnimationPlanning, ConstantKeyframesAreConstants) {
     EXPECT_TRUE(scene.animatedMaterials.at(0).changes.empty());
 }
 
-// A spline may leave the span of its keyframes.
+// A spline may exceed the values of its keyframes.
 TEST(AnimationPlanning, SplinesOvershoot) {
     Pointed pointed;
     pointed.drive<float>("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor",

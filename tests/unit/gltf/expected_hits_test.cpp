@@ -10,7 +10,7 @@
 namespace glint::test {
 namespace {
 
-// Returns a square of side 1 in the plane z = 0, or of another size.
+// Returns a square in the plane z = 0, of side 1 or of another size.
 Primitive square(float side = 1.0F) {
     Primitive primitive;
     primitive.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};

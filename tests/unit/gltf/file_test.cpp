@@ -85,7 +85,7 @@ TEST(GltfFiles, FollowsLinksUnlessPathsAreStrict) {
         EXPECT_TRUE(refused.error().where.ends_with("scene.gltf#/buffers/0/uri"));
     }
     EXPECT_TRUE(importWithUri(folder, "inner.bin", {.strictPaths = true}).ok());
-    // The link to the scene itself is what the caller has named.
+    // The caller has named the link to the scene itself, so it is followed.
     fs::create_directories(folder.path() / "forest");
     fs::create_symlink(scenes / "scene.gltf", folder.path() / "forest/scene.gltf");
     fs::create_symlink(scenes / "a.bin", folder.path() / "forest/inner.bin");
@@ -109,7 +109,7 @@ TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
     const Result<Scene> tooShort = import(builder);
     ASSERT_FALSE(tooShort.ok());
     EXPECT_EQ(tooShort.error().id, "buffer-size");
-    // A buffer without a URI is valid: others may bring its data. Glint has none to draw.
+    // A buffer without a URI is valid, because others may bring its data. Glint has no data to draw then.
     builder.root["buffers"][0].erase("uri");
     const Result<Scene> without = import(builder);
     ASSERT_TRUE(without.ok()) << toString(without.error());

@@ -1,4 +1,4 @@
-// Accessors, indices, modes and attributes.
+// Tests accessors, indices, modes and attributes.
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -171,7 +171,7 @@ TEST(GltfGeometry, AppliesSparseAccessors) {
         {"values", {{"bufferView", builder.addView(values, sizeof values)}}}};
     EXPECT_EQ(onlyPrimitive(import(builder)).positions,
               (std::vector<Float3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
-    // Without a buffer view, the base is zeros.
+    // Without a buffer view, the base consists of zeros.
     builder.root["accessors"][0].erase("bufferView");
     EXPECT_EQ(onlyPrimitive(import(builder)).positions[0], (Float3{0, 0, 0}));
     EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (Float3{8, 9, 10}));

@@ -1,4 +1,5 @@
-// Image formats: PNG of every kind, WebP, and which source of a texture is taken. KTX2 is in ktx2_test.cpp.
+// Tests image formats: PNG of every kind, WebP, and which source of a texture is used. ktx2_test.cpp tests
+// KTX2.
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 

@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing and KHR_node_visibility: what is read, and what planning sees of it.
+// Tests EXT_mesh_gpu_instancing and KHR_node_visibility: what is read, and how planning sees it.
 #include "gltf/transform.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -10,7 +10,7 @@
 namespace glint::test {
 namespace {
 
-// A triangle that the attributes place.
+// A triangle whose placements the attributes give.
 struct Instanced {
     Instanced() {
         builder.addTriangle();
@@ -39,7 +39,7 @@ TEST(GltfInstancing, ComposesTranslationRotationAndScale) {
     Instanced instanced;
     instanced.attributes()["TRANSLATION"] =
         instanced.builder.addAccessor(std::vector<float>{1, 2, 3, 4, 5, 6}, 3);
-    // A quarter turn about Z in 16 bits, and none.
+    // One rotation is a quarter turn about Z in 16 bits, and the other is none.
     instanced.attributes()["ROTATION"] =
         instanced.builder.addAccessor(std::vector<std::int16_t>{0, 0, 23170, 23170, 0, 0, 0, 32767}, 4, true);
     instanced.attributes()["SCALE"] = instanced.builder.addAccessor(std::vector<float>{2, 3, 4, 1, 1, 1}, 3);
@@ -104,7 +104,7 @@ TEST(GltfInstancing, IsChecked) {
     EXPECT_EQ(countWarnings(infinite.import(), "attribute-not-finite"), 1U);
 }
 
-// Shares of hits: 4000 small ones are as many as they are, though only some of them are looked at.
+// 4000 small instances count fully in the shares of hits, although only some of them are examined.
 TEST(GltfInstancing, CountsForExpectedHits) {
     Instanced instanced;
     std::vector<float> places;
@@ -138,7 +138,7 @@ TEST(GltfVisibility, HidesANodeAndAllBelow) {
     EXPECT_FALSE(below.canShow);
     EXPECT_FALSE(scene->lights.at(0).shines());
     EXPECT_FALSE(scene->lights.at(0).canShine);
-    // The default is visible; another type is an error.
+    // The default is visible. A value of another type is an error.
     builder.root["nodes"][1]["extensions"]["KHR_node_visibility"] = Json::object();
     EXPECT_TRUE(import(builder)->nodes.at(1).shown);
     builder.root["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = 0;

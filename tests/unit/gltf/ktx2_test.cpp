@@ -1,5 +1,5 @@
-// KTX2 images (KHR_texture_basisu): what is decoded, what is refused and why, and which source of a texture
-// is taken. The files were made by ktx2/make.py.
+// Tests KTX2 images (KHR_texture_basisu): which are decoded, which are refused and why, and which source of a
+// texture is used. ktx2/make.py made the files.
 #include "gltf/ktx2.h"
 
 #include "gltf/basisu.h"
@@ -28,7 +28,7 @@ Bytes readKtx2File(const std::string& name) {
     return bytes ? *bytes : Bytes();
 }
 
-// A scene whose base colour is that KTX2 image and nothing else.
+// Returns a scene whose base colour is that KTX2 image, without a fallback.
 GltfBuilder basisuScene(const Bytes& bytes) {
     GltfBuilder builder = sceneWithImage(bytes, "image/ktx2");
     builder.root["extensionsUsed"] = Json::array({"KHR_texture_basisu"});
@@ -48,7 +48,7 @@ std::size_t wordAt(const Bytes& bytes, std::size_t offset) {
     return bytes.at(offset) | std::size_t{bytes.at(offset + 1)} << 8U;
 }
 
-// The pixel of a level.
+// Returns the pixel of a level.
 std::array<int, 4> pixelAt(const Image& image, int level, int x, int y) {
     std::size_t offset = 0;
     for (int i = 0; i < level; ++i) {
@@ -59,7 +59,7 @@ std::array<int, 4> pixelAt(const Image& image, int level, int x, int y) {
             image.pixels.at(offset + 3)};
 }
 
-// Whether no channel is further off than that.
+// Expects every channel to be within the tolerance.
 ::testing::AssertionResult isNear(const std::array<int, 4>& pixel, const std::array<int, 4>& expected,
                                   int tolerance) {
     for (std::size_t channel = 0; channel < 4; ++channel) {
@@ -72,7 +72,7 @@ std::array<int, 4> pixelAt(const Image& image, int level, int x, int y) {
     return ::testing::AssertionSuccess();
 }
 
-// What a test of pixels needs; other tests run in every build.
+// Tests of pixels need the transcoder. Other tests run in every build.
 class GltfKtx2 : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -92,7 +92,8 @@ protected:
     }
 };
 
-// Four areas of one colour. ETC1S keeps 5 bits of a colour and one of 8 steps of light around it.
+// The picture has four areas of one colour each. ETC1S keeps 5 bits of a colour and one of 8 steps of light
+// around it.
 TEST_F(GltfKtx2, DecodesEveryKindOfData) {
     struct Kind {
         const char* name;
@@ -120,7 +121,8 @@ TEST_F(GltfKtx2, DecodesEveryKindOfData) {
     }
 }
 
-// Buffer views start anywhere; the transcoder reads structures, which builds with sanitizers check.
+// Buffer views may start at any byte. The transcoder reads structures, whose alignment builds with sanitizers
+// check.
 TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
     for (const std::size_t padding : {std::size_t{1}, std::size_t{6}}) {
         const Bytes bytes = readKtx2File("uastc_linear");
@@ -162,8 +164,8 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     EXPECT_TRUE(scene->warnings.empty());
 }
 
-// Pixels that are damaged behind a sound header are decoded or refused; the memory stays sound, which builds
-// with AddressSanitizer see.
+// Damaged pixels behind a valid header are decoded or refused. The memory stays intact, which builds with
+// AddressSanitizer check.
 TEST_F(GltfKtx2, SurvivesDamage) {
     std::mt19937 random(7);
     int refused = 0;
@@ -196,7 +198,7 @@ TEST_F(GltfKtx2, SurvivesDamage) {
 
 using Change = std::function<void(Bytes&)>;
 
-// What the header of the file is refused for, after a change; "" where it is not.
+// Returns why the header of the file is refused after a change, or "" if it is not.
 std::string problemOf(const std::string& name, const Change& change) {
     Bytes bytes = readKtx2File(name);
     change(bytes);
@@ -206,7 +208,7 @@ std::string problemOf(const std::string& name, const Change& change) {
     return problem;
 }
 
-// The data format descriptor, and the global data.
+// These return the places of the data format descriptor and of the global data.
 std::size_t descriptor(const Bytes& bytes) {
     return wordAt(bytes, 48);
 }
@@ -253,11 +255,11 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
         {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 4, 0xFFFFFFFFU); }, "global data"},
         {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 24, 1000); }, "level 0"},
         {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 28, 0); }, "level 0"},
-        // An offset that wraps with the length.
+        // The offset plus the length wraps.
         {"etc1s", [](Bytes& b) { std::fill_n(b.begin() + kLevelIndex, 8, std::uint8_t{0xFF}); }, "level 0"},
         {"etc1s", [](Bytes& b) { setWord(b, kLevelIndex + 8, 1000); }, "level 0"},
         {"etc1s", [](Bytes& b) { setWord(b, kLevelIndex + 16, 4); }, "level 0"},
-        // Zstandard data that say they are more than their blocks.
+        // The Zstandard data claim to be larger than their blocks.
         {"uastc_zstd_steps", [](Bytes& b) { setWord(b, kLevelIndex + 24 + 16, 0x7FFFFFFFU); }, "level 1"},
         {"uastc_linear", [](Bytes& b) { setWord(b, kLevelIndex + 8, 64); }, "level 0"},
         {"uastc_linear",
@@ -294,7 +296,7 @@ TEST(GltfKtx2Header, DeviationsAreTold) {
     EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 28 + 3) = 3; }).find("gray"),
               std::string::npos);
     EXPECT_NE(deviationsOf([](Bytes& b) { setWord(b, 20, 15); }).find("multiples of 4"), std::string::npos);
-    // The one pair that the files have, "KTXwriter", is as long as these.
+    // The files have one pair, "KTXwriter". It is as long as these.
     const auto rename = [](const std::string& pair) {
         return [pair](Bytes& b) {
             std::copy(pair.begin(), pair.end(), b.begin() + static_cast<std::ptrdiff_t>(wordAt(b, 56) + 4));
@@ -308,7 +310,7 @@ TEST(GltfKtx2Header, DeviationsAreTold) {
     EXPECT_NE(problemOf("etc1s", rename("KTXanimData\0"s)).find("video"), std::string::npos);
 }
 
-// The transfer function of a file should be that of its use.
+// The transfer function that a file declares should match its use.
 TEST_F(GltfKtx2, OtherUseThanTheFileSaysIsAWarning) {
     const auto warningOf = [](const std::string& name, bool asColor) {
         GltfBuilder builder = basisuScene(readKtx2File(name));

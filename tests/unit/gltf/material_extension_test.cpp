@@ -113,7 +113,7 @@ TEST(GltfMaterialExtensions, AreReadToTheLastValue) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
-// The place of each slot's texture: the extension (or "pbrMetallicRoughness", or "") and the member.
+// The place of each slot's texture: its owner (the extension, "pbrMetallicRoughness", or "") and the member.
 struct SlotPlace {
     const char* owner;
     const char* member;

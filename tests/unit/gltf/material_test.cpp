@@ -1,4 +1,4 @@
-// Materials, textures, images and extensions.
+// Tests materials, textures, images and extensions.
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -140,7 +140,7 @@ TEST(GltfMaterials, LeavesOutUvSetsBeyondTheSecond) {
     EXPECT_EQ(countWarnings(scene, "texture-uv-set"), 1U);
 }
 
-// A texture without an image is as if it were not there.
+// A texture without an image is treated as absent.
 TEST(GltfMaterials, NotesTexturesWithoutASource) {
     GltfBuilder builder;
     builder.addTriangle();
@@ -152,7 +152,7 @@ TEST(GltfMaterials, NotesTexturesWithoutASource) {
     EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
 }
 
-// Required or not: one note names all of them.
+// One note names all of them, whether they are required or not.
 TEST(GltfMaterials, NotesExtensionsThatChangeNoPictureOnce) {
     GltfBuilder builder;
     builder.addTriangle();

@@ -1,4 +1,4 @@
-// Scenes by others: each imports, or ends in a diagnostic that says why.
+// Tests scenes by others: each is imported, or causes a diagnostic that says why not.
 #include "support/models.h"
 
 #include "gltf/basisu.h"
@@ -103,7 +103,7 @@ TEST(GltfModels, AllImport) {
     }
 }
 
-// Its four textures are KTX2 without a fallback.
+// The lamp's four textures are KTX2 without a fallback.
 TEST(GltfModels, LampHasItsKtx2Textures) {
     const fs::path path = kModels / "features/AnisotropyBarnLamp-ktx2/AnisotropyBarnLamp.gltf";
     if (!gltf::hasBasisu() || !fs::exists(path)) {
@@ -113,7 +113,7 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
     ASSERT_EQ(scene->images.size(), 4U);
-    // Copper, normals that point out of the surface: the means of their channels.
+    // The means of the channels show copper, and normals that point out of the surface.
     const auto meanOf = [](const Image& image, std::size_t channel) {
         double sum = 0;
         for (std::size_t i = channel; i < image.pixels.size(); i += 4) {
@@ -134,7 +134,7 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
     EXPECT_GT(meanOf(normals, 2), 250);
 }
 
-// Whatever material extension the samples use is shaded: none is left out for want of support.
+// Every material extension in the samples is shaded. None is left out because Glint lacks it.
 TEST(GltfModels, EveryMaterialExtensionIsShaded) {
     const std::vector<fs::path> models = findModels(kModels / "features");
     if (models.empty()) {
@@ -144,7 +144,7 @@ TEST(GltfModels, EveryMaterialExtensionIsShaded) {
     for (const fs::path& path : models) {
         const Result<Scene> scene = importScene(path);
         if (!scene) {
-            continue;  // another test says why
+            continue;  // another test covers it
         }
         for (const Material& material : scene->materials) {
             EXPECT_TRUE(material.unsupportedExtensions.empty()) << path << ": " << material.name;
@@ -179,7 +179,8 @@ TEST(GltfModels, InvalidFilesAreExplained) {
     }
 }
 
-// Files in which the glTF validator finds no error, as verdicts.csv has them: "file,validator_errors,codes".
+// Returns the files in which the glTF validator finds no error. verdicts.csv lists them as
+// "file,validator_errors,codes".
 std::vector<std::string> validFiles(const fs::path& verdicts) {
     std::vector<std::string> files;
     std::ifstream lines(verdicts);
@@ -197,7 +198,7 @@ TEST(GltfModels, ValidFilesAreRead) {
     if (files.empty()) {
         GTEST_SKIP() << "no verdicts in " << kModels;
     }
-    // Of glTF 2.1, by its "minVersion".
+    // Its "minVersion" asks for glTF 2.1.
     const std::map<std::string, std::string> refused{{"asset/min_version_valid.gltf", "asset-version"}};
     for (const std::string& file : files) {
         for (const bool decodeImages : {false, true}) {

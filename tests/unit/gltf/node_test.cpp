@@ -1,4 +1,4 @@
-// Hierarchy, transforms, cameras, lights.
+// Tests hierarchy, transforms, cameras and lights.
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -220,7 +220,7 @@ TEST(GltfLights, WarnOfWhatTheExtensionForbids) {
     EXPECT_EQ(rangeWarnings, 1U);
     EXPECT_EQ(lightAndWarnings(R"("range": -3)").first.range, 0.0F);
     EXPECT_EQ(lightAndWarnings(R"("range": 0.5)").second, 0U);
-    // The hue stays.
+    // The hue is unchanged.
     const auto [bright, colorWarnings] = lightAndWarnings(R"("color": [1, 2, 4])");
     EXPECT_EQ(bright.color, (Float3{1, 2, 4}));
     EXPECT_EQ(colorWarnings, 2U);

@@ -13,7 +13,7 @@ void appendBigEndian(Bytes& bytes, std::uint32_t value) {
     }
 }
 
-// ISO 3309, as PNG's annex D gives it.
+// The algorithm is in ISO 3309 and in PNG's annex D.
 std::uint32_t crc32(const Bytes& bytes) {
     std::uint32_t crc = 0xFFFFFFFFU;
     for (const std::uint8_t byte : bytes) {
@@ -33,7 +33,7 @@ void appendChunk(Bytes& png, const std::string& type, const Bytes& content) {
     appendBigEndian(png, crc32(body));
 }
 
-// RFC 1950 and 1951 with stored blocks.
+// The format is that of RFC 1950 and 1951, with stored blocks.
 Bytes storeZlib(const Bytes& data) {
     constexpr std::size_t kLargestBlock = 65535;
     Bytes stream{0x78, 0x01};

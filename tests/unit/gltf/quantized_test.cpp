@@ -79,7 +79,7 @@ TYPED_TEST(GltfQuantizedFrames, NormalsAndTangentsAreUnit) {
     EXPECT_TRUE(scene->warnings.empty());
 }
 
-// UVs that are not normalised come with the transform that scales them back.
+// UVs that are not normalised have a transform that scales them back.
 TEST(GltfQuantizedTextures, KeepTheirTransform) {
     GltfBuilder builder = quantizedScene();
     builder.root["extensionsUsed"].push_back("KHR_texture_transform");

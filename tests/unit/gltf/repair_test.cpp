@@ -51,7 +51,7 @@ TEST(GltfRepair, MakesTangentsUnitAndSigned) {
     EXPECT_EQ(read.tangents[1], (Float4{0, 1, 0, 1}));
     const Float4& made = read.tangents[2];
     EXPECT_FLOAT_EQ(std::hypot(made[0], made[1], made[2]), 1.0F);
-    EXPECT_FLOAT_EQ(made[0], 0.0F);  // at right angles to its normal, +X
+    EXPECT_FLOAT_EQ(made[0], 0.0F);  // +X, at right angles to its normal
     EXPECT_EQ(made[3], 1.0F);
     EXPECT_EQ(countWarnings(*scene, "tangent-invalid"), 1U);
 }
@@ -166,7 +166,7 @@ TEST(GltfRepair, VectorsOfAnyLengthBecomeUnit) {
     }
 }
 
-// Tests the geometric normal of a triangle as large as floats allow, and of one as small.
+// Tests the geometric normal of the largest triangle that floats allow, and of the smallest.
 TEST(GltfRepair, SubstitutesAreUnitAtEveryScale) {
     for (const float size : {1e-38F, 1e38F, kHuge}) {
         GltfBuilder builder;

@@ -1,4 +1,4 @@
-// KHR_materials_variants.
+// Tests KHR_materials_variants.
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 namespace glint::test {
 namespace {
 
-// Returns three triangles: material 0 with another one in both variants, material 0 with another one only in
-// Night, and no material.
+// Returns three triangles. The first has material 0, and another one in both variants. The second has
+// material 0, and another one only in Night. The third has no material.
 GltfBuilder withVariants() {
     GltfBuilder builder;
     for (const char* name : {"plain", "red", "blue"}) {

@@ -1,4 +1,4 @@
-// Orders for drivers that halve what they are given: what tree comes of them, without a device.
+// Tests orders for drivers that halve the leaves they are given: the trees that result, without a device.
 #include "leaf_order.h"
 
 #include "support/halved_tree.h"
@@ -31,7 +31,7 @@ LeafBox boxAround(const std::array<float, 3>& centre, float size) {
     return box;
 }
 
-// A hilly square of width x width quads, whose triangles come row by row.
+// A hilly square of width x width quads. Its triangles are in the order of the rows.
 struct Hills {
     explicit Hills(std::uint32_t width) {
         for (std::uint32_t y = 0; y <= width; ++y) {
@@ -80,7 +80,7 @@ TEST(LeafOrder, HasEachLeafOnce) {
     for (std::size_t count = 0; count < 70; ++count) {
         std::vector<LeafBox> leaves;
         for (std::size_t i = 0; i < count; ++i) {
-            // Some at the same place.
+            // Some leaves are at the same place.
             const float x = i % 7 == 0 ? 0.0F : place(random);
             leaves.push_back(boxAround({x, place(random) * x, 0.0F}, 0.01F));
         }
@@ -90,7 +90,7 @@ TEST(LeafOrder, HasEachLeafOnce) {
     }
 }
 
-// What decides how long rays take: not the order that the leaves had.
+// The cost of the tree decides how long rays take. It must not depend on the order that the leaves had.
 TEST(LeafOrder, ShuffledLeavesMakeATreeAsSmall) {
     Hills hills(64);
     const std::vector<LeafBox> leaves = hills.boxes();
@@ -114,7 +114,7 @@ TEST(LeafOrder, DoesNotDependOnThreads) {
     EXPECT_EQ(halvingOrder(leaves, 7), alone);
 }
 
-// A few triangles of a floor among many small ones are kept to themselves.
+// A few triangles of a floor among many small ones are kept apart.
 TEST(LeafOrder, LargeLeavesDoNotWidenTheOthers) {
     Hills hills(32);
     std::vector<LeafBox> leaves = hills.boxes();
@@ -123,7 +123,7 @@ TEST(LeafOrder, LargeLeavesDoNotWidenTheOthers) {
         leaves.insert(leaves.begin() + 200 * i, boxAround({0.5F, 0.0F, 0.5F}, 0.5F));
     }
     const double together = halvedTreeCost(leaves, halvingOrder(leaves, 1));
-    // They are met by every ray, and so are the nodes above them: 8 leaves, 7 nodes and some 8 levels.
+    // Every ray meets them and the nodes above them: 8 leaves, 7 nodes and some 8 levels.
     EXPECT_LT(together, alone + 8 + 7 + 10);
 }
 
@@ -137,7 +137,8 @@ TEST(LeafOrder, PairsOfFewAreTheSmallest) {
     EXPECT_EQ(std::min(pairs[0], pairs[1]) + std::max(pairs[0], pairs[1]), 2U);
 }
 
-// A node's box is made of its halves' by comparisons that a NaN on the right wins: it must not get there.
+// The driver merges the boxes of two halves by comparisons in which a NaN on the right wins, so a NaN must
+// not get there.
 TEST(LeafOrder, WhatIsNotFiniteComesFirst) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -196,8 +197,8 @@ TEST(TraversalOrder, PermutesWholeTriangles) {
     }
 }
 
-// Of primitives that share an array of vertices each is placed by those that it uses, in the pose that is
-// asked for.
+// A primitive that shares an array of vertices is placed only by the vertices that it uses, in the current
+// pose.
 TEST(TraversalOrder, OrdersInstancesByWhereTheyAre) {
     constexpr std::size_t kCount = 256;
     Hills hills(2);
