@@ -81,7 +81,9 @@ bool holdsBytes(const fs::path& path, const Bytes& bytes) {
 }
 
 bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
-    const auto unchanged = [&](const PackageFile& file) { return holdsBytes(folder / file.name, file.bytes); };
+    const auto unchanged = [&](const PackageFile& file) {
+        return holdsBytes(folder / file.name, file.bytes);
+    };
     const auto isPart = [&](const std::string& name) {
         return std::ranges::find(package.files, name, &PackageFile::name) != package.files.end();
     };
