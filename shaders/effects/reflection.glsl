@@ -35,7 +35,7 @@ bool isMirror(float roughness) {
 }
 
 // The mirror direction about the shading normal. If it points below the geometric surface, it is lifted to leave it by
-// at least 1e-3 (a tenth of a degree), so that no ray starts into its own surface.
+// at least 1e-3 (about a twentieth of a degree), so that no ray starts into its own surface.
 vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
     vec3 direction = reflect(incoming, normal);
     float height = dot(direction, geometricNormal);
