@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures traversal by the order of triangles and instances, and with Embree, on every scene of a folder. It makes the
-# table of docs/performance.md, "Traversal on a CPU driver". It takes some 8 minutes on 2 idle cores.
+# table of docs/performance.md, "Traversal on a CPU driver". It takes some 3 minutes on 2 idle cores.
 #   scripts/measure_traversal.sh [OUTPUT]      default: out/traversal
 # GLINT_MODELS: the folder of scenes (default: ../shared/models). GLINT_BUILD: a configured build folder (default:
 # build/release). GLINT_ROUNDS: rounds (default: 7).

@@ -371,9 +371,9 @@ std::string spread(const std::vector<double>& values) {
 
 std::string head(const Context& context, const Arguments& arguments) {
     std::string text = fmt::format(
-        "{}, {}; {} threads; {} rounds. Thousands of rays a second, medians; *ratio*: of the rounds, median "
-        "and "
-        "quartiles.\n\n| scene | triangles | instances |",
+        "{}, {}; {} threads; {} rounds. Rates are medians, in thousands of rays per second. Ratios are "
+        "medians "
+        "of the rounds' ratios, with quartiles.\n\n| scene | triangles | instances |",
         context.deviceName(), context.driverName(), std::thread::hardware_concurrency(), arguments.rounds);
     std::string rule = "|---|---|---|";
     for (const Variant& variant : kVariants) {
@@ -381,7 +381,8 @@ std::string head(const Context& context, const Arguments& arguments) {
         rule += "---|";
     }
     return text +
-           " Embree | halving to input | shuffled to not, halving | halving to Embree | ordering, ms |\n" +
+           " Embree | halving / input | halving: shuffled / not shuffled | halving / Embree | sorting, ms "
+           "|\n" +
            rule + "---|---|---|---|---|\n";
 }
 
@@ -399,9 +400,10 @@ std::string row(const Measured& measured) {
 // Summarises each variant: the slowest scene, and the geometric mean of the ratios to the order of the input.
 std::string summary(const std::vector<Measured>& all) {
     std::string text =
-        "\nOf all scenes; means are geometric. *Tree*: surface of all nodes and leaves of the largest "
-        "primitive's tree.\n\n"
-        "| order | slowest scene, thousands | rays, of input | rays, of Embree | tree, of input | ordering, "
+        "\nGeometric means over all scenes. *tree* is the surface of all nodes and leaves in the tree of the "
+        "largest primitive.\n\n"
+        "| order | slowest scene, thousands of rays/s | rays / input | rays / Embree | tree / input | "
+        "sorting, "
         "ms |\n"
         "|---|---|---|---|---|---|\n";
     for (const Variant& variant : kVariants) {
