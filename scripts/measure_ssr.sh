@@ -40,7 +40,7 @@ field() {
 for scene in "$@"; do
     name=$(basename "${scene%.*}")
     package=$work/$name.glint
-    "$bin/glint" compile "$scene" -o "$package" --strategy uber --merge all > /dev/null 2>&1
+    "$bin/glint" compile "$scene" -o "$package" --strategy uber --merge all --effects shadow,reflection > /dev/null 2>&1
     render() {
         "$bin/glint" render "$scene" --package "$package" --strategy uber --size 320x180 "${options[@]}" "$@" 2> /dev/null
     }

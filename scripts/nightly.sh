@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs what takes too long for every change: all combinations of settings, clang-tidy, and fuzzing up to a number of
-# executions.
+# Runs what takes too long for every change: all combinations of settings, every command with sanitizers over every
+# scene, clang-tidy, and fuzzing up to a number of executions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -10,20 +10,21 @@ usage: scripts/nightly.sh [PART…]
 
 Sets up, builds, and runs all parts, or those that are named:
 
-  sweep   test_combinations with every strategy, tracer, merge policy, placement of
-          shadows, ordering and binning, where scripts/test.sh takes every pair of values
-  lint    scripts/lint.sh
-  fuzz    scripts/fuzz.sh --executions 10000000
+  sweep     test_combinations with every strategy, tracer, merge policy, placement of
+            shadows, ordering and binning, where scripts/test.sh takes every pair of values
+  sanitize  scripts/sanitize.sh --all
+  lint      scripts/lint.sh
+  fuzz      scripts/fuzz.sh --executions 10000000
 TEXT
 }
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep lint fuzz)
+    parts=(sweep sanitize lint fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | lint | fuzz) ;;
+        sweep | sanitize | lint | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -43,6 +44,7 @@ for part in "${parts[@]}"; do
             cmake --build --preset release --target test_combinations
             GLINT_NIGHTLY=1 build/release/tests/test_combinations
             ;;
+        sanitize) scripts/sanitize.sh --all ;;
         lint) scripts/lint.sh ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;
     esac

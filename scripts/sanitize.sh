@@ -5,23 +5,33 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/sanitize.sh
+usage: scripts/sanitize.sh [--all]
 
 Builds the command and the replays of tests/fuzz with both sanitizers (preset sanitize, which needs Clang:
 scripts/setup.sh --sanitize) and runs
   - every file of tests/fuzz/corpus through the reader that it was made for, and through the command;
-  - every command over the example scenes, and over those of scripts/models.sh where they are; render with each
-    strategy.
+  - every command over the example scenes, with each strategy;
+  - explain, compile and render over the scenes of scripts/models.sh where they are; each scene is rendered with one of
+    the strategies in turn. With --all, these get every command and strategy, too (scripts/nightly.sh).
 Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
 with a diagnostic.
 TEXT
 }
 
-if [[ $# -gt 0 ]]; then
-    usage
-    [[ $1 == -h || $1 == --help ]] && exit 0
-    exit 2
-fi
+all=false
+for argument in "$@"; do
+    case $argument in
+        --all) all=true ;;
+        -h | --help)
+            usage
+            exit 0
+            ;;
+        *)
+            usage >&2
+            exit 2
+            ;;
+    esac
+done
 
 build=build/sanitize
 # The command has no such exit code, so that a report is noticed whatever the command would have returned.
@@ -84,6 +94,16 @@ check_scene() {
     rm -rf "$package"
 }
 
+# check_scene_quickly STRATEGY:SCENE: runs what most scenes differ in, with one strategy.
+check_scene_quickly() {
+    local strategy=${1%%:*} scene=${1#*:} glint=$build/bin/glint package
+    package=$(mktemp -d "$work/packages/XXXXXX")
+    check 0 "$glint" explain "$scene" --plan --merge auto
+    check 0 "$glint" compile "$scene" -o "$package/a" --strategy "$strategy" --lock "$package/ids.lock"
+    check 0 "$glint" render "$scene" -o "$package/a.exr" --package "$package/a" --size 32x18 --strategy "$strategy"
+    rm -rf "$package"
+}
+
 # check_farm SCENE…: runs the commands that build several scenes, and modules one by one.
 check_farm() {
     local glint=$build/bin/glint folder=$work/farm
@@ -143,7 +163,7 @@ each() {
 }
 
 export build work
-export -f check check_scene check_input
+export -f check check_scene check_scene_quickly check_input
 
 say "replays of the corpus"
 for folder in tests/fuzz/corpus/*; do
@@ -159,17 +179,33 @@ check 0 "$build/bin/gallery" "$work/gallery"
 say "a plan of two scenes, by Ninja"
 check_farm examples/cmake-consumer/scene/cubes.gltf "$work/gallery/gallery.gltf"
 
+# scenes_in FOLDER…: prints the scenes, with a 0 byte behind each. A scene with only KTX2 textures is an error in a build
+# without the transcoder.
+scenes_in() {
+    local without=()
+    if "$build/bin/glint" --version | grep -q 'KTX2.*not built in'; then
+        without=(! -path '*-ktx2/*')
+    fi
+    find "$@" \( -name '*.gltf' -o -name '*.glb' \) "${without[@]}" -print0 2>/dev/null || true
+}
+
 # The gallery comes first, because it takes longest.
-mapfile -d '' scenes < <(find "$work/gallery" "$models/large" examples "$models/features" \
-    \( -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
-# A scene with only KTX2 textures is an error in a build without the transcoder.
-if "$build/bin/glint" --version | grep -q 'KTX2.*not built in'; then
-    for i in "${!scenes[@]}"; do
-        [[ ${scenes[i]} == *-ktx2/* ]] && unset "scenes[i]"
-    done
+mapfile -d '' scenes < <(scenes_in "$work/gallery" examples)
+mapfile -d '' others < <(scenes_in "$models/large" "$models/features")
+if [[ $all == true ]]; then
+    scenes+=("${others[@]}")
+    others=()
 fi
 say "${#scenes[@]} scenes through every command"
 each 1 check_scene "${scenes[@]}"
+if [[ ${#others[@]} -gt 0 ]]; then
+    strategies=(uber visibility sorted-uber hit-shaders)
+    for i in "${!others[@]}"; do
+        others[i]=${strategies[i % 4]}:${others[i]}
+    done
+    say "${#others[@]} scenes through explain, compile and render"
+    each 1 check_scene_quickly "${others[@]}"
+fi
 
 if [[ -n $(ls "$work/failed") ]]; then
     cat "$work"/failed/*

@@ -42,17 +42,17 @@ inline constexpr StrategyConstants kGpu[] = {
 };
 
 // llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)
-//     uber           32 points, estimates off by 29.4 % (median), 69.2 % at most
-//     sorted-uber    32 points, estimates off by 48.1 % (median), 111.1 % at most
-//     visibility     32 points, estimates off by 43.1 % (median), 89.6 % at most
-//     hit-shaders    32 points, estimates off by 29.3 % (median), 68.5 % at most
-//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.0 % (median),
-//     1.5 % at most; within 5 % at 100.0 % of 32 points
+//     uber           32 points, estimates off by 17.1 % (median), 84.1 % at most
+//     sorted-uber    32 points, estimates off by 45.5 % (median), 98.2 % at most
+//     visibility     32 points, estimates off by 47.2 % (median), 97.9 % at most
+//     hit-shaders    32 points, estimates off by 23.1 % (median), 90.3 % at most
+//     what auto takes over the fastest, less 1, of constants fitted to other scenes: 0.8 % (median),
+//     15.1 % at most; within 5 % at 65.6 % of 32 points
 inline constexpr StrategyConstants kCpu[] = {
-    {"uber", {0.0, 0.0, 93.63, 52.74, 0.0, 29.23, 0.0, 0.0, 36.53}},
-    {"sorted-uber", {0.2256, 0.0, 63.03, 142.0, 17.47, 49.3, 0.0, 3.117, 0.0}},
-    {"visibility", {0.357, 0.0308, 31.44, 152.7, 30.58, 52.24, 0.0, 0.0, 0.0}},
-    {"hit-shaders", {0.0, 0.0, 102.3, 72.86, 0.0, 36.66, 0.0, 0.0, 43.11}},
+    {"uber", {0.28, 0.0, 193.2, 76.75, 0.0, 0.0, 0.0, 0.0, 39.83}},
+    {"sorted-uber", {1.221, 0.0, 72.43, 158.6, 21.15, 49.43, 0.0, 0.0, 0.0}},
+    {"visibility", {1.048, 0.05763, 86.81, 161.5, 18.01, 43.05, 0.0, 0.0, 0.0}},
+    {"hit-shaders", {0.05036, 0.0, 205.1, 58.87, 0.0, 4.011, 0.0, 0.0, 48.81}},
 };
 
 inline constexpr DeviceRow kDevices[] = {
