@@ -14,7 +14,7 @@ import sys
 
 import xxhash
 
-HEADER_BYTES = 72
+HEADER_BYTES = 80
 CONTENT_HASH = slice(24, 32)
 SECTION = struct.Struct("<IIQQ")  # kind, bytes of an element, offset, number of elements
 MODULE = struct.Struct("<IIIIIIQQ")  # role, index, tracer, pad, offset and length of the file's name, bytes, hash
