@@ -17,8 +17,8 @@ struct LobeChances {
 };
 
 LobeChances lobeChances(Bsdf b, Features features) {
-    vec3 single = singleScatterAlbedo(b, b.viewLoss, b.viewBias);
-    vec3 all = specularAlbedo(b, b.viewLoss, b.viewBias);
+    vec3 single = singleScatterAlbedo(b, features, b.viewLoss, b.viewBias);
+    vec3 all = specularAlbedo(b, features, b.viewLoss, b.viewBias);
     float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
     float microfacets = luminance(single);
     float diffuse = luminance(b.diffuse) * below + luminance(all - single);
@@ -63,7 +63,8 @@ vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     }
     bool inside = hasLobe(features, GLINT_VOLUME) && eta < 1.0 && refracts(eta);
     float apparent = inside ? eta : 1.0;
-    float reflected = luminance(fresnelInterface(b.f0, b.f90, cosine2, apparent));
+    float reflected = luminance(withMetal(b, features, fresnelInterface(b.f0, b.f90, cosine2, apparent),
+                                          fresnelSchlick(b.metalF0, 1.0, sqrt(cosine2.x))));
     float passed = luminance(b.transmitted) * interfacePassed(b.f0, b.f90, cosine2, apparent);
     float both = reflected + passed;
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);

@@ -44,17 +44,16 @@ vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
 
 // The share of a uniform white sky that the base reflects at the first bounce, through coat and sheen.
 vec3 firstBounce(Surface surface, Features features) {
-    return singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
+    return singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
            baseShare(surface, features);
 }
 
 // The base's lobe at the first bounce, times n·l, through coat and sheen; l.z > 0.
 vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
     Bsdf b = surface.bsdf;
-    vec3 h;
-    vec3 fresnel = facetFresnel(b, features, l, h);
-    pdf = mirroredPdf(b.view, h, b.alpha);
-    return fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
+    Facet facet = facetBetween(b, features, l);
+    pdf = mirroredPdf(b.view, facet.h, b.alpha);
+    return facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
            baseShare(surface, features);
 }
 

@@ -128,10 +128,9 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
             if (l.z <= 0.0) {
                 return kAbsorbs;
             }
-            vec3 half1;
-            vec3 fresnel = facetFresnel(b, features, l, half1);
-            float pdf = reflected * mirroredPdf(b.view, half1, b.alpha);
-            walker.weight *= pdf > 0.0 ? fresnel * (ggxDistribution(half1, b.alpha) *
+            Facet facet = facetBetween(b, features, l);
+            float pdf = reflected * mirroredPdf(b.view, facet.h, b.alpha);
+            walker.weight *= pdf > 0.0 ? facet.fresnel * (ggxDistribution(facet.h, b.alpha) *
                                                    ggxVisibility(l, b.view, b.alpha) * l.z / pdf)
                                        : vec3(0.0);
             walker.direction = normalize(toWorld(surface, l));

@@ -20,6 +20,14 @@ bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, c
            canFailAlphaTest(material, primitive);
 }
 
+// Every material has a metallicFactor, so nothing is reported as dropped.
+Presence partialMetal(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
+                      FeatureMask soFar) {
+    const bool single = has(soFar, Feature::Unlit) || has(soFar, Feature::SpecularGlossiness) ||
+                        material.metallicFactor == 0.0F || isMetal(material, primitive);
+    return single ? absent() : present();
+}
+
 Presence emissiveStrength(const Material& material, const PrimitiveInputs&, const KeyOptions&,
                           FeatureMask soFar) {
     if (!material.hasEmissiveStrength && material.emissiveStrength == 1.0F) {

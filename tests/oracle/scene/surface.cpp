@@ -41,8 +41,8 @@ struct LitSurface::Lobes : SurfaceLobes {
         return behind;
     }
     Vec3 ambient(const GradientSky& sky) const {
-        const Vec3 all = glsl::specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias);
-        const Vec3 first = glsl::singleScatterAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 all = glsl::specularAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 first = glsl::singleScatterAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
         const Vec3 passed3 = glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias);
         const double passed = std::max(std::min({passed3.x, passed3.y, passed3.z}), 0.0);
         const Vec3 n = frame[2];
@@ -50,7 +50,7 @@ struct LitSurface::Lobes : SurfaceLobes {
                        (all - first * tracedShare(roughness)) * skyAround(sky, reflectedView(), roughness)) *
                       occlusion;
         if (has(GLINT_TRANSMISSION)) {
-            result += bsdf.transmitted * skyBehind(sky) * std::max(1.0 - largestOf(all), 0.0);
+            result += bsdf.transmitted * skyBehind(sky) * passed;
         }
         if (has(GLINT_DIFFUSE_TRANSMISSION)) {
             result += bsdf.diffuseTransmitted * passed * diffuseSky(sky, -n);
@@ -120,7 +120,9 @@ std::vector<Mirror> LitSurface::mirrors() const {
     std::vector<Mirror> mirrors;
     if (const double traced = l.tracedShare(l.roughness); traced > 0.0) {
         const Vec3 weight =
-            glsl::fresnelSchlick(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z) * (traced * l.baseShare());
+            glm::mix(glsl::fresnelSchlick(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z),
+                     glsl::fresnelSchlick(l.bsdf.metalF0, 1.0, l.bsdf.view.z), l.bsdf.metallic) *
+            (traced * l.baseShare());
         if (weight != Vec3(0.0)) {
             mirrors.push_back({l.mirrorDirection(l.frame[2]), weight});
         }
