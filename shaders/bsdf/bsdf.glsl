@@ -253,9 +253,8 @@ float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
-// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
-// on the far side.
-vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
+// What lies below the coat: base and sheen, times |n·l|, without the coat's absorption.
+vec3 evaluateBelowCoat(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
     vec3 result = vec3(0.0);
     if (l.z > 0.0) {
@@ -277,15 +276,25 @@ vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
             result *= below;
         }
     }
+    return result;
+}
+
+// What the coat reflects, times the cosine to its own normal. The coat covers one hemisphere about
+// that normal, whatever the normal of the base is.
+float evaluateCoat(Bsdf b, vec3 l) {
+    float nDotL = accurateDot(b.clearcoatNormal, l);
+    float nDotV = coatViewCosine(b);
+    return nDotL > 0.0 ? clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
+                             clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha)
+                       : 0.0;
+}
+
+// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
+// on the far side.
+vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
+    vec3 result = evaluateBelowCoat(b, features, l);
     if (hasLobe(features, GLINT_CLEARCOAT)) {
-        float nDotV = coatViewCosine(b);
-        float nDotL = accurateDot(b.clearcoatNormal, l);
-        GLINT_RELAXED float coat = clearcoatFresnel(b.clearcoat, nDotV);
-        result *= clearcoatPassed(b.clearcoat, nDotV);
-        if (l.z > 0.0 && nDotL > 0.0) {
-            result += vec3(coat * nDotL *
-                           clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha));
-        }
+        result = result * clearcoatPassed(b.clearcoat, coatViewCosine(b)) + vec3(evaluateCoat(b, l));
     }
     return result;
 }

@@ -141,13 +141,9 @@ float coatPdf(Bsdf b, vec3 l) {
 float bsdfPdf(Bsdf b, Features features, vec3 l) {
     LobeChances chances = lobeChances(b, features);
     float pdf = chances.microfacets * microfacetPdf(b, features, l);
-    if (l.z > 0.0) {
-        pdf += chances.diffuse * l.z * kInversePi;
-        if (hasLobe(features, GLINT_CLEARCOAT)) {
-            pdf += chances.coat * coatPdf(b, l);
-        }
-    } else {
-        pdf += chances.passed * -l.z * kInversePi;
+    pdf += (l.z > 0.0 ? chances.diffuse * l.z : chances.passed * -l.z) * kInversePi;
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        pdf += chances.coat * coatPdf(b, l);
     }
     return pdf;
 }
@@ -186,7 +182,7 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-// Samples a direction to which the coat reflects the view. Returns 0 if it points below the base, where the coat has no
+// Samples a direction to which the coat reflects the view. Returns 0 if it points below the coat, where the coat has no
 // density.
 vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 tangent;
@@ -195,7 +191,7 @@ vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
     vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u);
     vec3 l = reflectAbout(b.view, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
-    return l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
+    return accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
 }
 
 // Samples a direction for the prepared view; u is uniform in [0, 1)³.

@@ -133,7 +133,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
             walker.weight *= pdf > 0.0 ? facet.fresnel * (ggxDistribution(facet.h, b.alpha) *
                                                    ggxVisibility(l, b.view, b.alpha) * l.z / pdf)
                                        : vec3(0.0);
-            walker.direction = normalize(toWorld(surface, l));
+            walker.direction = onSide(toWorld(surface, l), hit.geometricNormal);
             return kReflects;
         }
         walker.weight /= 1.0 - reflected;
@@ -157,7 +157,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
         return kAbsorbs;
     }
     walker.weight *= b.transmitted * (specularTransmission(b, features, l, eta) / pdf);
-    walker.direction = normalize(toWorld(surface, l));
+    walker.direction = onSide(toWorld(surface, l), -hit.geometricNormal);
     return kPasses;
 }
 
