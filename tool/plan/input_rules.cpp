@@ -1,4 +1,18 @@
+#include "plan/plan.h"
 #include "plan/rules.h"
+
+#include <algorithm>
+
+namespace glint {
+
+bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives) {
+    return std::ranges::any_of(primitives, [&](const PrimitiveInputs& primitive) {
+        return rules::isAlphaTested(materials[static_cast<std::size_t>(primitive.material)], primitive,
+                                    {.alpha = AlphaPolicy::Tested});
+    });
+}
+
+}  // namespace glint
 
 namespace glint::rules {
 
