@@ -34,12 +34,14 @@ bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, c
            canFailAlphaTest(material, primitive);
 }
 
-// Every material has a metallicFactor, so nothing is reported as dropped.
+// Every material has a metallicFactor, so a base that is all metal or all dielectric is not reported.
 Presence partialMetal(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
                       FeatureMask soFar) {
-    const bool single = has(soFar, Feature::Unlit) || has(soFar, Feature::SpecularGlossiness) ||
-                        material.metallicFactor == 0.0F || isMetal(material, primitive);
-    return single ? absent() : present();
+    if (has(soFar, Feature::SpecularGlossiness) || material.metallicFactor == 0.0F ||
+        isMetal(material, primitive)) {
+        return absent();
+    }
+    return has(soFar, Feature::Unlit) ? dropped(kUnlitReadsBaseColor) : present();
 }
 
 Presence emissiveStrength(const Material& material, const PrimitiveInputs&, const KeyOptions&,
