@@ -127,7 +127,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     b.eta = vec3(eta);
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
     vec2 deciding = decidingCosine2(b, features, exactSquare(exactDot(b.view, h)), eta);
-    float facetPassed = interfacePassed(b.f0, b.f90, deciding, hasLobe(features, GLINT_VOLUME) && refracts(eta) ? eta : 1.0);
+    float apparent = hasLobe(features, GLINT_VOLUME) && refracts(eta) ? eta : 1.0;
     bool straight = !hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta);
     if (!first && pure) {
         float reflected = facetChances(b, features, deciding, eta).x;
@@ -138,8 +138,9 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
                 return kAbsorbs;
             }
             l.z = abs(l.z);
-            Facet facet = facetBetween(b, features, l);
-            walker.weight *= facet.fresnel * (shareBehindFacets(b, l) / reflected);
+            vec3 fresnel = withMetal(b, features, fresnelInterface(b.f0, b.f90, deciding, apparent),
+                                     fresnelSchlick(b.metalF0, 1.0, sqrt(deciding.x)));
+            walker.weight *= fresnel * (shareBehindFacets(b, l) / reflected);
             walker.direction = onSide(toWorld(surface, l), hit.geometricNormal);
             return kReflects;
         }
@@ -168,7 +169,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
         // What other facets block passes in the end, too. At the first interface, the effect reflection and the sky have
         // added all that is reflected.
         l.z = -abs(l.z);
-        passed = first ? diffusePassed(surface) : facetPassed;
+        passed = first ? diffusePassed(surface) : interfacePassed(b.f0, b.f90, deciding, apparent);
     }
     walker.weight *= b.transmitted * passed;
     walker.direction = onSide(toWorld(surface, l), -hit.geometricNormal);
