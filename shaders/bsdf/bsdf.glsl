@@ -253,6 +253,13 @@ float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
+// The view for the coat. If the coat's normal turns away from the viewer, the view is lifted above its horizon, as
+// prepareBsdf() does for the base.
+vec3 coatView(Bsdf b) {
+    float cosine = accurateDot(b.clearcoatNormal, b.view);
+    return cosine >= kMinViewCosine ? b.view : normalize(b.view + b.clearcoatNormal * (kMinViewCosine - cosine));
+}
+
 // What lies below the coat: base and sheen, times |n·l|, without the coat's absorption.
 vec3 evaluateBelowCoat(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
@@ -285,7 +292,7 @@ float evaluateCoat(Bsdf b, vec3 l) {
     float nDotL = accurateDot(b.clearcoatNormal, l);
     float nDotV = coatViewCosine(b);
     return nDotL > 0.0 ? clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
-                             clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha)
+                             clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, coatView(b), l, b.clearcoatAlpha)
                        : 0.0;
 }
 
