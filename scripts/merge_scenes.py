@@ -47,7 +47,7 @@ LOBES = {
     "dispersion": ("dispersion", {"dispersion": 0.3}),
 }
 INPUTS = ["emissiveStrength", "texCoord1", "textureTransform", "vertexColor", "normals", "tangents", "doubleSided"]
-INPUTS += ["clearcoatSharesNormal"]
+INPUTS += ["clearcoatSharesNormal", "partialMetal"]
 NEEDS = {
     "attenuation": ["volume"],
     "dispersion": ["volume", "transmission"],
@@ -77,7 +77,7 @@ def complete(wish):
 
 def make_material(wish, name, roughness=0.4):
     """A glTF material; texture 0 is the base's normals, 1 the coat's, 2 everything else."""
-    base = {"metallicFactor": 0.1, "roughnessFactor": roughness}
+    base = {"metallicFactor": 0.5 if "partialMetal" in wish else 0, "roughnessFactor": roughness}
     extensions = {}
     for lobe in sorted(wish & LOBES.keys()):
         extension, values = LOBES[lobe]

@@ -1,5 +1,8 @@
 // The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers: clearcoat over
 // sheen over a base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
+//
+// Appendix B.2 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
+// GLINT_PARTIAL_METAL has both bases; in any other key the base is all metal or all dielectric.
 #include "generated/scene.glsl"
 #include "hit/features.glsl"
 #include "bsdf/constants.glsl"
@@ -17,8 +20,10 @@
 // the viewer's side, x the direction of anisotropy.
 struct Bsdf {
     GLINT_RELAXED vec3 diffuse;   // albedo of the diffuse lobe, without metal and without what is transmitted
-    GLINT_RELAXED vec3 f0;        // reflectance at normal incidence
-    GLINT_RELAXED float f90;      // reflectance at grazing angles
+    GLINT_RELAXED vec3 f0;        // reflectance at normal incidence: of the dielectric if the key has both bases
+    GLINT_RELAXED float f90;      // reflectance at grazing angles, of the same base as f0
+    GLINT_RELAXED vec3 metalF0;   // reflectance of the metal at normal incidence; it is 1 at grazing angles
+    GLINT_RELAXED float metallic; // share of the metal; this and metalF0 are read if the key has both bases
     vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy
     GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
@@ -37,38 +42,48 @@ struct Bsdf {
     float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, and the lobe is then divided by it
 };
 
+// Returns what both bases together have of a quantity that is known of each.
+GLINT_RELAXED vec3 withMetal(Bsdf b, Features features, GLINT_RELAXED vec3 dielectric, GLINT_RELAXED vec3 metal) {
+    return hasInput(features, GLINT_PARTIAL_METAL) ? mix(dielectric, metal, b.metallic) : dielectric;
+}
+
 // The mean of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
-GLINT_RELAXED vec3 meanFresnel(Bsdf b) {
-    return b.f0 + (vec3(b.f90) - b.f0) * (1.0 / 21.0);
+GLINT_RELAXED vec3 meanFresnel(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90) {
+    return f0 + (vec3(f90) - f0) * (1.0 / 21.0);
 }
 
 // The multi-scatter lobe is this times (1 - E(v)) (1 - E(l)) / (π (1 - Ē)): Kulla and Conty, "Revisiting Physically
 // Based Shading at Imageworks" (2017). The Fresnel of the second and later bounces is that of Hill (2018).
-GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b) {
-    GLINT_RELAXED vec3 mean = meanFresnel(b);
-    GLINT_RELAXED float loss = b.meanLoss;
+GLINT_RELAXED vec3 multiScatterOf(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float loss) {
+    GLINT_RELAXED vec3 mean = meanFresnel(f0, f90);
     return mean * mean * (1.0 - loss) / (vec3(1.0) - mean * loss);
 }
 
+// The same for both bases together. A bounce between facets of the same base is not linear in its reflectance.
+GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b, Features features) {
+    return withMetal(b, features, multiScatterOf(b.f0, b.f90, b.meanLoss), multiScatterOf(b.metalF0, 1.0, b.meanLoss));
+}
+
 // The share of a uniform white sky that the microfacets reflect at the first bounce, from E's loss and bias.
-GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
-    return b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
+GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, Features features, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    GLINT_RELAXED vec3 dielectric = b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
+    return withMetal(b, features, dielectric, b.metalF0 * (1.0 - loss - bias) + vec3(bias));
 }
 
 // The share that they reflect in all. With energy compensation this includes the later bounces.
-GLINT_RELAXED vec3 specularAlbedo(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
-    GLINT_RELAXED vec3 single = singleScatterAlbedo(b, loss, bias);
-    return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b) * loss : single;
+GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    GLINT_RELAXED vec3 single = singleScatterAlbedo(b, features, loss, bias);
+    return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
 
-// 1 - specularAlbedo(), as a sum of positive terms: the difference would lose its digits where nearly all light is
-// reflected.
+// What the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of positive
+// terms; the difference would lose its digits where nearly all light is reflected.
 GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
     GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
     GLINT_RELAXED vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
     if (GLINT_ENERGY_COMPENSATION != 0) {
-        GLINT_RELAXED vec3 mean = meanFresnel(b);
+        GLINT_RELAXED vec3 mean = meanFresnel(b.f0, b.f90);
         GLINT_RELAXED float meanLoss = b.meanLoss;
         GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
         again = rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
@@ -155,26 +170,36 @@ GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, G
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 
-// Returns the Fresnel reflectance of the facet between view and light, and the facet's normal.
-GLINT_RELAXED vec3 facetFresnel(Bsdf b, Features features, vec3 l, out vec3 h) {
+// The Fresnel reflectance of the facet between view and light.
+struct Facet {
+    vec3 h;  // the facet's normal
+    GLINT_RELAXED vec3 fresnel;            // of both bases
+    GLINT_RELAXED vec3 dielectricFresnel;  // of the dielectric, below which light reaches the diffuse lobe
+};
+
+Facet facetBetween(Bsdf b, Features features, vec3 l) {
     // |v + l| is twice the cosine between v and h. It keeps its digits if a facet is seen from the side.
     vec3 sum = b.view + l;
     float size = sqrt(dot(sum, sum));
-    h = sum / size;
-    return seenFromWithin(b, features) ? fresnelInterface(b.f0, b.f90, halfCosine2(b.view, l), b.eta.y)
-                                       : fresnelSchlick(b.f0, b.f90, min(0.5 * size, 1.0));
+    float cosine = min(0.5 * size, 1.0);
+    Facet facet;
+    facet.h = sum / size;
+    facet.dielectricFresnel = seenFromWithin(b, features)
+                                  ? fresnelInterface(b.f0, b.f90, halfCosine2(b.view, l), b.eta.y)
+                                  : fresnelSchlick(b.f0, b.f90, cosine);
+    facet.fresnel = withMetal(b, features, facet.dielectricFresnel, fresnelSchlick(b.metalF0, 1.0, cosine));
+    return facet;
 }
 
 // Light that the base reflects, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
-    vec3 h;
-    GLINT_RELAXED vec3 fresnel = facetFresnel(b, features, l, h);
-    vec3 specular = fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
+    Facet facet = facetBetween(b, features, l);
+    vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
     if (GLINT_ENERGY_COMPENSATION != 0) {
         float lightLoss = lobeAlbedo(b, features, l.z).x;
-        specular += multiScatterFresnel(b) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
+        specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
     }
-    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(fresnel)));
+    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(facet.dielectricFresnel)));
     return (diffuse + specular) * l.z;
 }
 
@@ -228,9 +253,15 @@ float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
-// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
-// on the far side.
-vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
+// The view for the coat. If the coat's normal turns away from the viewer, the view is lifted above its horizon, as
+// prepareBsdf() does for the base.
+vec3 coatView(Bsdf b) {
+    float cosine = accurateDot(b.clearcoatNormal, b.view);
+    return cosine >= kMinViewCosine ? b.view : normalize(b.view + b.clearcoatNormal * (kMinViewCosine - cosine));
+}
+
+// What lies below the coat: base and sheen, times |n·l|, without the coat's absorption.
+vec3 evaluateBelowCoat(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
     vec3 result = vec3(0.0);
     if (l.z > 0.0) {
@@ -252,15 +283,25 @@ vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
             result *= below;
         }
     }
+    return result;
+}
+
+// What the coat reflects, times the cosine to its own normal. The coat covers one hemisphere about
+// that normal, whatever the normal of the base is.
+float evaluateCoat(Bsdf b, vec3 l) {
+    float nDotL = accurateDot(b.clearcoatNormal, l);
+    float nDotV = coatViewCosine(b);
+    return nDotL > 0.0 ? clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
+                             clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, coatView(b), l, b.clearcoatAlpha)
+                       : 0.0;
+}
+
+// Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
+// on the far side.
+vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
+    vec3 result = evaluateBelowCoat(b, features, l);
     if (hasLobe(features, GLINT_CLEARCOAT)) {
-        float nDotV = coatViewCosine(b);
-        float nDotL = accurateDot(b.clearcoatNormal, l);
-        GLINT_RELAXED float coat = clearcoatFresnel(b.clearcoat, nDotV);
-        result *= clearcoatPassed(b.clearcoat, nDotV);
-        if (l.z > 0.0 && nDotL > 0.0) {
-            result += vec3(coat * nDotL *
-                           clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha));
-        }
+        result = result * clearcoatPassed(b.clearcoat, coatViewCosine(b)) + vec3(evaluateCoat(b, l));
     }
     return result;
 }

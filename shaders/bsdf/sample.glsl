@@ -17,8 +17,8 @@ struct LobeChances {
 };
 
 LobeChances lobeChances(Bsdf b, Features features) {
-    vec3 single = singleScatterAlbedo(b, b.viewLoss, b.viewBias);
-    vec3 all = specularAlbedo(b, b.viewLoss, b.viewBias);
+    vec3 single = singleScatterAlbedo(b, features, b.viewLoss, b.viewBias);
+    vec3 all = specularAlbedo(b, features, b.viewLoss, b.viewBias);
     float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
     float microfacets = luminance(single);
     float diffuse = luminance(b.diffuse) * below + luminance(all - single);
@@ -43,11 +43,6 @@ LobeChances lobeChances(Bsdf b, Features features) {
         microfacets *= underCoat;
         diffuse *= underCoat;
         passed *= underCoat;
-        if (accurateDot(b.clearcoatNormal, b.view) < kMinViewCosine) {
-            // If the coat's normal turns away from the view, it has no visible normals.
-            diffuse += coat;
-            coat = 0.0;
-        }
     }
     float total = coat + microfacets + diffuse + passed;
     // A black surface samples its microfacets; the weight of these samples is 0.
@@ -63,7 +58,8 @@ vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
     }
     bool inside = hasLobe(features, GLINT_VOLUME) && eta < 1.0 && refracts(eta);
     float apparent = inside ? eta : 1.0;
-    float reflected = luminance(fresnelInterface(b.f0, b.f90, cosine2, apparent));
+    float reflected = luminance(withMetal(b, features, fresnelInterface(b.f0, b.f90, cosine2, apparent),
+                                          fresnelSchlick(b.metalF0, 1.0, sqrt(cosine2.x))));
     float passed = luminance(b.transmitted) * interfacePassed(b.f0, b.f90, cosine2, apparent);
     float both = reflected + passed;
     return both > 0.0 ? vec2(reflected, passed) / both : vec2(1.0, 0.0);
@@ -132,7 +128,7 @@ float coatPdf(Bsdf b, vec3 l) {
         return 0.0;
     }
     float nDotV = coatViewCosine(b);
-    return 0.5 * clearcoatDistribution(b.clearcoatNormal, b.view, l, b.clearcoatAlpha) /
+    return 0.5 * clearcoatDistribution(b.clearcoatNormal, coatView(b), l, b.clearcoatAlpha) /
            (nDotV + clearcoatProjection(nDotV, b.clearcoatAlpha));
 }
 
@@ -140,13 +136,9 @@ float coatPdf(Bsdf b, vec3 l) {
 float bsdfPdf(Bsdf b, Features features, vec3 l) {
     LobeChances chances = lobeChances(b, features);
     float pdf = chances.microfacets * microfacetPdf(b, features, l);
-    if (l.z > 0.0) {
-        pdf += chances.diffuse * l.z * kInversePi;
-        if (hasLobe(features, GLINT_CLEARCOAT)) {
-            pdf += chances.coat * coatPdf(b, l);
-        }
-    } else {
-        pdf += chances.passed * -l.z * kInversePi;
+    pdf += (l.z > 0.0 ? chances.diffuse * l.z : chances.passed * -l.z) * kInversePi;
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        pdf += chances.coat * coatPdf(b, l);
     }
     return pdf;
 }
@@ -185,16 +177,17 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-// Samples a direction to which the coat reflects the view. Returns 0 if it points below the base, where the coat has no
+// Samples a direction to which the coat reflects the view. Returns 0 if it points below the coat, where the coat has no
 // density.
 vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 tangent;
     vec3 bitangent;
     buildBasis(b.clearcoatNormal, tangent, bitangent);
-    vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
+    vec3 seenFrom = coatView(b);
+    vec3 view = vec3(dot(tangent, seenFrom), dot(bitangent, seenFrom), coatViewCosine(b));
     vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u);
-    vec3 l = reflectAbout(b.view, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
-    return l.z > 0.0 && accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
+    vec3 l = reflectAbout(seenFrom, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
+    return accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
 }
 
 // Samples a direction for the prepared view; u is uniform in [0, 1)³.

@@ -34,16 +34,14 @@ vec3 ambientTransmission(Surface surface, Features features) {
         behind.x = skyBehind(surface, features, bsdf.eta.x).x;
         behind.z = skyBehind(surface, features, bsdf.eta.z).z;
     }
-    // The result is the share that the microfacets do not reflect. Without compensation, the loss of single scattering
-    // is subtracted too.
-    GLINT_RELAXED float reflected = largest(specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias));
+    // Without compensation, the loss of single scattering is subtracted too.
     GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
-    return bsdf.transmitted * behind * max(1.0 - reflected - dropped, 0.0);
+    return bsdf.transmitted * behind * max(diffusePassed(surface) - dropped, 0.0);
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
-    GLINT_RELAXED vec3 albedo = specularAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 albedo = specularAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     GLINT_RELAXED vec3 reflected = albedo - first * (1.0 - sky.mirrored);
     GLINT_RELAXED float below = diffusePassed(surface);
     // The occlusion texture describes the outside, and so do the rays of ambient occlusion.

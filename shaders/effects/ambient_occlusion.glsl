@@ -20,12 +20,8 @@ void applyAmbientOcclusion(Hit hit, Surface surface, Features features, inout Sk
     float radius = GLINT_FRAME.occlusionRadius;
     for (uint i = 0u; i < GLINT_FRAME.occlusionSamples; ++i) {
         uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.occlusionSamples + i;
-        vec3 direction = normalize(
-            toWorld(surface, sampleCosine(sequencePair(hit.target, number, GLINT_FRAME.seed, kPairOcclusion))));
-        if (dot(direction, hit.geometricNormal) <= 0.0) {
-            // The direction points into the surface itself.
-            continue;
-        }
+        vec3 local = sampleCosine(sequencePair(hit.target, number, GLINT_FRAME.seed, kPairOcclusion));
+        vec3 direction = onSide(toWorld(surface, local), hit.geometricNormal);
         vec3 origin = rayOrigin(hit, direction);
         rays += 1u;
         if (GLINT_FRAME.occlusionFalloff != 0u) {

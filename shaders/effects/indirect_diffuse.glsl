@@ -32,11 +32,8 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     bool passes = chance > 0.0 && sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed,
                                                kPairIndirectSide).x < chance;
     vec3 local = sampleCosine(sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairIndirect));
-    vec3 direction = normalize(toWorld(surface, passes ? vec3(local.xy, -local.z) : local));
-    float height = dot(direction, hit.geometricNormal);
-    if (passes ? height >= 0.0 : height <= 0.0) {
-        return noSample(kRayBlack);
-    }
+    vec3 direction = onSide(toWorld(surface, passes ? vec3(local.xy, -local.z) : local),
+                            passes ? -hit.geometricNormal : hit.geometricNormal);
     vec3 weight = passes ? back / chance : front / (1.0 - chance);
     return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
 }

@@ -9,9 +9,12 @@
 
 // The share of a surface's reflection that its ray brings; the sky stands in for the rest. It falls to 0 over the last
 // fifth below the roughness limit, so that no edge shows where a texture crosses the limit. Just below the limit a ray
-// is still sent.
+// is still sent. With a limit of 1 every lobe is traced whole.
 float tracedShare(float roughness) {
     float limit = GLINT_FRAME.maxReflectionRoughness;
+    if (limit >= 1.0) {
+        return 1.0;
+    }
     if (roughness > limit) {
         return 0.0;
     }
@@ -34,43 +37,25 @@ bool isMirror(float roughness) {
     return roughness <= GLINT_FRAME.mirrorRoughness;
 }
 
-// The mirror direction about the shading normal. If it points below the geometric surface, it is lifted to leave it by
-// at least 1e-3 (about a twentieth of a degree), so that no ray starts into its own surface.
-vec3 mirrorDirection(vec3 incoming, vec3 normal, vec3 geometricNormal) {
-    vec3 direction = reflect(incoming, normal);
-    float height = dot(direction, geometricNormal);
-    return normalize(direction + geometricNormal * max(1e-3 - height, 0.0));
-}
-
 // The share of a uniform white sky that the base reflects at the first bounce, through coat and sheen.
 vec3 firstBounce(Surface surface, Features features) {
-    return singleScatterAlbedo(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
+    return singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
            baseShare(surface, features);
 }
 
 // The base's lobe at the first bounce, times n·l, through coat and sheen; l.z > 0.
 vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
     Bsdf b = surface.bsdf;
-    vec3 h;
-    vec3 fresnel = facetFresnel(b, features, l, h);
-    pdf = mirroredPdf(b.view, h, b.alpha);
-    return fresnel * (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
+    Facet facet = facetBetween(b, features, l);
+    pdf = mirroredPdf(b.view, facet.h, b.alpha);
+    return facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
            baseShare(surface, features);
-}
-
-// The coat's lobe, times n·l.
-float coatLobe(Surface surface, Features features, vec3 l, out float pdf) {
-    Bsdf b = surface.bsdf;
-    float nDotL = accurateDot(b.clearcoatNormal, l);
-    pdf = coatPdf(b, l);
-    return nDotL > 0.0 ? coatReflectance(surface, features) * nDotL *
-                             clearcoatLobe(b.clearcoatNormal, nDotL, coatViewCosine(b), b.view, l, b.clearcoatAlpha)
-                       : 0.0;
 }
 
 // A ray in the mirror direction about `normal`, whatever its pdf is. A flat mirror continues the pixel's cone.
 EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
-    return sentSample(hit, mirrorDirection(-hit.view, normal, hit.geometricNormal), weight, GLINT_FRAME.pixelSpread);
+    vec3 direction = onSide(reflect(-hit.view, normal), hit.geometricNormal);
+    return sentSample(hit, direction, weight, GLINT_FRAME.pixelSpread);
 }
 
 // The pairs of dimensions of the sequence.
@@ -84,23 +69,23 @@ EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLob
     Bsdf b = surface.bsdf;
     vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
     vec3 l = choosesCoat ? sampleCoat(b, u) : reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u));
-    vec3 world = toWorld(surface, l);
-    if (l.z <= 0.0 || dot(world, hit.geometricNormal) <= 0.0) {
+    if (choosesCoat ? l == vec3(0.0) : l.z <= 0.0) {
+        // The facet sends the view to other facets. Energy compensation counts what becomes of that light.
         return noSample(kRayBlack);
     }
     vec3 weight = vec3(0.0);
     float pdf = 0.0;
-    if (chances.x > 0.0) {
+    if (chances.x > 0.0 && l.z > 0.0) {
         float basePdf;
         weight += traced.base * baseLobe(surface, features, l, basePdf);
         pdf += chances.x * basePdf;
     }
     if (chances.y > 0.0) {
-        float ofCoat;
-        weight += vec3(traced.coat * coatLobe(surface, features, l, ofCoat));
-        pdf += chances.y * ofCoat;
+        weight += vec3(traced.coat * evaluateCoat(b, l));
+        pdf += chances.y * coatPdf(b, l);
     }
-    return sentSample(hit, normalize(world), pdf > 0.0 ? weight / pdf : vec3(0.0), GLINT_FRAME.pixelSpread);
+    vec3 direction = onSide(toWorld(surface, l), hit.geometricNormal);
+    return sentSample(hit, direction, pdf > 0.0 ? weight / pdf : vec3(0.0), GLINT_FRAME.pixelSpread);
 }
 
 // Samples one ray for some lobe within the roughness limit. A lobe below the mirror limit reflects exactly; between the

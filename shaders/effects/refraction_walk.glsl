@@ -90,6 +90,14 @@ const uint kReflects = 1u;
 const uint kStops = 2u;     // the surface is shaded like any other
 const uint kAbsorbs = 3u;
 
+// The share of a facet's reflection that no other facets block. If energy is compensated, what they block leaves in the
+// end, too, and is taken to leave as the rest does: then it is 1.
+float shareBehindFacets(Bsdf b, vec3 l) {
+    return GLINT_ENERGY_COMPENSATION != 0
+               ? 1.0
+               : 2.0 * ggxVisibility(l, b.view, b.alpha) * l.z * (b.view.z + ggxProjection(b.view, b.alpha));
+}
+
 // Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface, whose
 // other light is already shaded, so that the ray always passes.
 uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
@@ -118,47 +126,53 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     float eta = channelOf(b.eta, walker.channel);
     b.eta = vec3(eta);
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
-    vec2 facet2 = exactSquare(exactDot(b.view, h));
+    vec2 deciding = decidingCosine2(b, features, exactSquare(exactDot(b.view, h)), eta);
+    float apparent = hasLobe(features, GLINT_VOLUME) && refracts(eta) ? eta : 1.0;
     bool straight = !hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta);
     if (!first && pure) {
-        float reflected = facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x;
+        float reflected = facetChances(b, features, deciding, eta).x;
         float random = walker.channel == 3u || !dispersed ? choice.y : fract(3.0 * choice.y);
         if (random < reflected) {
             vec3 l = reflectAbout(b.view, h);
-            if (l.z <= 0.0) {
+            if (GLINT_ENERGY_COMPENSATION == 0 && l.z <= 0.0) {
                 return kAbsorbs;
             }
-            vec3 half1;
-            vec3 fresnel = facetFresnel(b, features, l, half1);
-            float pdf = reflected * mirroredPdf(b.view, half1, b.alpha);
-            walker.weight *= pdf > 0.0 ? fresnel * (ggxDistribution(half1, b.alpha) *
-                                                   ggxVisibility(l, b.view, b.alpha) * l.z / pdf)
-                                       : vec3(0.0);
-            walker.direction = normalize(toWorld(surface, l));
+            l.z = abs(l.z);
+            vec3 fresnel = withMetal(b, features, fresnelInterface(b.f0, b.f90, deciding, apparent),
+                                     fresnelSchlick(b.metalF0, 1.0, sqrt(deciding.x)));
+            walker.weight *= fresnel * (shareBehindFacets(b, l) / reflected);
+            walker.direction = onSide(toWorld(surface, l), hit.geometricNormal);
             return kReflects;
         }
         walker.weight /= 1.0 - reflected;
     }
     vec3 l;
-    float pdf;
+    float passed;
     if (straight) {
         vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
-        vec3 facet = sampleVisibleNormal(b.view, alpha, u);
-        l = reflectAbout(b.view, facet);
+        l = reflectAbout(b.view, sampleVisibleNormal(b.view, alpha, u));
         l.z = -l.z;
-        pdf = l.z < 0.0 ? mirroredPdf(b.view, normalize(b.view + vec3(l.xy, -l.z)), alpha) : 0.0;
+        passed = l.z < 0.0 ? specularTransmission(b, features, l, eta) /
+                                 mirroredPdf(b.view, normalize(b.view + vec3(l.xy, -l.z)), alpha)
+                           : 0.0;
     } else {
-        RefractingFacet facet;
-        pdf = 0.0;
-        if (refractDirection(b.view, h, eta, l) && l.z < 0.0 && refractionHalfVector(b.view, l, eta, facet)) {
-            pdf = visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
+        if (!refractDirection(b.view, h, eta, l)) {
+            return kAbsorbs;
         }
+        RefractingFacet facet;
+        passed = l.z < 0.0 && refractionHalfVector(b.view, l, eta, facet)
+                     ? specularTransmission(b, features, l, eta) /
+                           (visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL)
+                     : 0.0;
     }
-    if (!(pdf > 0.0)) {
-        return kAbsorbs;
+    if (GLINT_ENERGY_COMPENSATION != 0) {
+        // What other facets block passes in the end, too. At the first interface, the effect reflection and the sky have
+        // added all that is reflected.
+        l.z = -abs(l.z);
+        passed = first ? diffusePassed(surface) : interfacePassed(b.f0, b.f90, deciding, apparent);
     }
-    walker.weight *= b.transmitted * (specularTransmission(b, features, l, eta) / pdf);
-    walker.direction = normalize(toWorld(surface, l));
+    walker.weight *= b.transmitted * passed;
+    walker.direction = onSide(toWorld(surface, l), -hit.geometricNormal);
     return kPasses;
 }
 

@@ -65,8 +65,11 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
         f90 = specular;
     }
     bsdf.diffuse = base.color * (1.0 - base.metallic);
-    bsdf.f0 = mix(f0, base.color, base.metallic);
-    bsdf.f90 = mix(f90, 1.0, base.metallic);
+    bsdf.metalF0 = base.color;
+    bsdf.metallic = base.metallic;
+    bool both = hasInput(features, GLINT_PARTIAL_METAL);
+    bsdf.f0 = both ? f0 : mix(f0, base.color, base.metallic);
+    bsdf.f90 = both ? f90 : mix(f90, 1.0, base.metallic);
 }
 
 // KHR_materials_pbrSpecularGlossiness: diffuse and specular colours. Surfaces reflect at most all of the light.
@@ -85,6 +88,8 @@ void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Bas
     bsdf.diffuse = base.color * (1.0 - largest(specular));
     bsdf.f0 = specular;
     bsdf.f90 = 1.0;
+    bsdf.metalF0 = vec3(0.0);
+    bsdf.metallic = 0.0;
 }
 
 // KHR_materials_anisotropy: the alphas along the direction of anisotropy and across it. That direction becomes the
@@ -111,9 +116,16 @@ void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
     surface.bsdf.alpha.x = mix(alpha, 1.0, strength * strength);
 }
 
-// KHR_materials_iridescence. As in the reference renderer, the angle of the view serves for all lights. The film's
-// reflectance is turned into the f0 with which Schlick's approximation gives it, so that the albedos of the lobe are
-// still known.
+// The f0 of a base under a film of the given coverage and thickness. The film's reflectance is turned into the f0 with
+// which Schlick's approximation gives it, so that the albedos of the lobe are still known.
+GLINT_RELAXED vec3 filmF0(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float nDotV, float ior, float thickness,
+                          GLINT_RELAXED float coverage) {
+    vec3 film = iridescentFresnel(nDotV, f0, ior, thickness);
+    return mix(f0, min(schlickF0(film, f90, nDotV), vec3(f90)), coverage);
+}
+
+// KHR_materials_iridescence: a film on each base. As in the reference renderer, the angle of the view serves for all
+// lights.
 void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) {
     GLINT_RELAXED float factor = GLINT_MATERIAL(hit).iridescenceFactor;
     float thickness = GLINT_MATERIAL(hit).iridescenceThicknessMaximum;
@@ -125,8 +137,11 @@ void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) 
         vec4 texel = sampleSlot(hit, kTextureIridescenceThickness, features);
         thickness = mix(thinnest, thickness, texel.g);
     }
-    vec3 film = iridescentFresnel(nDotV, bsdf.f0, GLINT_MATERIAL(hit).iridescenceIor, thickness);
-    bsdf.f0 = mix(bsdf.f0, min(schlickF0(film, bsdf.f90, nDotV), vec3(bsdf.f90)), factor);
+    float filmIor = GLINT_MATERIAL(hit).iridescenceIor;
+    bsdf.f0 = filmF0(bsdf.f0, bsdf.f90, nDotV, filmIor, thickness, factor);
+    if (hasInput(features, GLINT_PARTIAL_METAL)) {
+        bsdf.metalF0 = filmF0(bsdf.metalF0, 1.0, nDotV, filmIor, thickness, factor);
+    }
 }
 
 // KHR_materials_transmission, KHR_materials_diffuse_transmission, KHR_materials_volume, KHR_materials_dispersion: the

@@ -20,11 +20,17 @@ vec3 toWorld(Surface surface, vec3 direction) {
 }
 
 // Returns the BSDF times |n·l|, reflected or transmitted, for light from a direction of the world. geometricNormal is
-// on the viewer's side. If it and the shading normal disagree on which side the light is, the result is 0, because
+// on the viewer's side. If it and a lobe's normal disagree on which side the light is, the lobe brings nothing, because
 // light would leak through the surface.
 vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
     vec3 l = toSurface(surface, toLight);
-    return l.z * dot(geometricNormal, toLight) > 0.0 ? evaluateBsdf(surface.bsdf, features, l) : vec3(0.0);
+    float height = dot(geometricNormal, toLight);
+    vec3 result = l.z * height > 0.0 ? evaluateBelowCoat(surface.bsdf, features, l) : vec3(0.0);
+    if (hasLobe(features, GLINT_CLEARCOAT)) {
+        result *= clearcoatPassed(surface.bsdf.clearcoat, coatViewCosine(surface.bsdf));
+        result += vec3(height > 0.0 ? evaluateCoat(surface.bsdf, l) : 0.0);
+    }
+    return result;
 }
 
 // The share of a uniform white sky that the coat reflects; 0 without a coat.

@@ -2,6 +2,8 @@
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
+#include <nlohmann/json.hpp>
+
 #include <string>
 #include <vector>
 
@@ -62,6 +64,27 @@ TEST_F(Choice, EmptyValuesNeverTakeTheNextArgument) {
     expectRefused({"render", "a.gltf", "-o", "a.png", "--camera=", "b.gltf"}, "--camera: is empty");
     expectRefused({"lint", "a.spv", "--core=", "b.spv"}, "--core: is empty");
     expectRefused({"compile", "a.gltf", "-o"}, "--output");
+}
+
+TEST_F(Choice, RaysTestAlphaMasksWhereASceneHasThem) {
+    // Compiles, and returns the policy that the manifest names.
+    const auto policy = [&](const TinyScene& scene, const std::vector<std::string>& options, bool notes) {
+        writeTinyScene(path(""), scene);
+        std::vector<std::string> line{"compile", "scene.gltf", "-o", "package", "--strategy", "uber"};
+        line.insert(line.end(), options.begin(), options.end());
+        const Outcome outcome = run(line);
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        EXPECT_EQ(outcome.err.find("[alpha-tested]") != std::string::npos, notes) << outcome.err;
+        EXPECT_EQ(outcome.err.find("BLEND is drawn opaque: Spare [alpha-blend]") != std::string::npos,
+                  scene.blended)
+            << outcome.err;
+        return nlohmann::json::parse(readText(path("package/manifest.json"))).at("alpha").get<std::string>();
+    };
+    EXPECT_EQ(policy({}, {}, false), "opaque");
+    EXPECT_EQ(policy({.blended = true}, {}, false), "opaque");
+    EXPECT_EQ(policy({.masked = true}, {}, true), "tested");
+    EXPECT_EQ(policy({.masked = true}, {"--alpha", "opaque"}, false), "opaque");
+    EXPECT_EQ(policy({.masked = true}, {"--alpha", "tested"}, false), "tested");
 }
 
 TEST_F(Choice, MaterialsAreListedAndSuggested) {

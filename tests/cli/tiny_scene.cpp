@@ -152,6 +152,13 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
     if (options.unknownExtension) {
         gltf["extensionsUsed"].push_back("EXT_not_known_to_anyone");
     }
+    if (options.masked) {
+        gltf["materials"][1]["alphaMode"] = "MASK";
+        gltf["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25;
+    }
+    if (options.blended) {
+        gltf["materials"][2]["alphaMode"] = "BLEND";
+    }
     if (options.variants) {
         gltf["extensionsUsed"].push_back("KHR_materials_variants");
         gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "Day"}}, {{"name", "Night"}}};

@@ -205,6 +205,7 @@ struct GivenMaterial {
     double alphaX = 1.0;
     double alphaY = 1.0;
     double eta = 1.5;
+    double metal = 0.0;
 };
 
 GivenMaterial putMaterial(InputSource& in, std::uint32_t without = 0) {
@@ -218,8 +219,10 @@ GivenMaterial putMaterial(InputSource& in, std::uint32_t without = 0) {
     const double metal = in.chance(0.5) ? in.pick({0.0, 1.0}) : in.uniform();
     const double transmitted = in.chance(0.5) ? in.pick({0.0, 1.0}) : in.uniform();
     const double through = in.chance(0.5) ? in.pick({0.0, 1.0}) : in.uniform();
+    material.metal = metal;
     for (int k = 0; k < 3; ++k) {
-        in.put(0.04 * (1.0 - metal) + metal * in.colour());
+        const double colour = in.colour();
+        in.put(metal == 1.0 ? colour : 0.04);
     }
     for (int k = 0; k < 3; ++k) {
         in.put((1.0 - metal) * (1.0 - transmitted) * (1.0 - through) * in.colour());
@@ -245,6 +248,12 @@ GivenMaterial putMaterial(InputSource& in, std::uint32_t without = 0) {
     return material;
 }
 
+// The metal of a material that has both bases; of others nothing reads it.
+void putMetal(InputSource& in, const GivenMaterial& material) {
+    in.put({in.colour(), in.colour(), in.colour()});
+    in.put(material.metal);
+}
+
 void putMaterialViewLight(InputSource& in, std::uint32_t without) {
     const GivenMaterial material = putMaterial(in, without);
     const Vector view = in.upper();
@@ -257,6 +266,7 @@ void putMaterialViewLight(InputSource& in, std::uint32_t without) {
     in.put(in.chance(0.3)   ? in.direction()
            : in.chance(0.6) ? mirrored
                             : in.refracted(view, alpha, material.eta));
+    putMetal(in, material);
 }
 
 }  // namespace
@@ -271,11 +281,12 @@ void fillBsdfWithoutSheen(InputSource& in) {
 }
 
 void fillBsdfSample(InputSource& in) {
-    putMaterial(in);
+    const GivenMaterial material = putMaterial(in);
     in.put(in.upper());
     for (int k = 0; k < 3; ++k) {
         in.put(in.sample());
     }
+    putMetal(in, material);
 }
 
 }  // namespace glint::numerics

@@ -105,6 +105,59 @@ TEST(Furnace, WhiteMetalReflectsEverything) {
     }
 }
 
+// glTF 2.0, appendix B.2: a base that is part metal is a mix of two BSDFs, whatever lies on top of it.
+TEST(Furnace, APartialMetalIsAMixOfTwoBases) {
+    Engine engine(kSeed);
+    for (int i = 0; i < 2000; ++i) {
+        TestMaterial dielectric = randomMaterial(
+            engine, GLINT_ANISOTROPY | GLINT_TRANSMISSION | GLINT_VOLUME | GLINT_DIFFUSE_TRANSMISSION);
+        dielectric.inputs = 0;
+        TestMaterial metal = dielectric;
+        metal.bsdf.f0 = colour(engine);
+        metal.bsdf.f90 = 1.0;
+        metal.bsdf.diffuse = metal.bsdf.transmitted = metal.bsdf.diffuseTransmitted = glm::dvec3(0.0);
+        metal.lobes &= GLINT_ANISOTROPY;
+        const double share = uniform(engine);
+        TestMaterial both = dielectric;
+        both.inputs = GLINT_PARTIAL_METAL;
+        both.bsdf.metalF0 = metal.bsdf.f0;
+        both.bsdf.metallic = share;
+        for (glm::dvec3* const lobe :
+             {&both.bsdf.diffuse, &both.bsdf.transmitted, &both.bsdf.diffuseTransmitted}) {
+            *lobe *= 1.0 - share;
+        }
+        const glm::dvec3 view = direction(uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi));
+        const glm::dvec3 light = direction(uniform(engine, -1.0, 1.0), uniform(engine, 0.0, 2.0 * kPi));
+        const glm::dvec3 truth =
+            glm::mix(dielectric.seenFrom(view).evaluate(light), metal.seenFrom(view).evaluate(light), share);
+        ASSERT_LE(glm::length(both.seenFrom(view).evaluate(light) - truth),
+                  1e-12 * (1.0 + glm::length(truth)))
+            << both;
+    }
+}
+
+TEST(Furnace, WhitePartialMetalReflectsEverything) {
+    for (const double metallic : {0.0, 0.1, 0.25, 0.5, 0.75, 1.0}) {
+        for (const double roughness : {0.1, 0.3, 0.5, 0.75, 1.0}) {
+            for (const bool passes : {false, true}) {
+                TestMaterial material = makeMaterial(roughness * roughness);
+                material.inputs = GLINT_PARTIAL_METAL;
+                material.bsdf.f0 = glm::dvec3(0.04);
+                material.bsdf.metalF0 = glm::dvec3(1.0);
+                material.bsdf.metallic = metallic;
+                glm::dvec3& lobe = passes ? material.bsdf.diffuseTransmitted : material.bsdf.diffuse;
+                lobe = glm::dvec3(1.0 - metallic);
+                material.lobes = passes ? GLINT_DIFFUSE_TRANSMISSION : 0U;
+                for (const double cosine : {0.1, 0.5, 1.0}) {
+                    EXPECT_NEAR(albedo(material.seenFrom(direction(cosine, 0.4)), 20000).x, 1.0, 0.01)
+                        << "metallic " << metallic << ", roughness " << roughness << ", cosine " << cosine
+                        << (passes ? ", light passes" : "");
+                }
+            }
+        }
+    }
+}
+
 TEST(Furnace, NothingReflectsMoreThanItReceives) {
     Engine engine(kSeed);
     // All lobes except Unlit and SpecularGlossiness.

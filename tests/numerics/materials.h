@@ -17,9 +17,10 @@ constexpr double kPi = 3.14159265358979323846;
 struct TestMaterial {
     glsl::Bsdf bsdf{};
     glsl::uint lobes = 0;
+    glsl::uint inputs = 0;
 
     glsl::Features features() const {
-        return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+        return {0U, 0U, 0xFFFFFFFFU, 0xFFFFFFFFU, lobes, inputs};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;
@@ -81,7 +82,14 @@ using Engine = std::mt19937_64;
     const glm::dvec3 iors(ior - spread, ior, ior + spread);
     b.eta = leaves ? 1.0 / iors : iors;
     const double metal = uniform(engine) < 0.5 ? std::round(uniform(engine)) : uniform(engine);
-    b.f0 = glm::mix(glm::dvec3(glsl::dielectricF0(ior)), colour(engine), metal);
+    b.f0 = glm::dvec3(glsl::dielectricF0(ior));
+    b.metalF0 = colour(engine);
+    b.metallic = metal;
+    if (metal == 1.0) {
+        b.f0 = b.metalF0;
+    } else if (metal > 0.0) {
+        material.inputs = GLINT_PARTIAL_METAL;
+    }
     const double transmission = material.has(GLINT_TRANSMISSION) ? uniform(engine) : 0.0;
     const double through = material.has(GLINT_DIFFUSE_TRANSMISSION) ? uniform(engine) : 0.0;
     const double dielectric = 1.0 - metal;
@@ -136,6 +144,10 @@ using Engine = std::mt19937_64;
     };
     out << "lobes " << material.lobes << ", alpha (" << b.alpha.x << ", " << b.alpha.y << ")";
     put("f0", b.f0);
+    if (material.inputs != 0U) {
+        out << ", metal " << b.metallic;
+        put("metal's f0", b.metalF0);
+    }
     put("diffuse", b.diffuse);
     put("transmitted", b.transmitted);
     put("diffuse transmitted", b.diffuseTransmitted);

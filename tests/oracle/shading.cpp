@@ -10,8 +10,10 @@ namespace {
 // glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular.
 struct Base {
     Vec3 diffuse;
-    Vec3 f0;
+    Vec3 f0;  // of the dielectric
     double f90;
+    Vec3 metalF0;
+    double metallic;
 };
 
 Base baseOf(const Material& material, const Vec3& color) {
@@ -21,15 +23,14 @@ Base baseOf(const Material& material, const Vec3& color) {
     const Vec3 dielectric =
         glm::min(squared((ior - 1.0) / (ior + 1.0)) * toVec(material.specular.colorFactor), Vec3(1.0)) *
         specular;
-    return {color * (1.0 - metallic), glm::mix(dielectric, color, metallic),
-            glm::mix(specular, 1.0, metallic)};
+    return {color * (1.0 - metallic), dielectric, specular, color, metallic};
 }
 
 glsl::Features featuresOf(const Material& material) {
     glsl::uint lobes = 0;
     lobes |= material.clearcoat.factor > 0.0F ? GLINT_CLEARCOAT : 0U;
     lobes |= toVec(material.sheen.colorFactor) != Vec3(0.0) ? GLINT_SHEEN : 0U;
-    return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+    return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, lobes, 0U};
 }
 
 glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view) {
@@ -38,6 +39,8 @@ glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view)
     bsdf.diffuse = base.diffuse;
     bsdf.f0 = base.f0;
     bsdf.f90 = base.f90;
+    bsdf.metalF0 = base.metalF0;
+    bsdf.metallic = base.metallic;
     bsdf.alpha = glm::dvec2(std::max(squared(material.roughnessFactor), glsl::kMinAlpha));
     bsdf.eta = Vec3(1.0);
     bsdf.clearcoat = material.clearcoat.factor;
@@ -80,7 +83,9 @@ Vec3 Shading::scattered(const Vec3& toLight) const {
 Vec3 Shading::mirrored(Vec3& direction) const {
     direction = frame_ * Vec3(-view_.x, -view_.y, view_.z);
     const Base base = baseOf(material_, baseColor());
-    return base.f0 + (Vec3(base.f90) - base.f0) * std::pow(1.0 - std::clamp(view_.z, 0.0, 1.0), 5.0);
+    const double weight = std::pow(1.0 - std::clamp(view_.z, 0.0, 1.0), 5.0);
+    return glm::mix(glm::mix(base.f0, Vec3(base.f90), weight), glm::mix(base.metalF0, Vec3(1.0), weight),
+                    base.metallic);
 }
 
 double Shading::reflectedByCoat() const {

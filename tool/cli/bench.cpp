@@ -282,6 +282,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(plan.error());
     }
     console.report(plan->warnings);
+    console.report(plan->notes);
     if (console.refused()) {
         return kExitFailed;
     }

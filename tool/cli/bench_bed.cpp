@@ -187,7 +187,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     }
     bed->context_ = std::move(*context);
     bed->onCpu_ = isOnCpu(*bed->context_);
-    if (Status settled = bed->settleStrategy(); !settled) {
+    if (Status settled = bed->settleChoices(); !settled) {
         return settled.error();
     }
     if (!base.environment.file.empty()) {
@@ -203,14 +203,16 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Console& console, const
     return bed;
 }
 
-// A bench compares with one strategy. With --strategy auto that is the strategy chosen for this scene.
-Status BenchBed::settleStrategy() {
-    if (base_.tracing.strategies.front() != kAutoStrategy) {
-        return okStatus();
-    }
+// A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
+// chosen for this scene.
+Status BenchBed::settleChoices() {
     const Result<PlanChoice> plan = choosePlan(base_.plan, SceneList({&scene_, 1}));
     if (!plan) {
         return plan.error();
+    }
+    base_.plan.alpha = toString(plan->options.keys.alpha);
+    if (base_.tracing.strategies.front() != kAutoStrategy) {
+        return okStatus();
     }
     std::vector<Diagnostic> warnings;
     const Result<StrategyAdvice> advice = adviseRender(base_, plan->options, *context_, scene_, warnings);

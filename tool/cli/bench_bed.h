@@ -136,7 +136,7 @@ public:
 private:
     BenchBed(const Console& console, RenderArguments base, const Scene& scene, ModuleCache* cache)
         : console_(console), base_(std::move(base)), scene_(scene), cache_(cache) {}
-    Status settleStrategy();
+    Status settleChoices();
     Result<std::shared_ptr<MountedPackage>> mountPackage(const RenderArguments& arguments);
 
     const Console& console_;

@@ -292,7 +292,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     if (console.isJson()) {
         Json result{{"scene", arguments.scene},
                     {"merge", arguments.plan.merge},
-                    {"alpha", arguments.plan.alpha},
+                    {"alpha", std::string(toString(planned.options.keys.alpha))},
                     {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
                     {"variant", textOrNull(scene->variant)},
                     {"variants", scene->variants}};

@@ -278,8 +278,9 @@ std::vector<CLI::Option*> addPlanOptions(CLI::App& command, PlanArguments& argum
                                     "limit of shaders: --merge auto and profile stay within\n"
                                     "it, the others fail above it; 0: no limit, or 32 for auto\n"
                                     "and profile");
-    CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"opaque", "tested"},
-                                   "alpha masks of hits; opaque: ignored;\ntested: each candidate is tested");
+    CLI::Option& alpha = addChoice(command, "--alpha", arguments.alpha, {"auto", "opaque", "tested"},
+                                   "alpha masks of hits; opaque: ignored; tested: each\n"
+                                   "candidate is tested; auto: tested if the scene has masks");
     CLI::Option& lobes = addChoices(command, "--hit-lobes", arguments.hitLobes, hitLobeChoices(),
                                     "which lobes of materials hits keep, separated by\n"
                                     "commas; primary surfaces keep all; base: unlit,\n"

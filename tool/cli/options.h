@@ -51,11 +51,12 @@ CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, c
 // same ones.
 struct PlanArguments {
     std::string merge = "family";
-    std::string alpha = "opaque";
+    std::string alpha = "auto";
     std::vector<std::string> hitLobes{"all"};
     std::int64_t maxShaders = 0;
     std::string profile;  // file of hit counts, for --merge profile and auto
-    // Returns everything except the hits of a profile, which choosePlan() reads.
+    // Returns everything except what choosePlan() finds out: the hits of a profile, and the alpha policy if it
+    // is `auto`.
     PlanOptions options() const;
 };
 // Returns the options, for commands that must know which of them are given.

@@ -108,11 +108,32 @@ void takeHits(const Profile& profile, const Profile& expected, const std::string
     }
 }
 
+// Decides what `--alpha auto` stands for, and says so where a scene has surfaces that are not opaque.
+void chooseAlpha(const PlanArguments& arguments, const SceneList& scenes, PlanChoice& choice) {
+    if (arguments.alpha == "auto" && hasAlphaMasks(scenes.materials(), scenes.primitives())) {
+        choice.options.keys.alpha = AlphaPolicy::Tested;
+        choice.notes.push_back({Severity::Note, "alpha-tested", "",
+                                "the scene has alpha masks, so rays test them (--alpha tested)",
+                                "--alpha opaque ignores masks where rays hit, which is faster"});
+    }
+    std::vector<std::string> blended;
+    for (const Material& material : scenes.materials()) {
+        if (material.alphaMode == AlphaMode::Blend) {
+            blended.push_back(material.name.empty() ? "a material without a name" : material.name);
+        }
+    }
+    if (!blended.empty()) {
+        choice.notes.push_back({Severity::Note, "alpha-blend", "",
+                                fmt::format("alphaMode BLEND is drawn opaque: {}", someOf(blended)), ""});
+    }
+}
+
 }  // namespace
 
 Result<PlanChoice> choosePlan(const PlanArguments& arguments, const SceneList& scenes) {
     PlanChoice choice;
     choice.options = arguments.options();
+    chooseAlpha(arguments, scenes, choice);
     if (arguments.profile.empty()) {
         return choice;
     }

@@ -290,7 +290,11 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.report(scene->warnings);
     const SceneList scenes({&*scene, 1});
-    const Result<PlanChoice> plan = choosePlan(arguments.plan, scenes);
+    PlanArguments planned = arguments.plan;
+    if (!arguments.package.empty()) {
+        planned.alpha = "opaque";  // The package has decided, so nothing is chosen here.
+    }
+    const Result<PlanChoice> plan = choosePlan(planned, scenes);
     if (!plan) {
         console.report(plan.error());
         return kExitFailed;

@@ -63,6 +63,7 @@ enum class Feature : std::uint8_t {
     ThicknessTexture,
     DiffuseTransmissionTexture,
     DiffuseTransmissionColorTexture,
+    PartialMetal,  // The base is neither all metal nor all dielectric: both are shaded.
 };
 
 constexpr FeatureMask bit(Feature feature) {

@@ -1,4 +1,18 @@
+#include "plan/plan.h"
 #include "plan/rules.h"
+
+#include <algorithm>
+
+namespace glint {
+
+bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives) {
+    return std::ranges::any_of(primitives, [&](const PrimitiveInputs& primitive) {
+        return rules::isAlphaTested(materials[static_cast<std::size_t>(primitive.material)], primitive,
+                                    {.alpha = AlphaPolicy::Tested});
+    });
+}
+
+}  // namespace glint
 
 namespace glint::rules {
 
@@ -18,6 +32,16 @@ bool canFailAlphaTest(const Material& material, const PrimitiveInputs& primitive
 bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options) {
     return options.alpha == AlphaPolicy::Tested && material.alphaMode == AlphaMode::Mask &&
            canFailAlphaTest(material, primitive);
+}
+
+// Every material has a metallicFactor, so a base that is all metal or all dielectric is not reported.
+Presence partialMetal(const Material& material, const PrimitiveInputs& primitive, const KeyOptions&,
+                      FeatureMask soFar) {
+    if (has(soFar, Feature::SpecularGlossiness) || material.metallicFactor == 0.0F ||
+        isMetal(material, primitive)) {
+        return absent();
+    }
+    return has(soFar, Feature::Unlit) ? dropped(kUnlitReadsBaseColor) : present();
 }
 
 Presence emissiveStrength(const Material& material, const PrimitiveInputs&, const KeyOptions&,

@@ -38,12 +38,6 @@ Presence lobe(bool given, FeatureMask soFar, std::initializer_list<Reason> reaso
     return given || !neutral ? dropped(found) : absent();
 }
 
-// Returns whether the surface is metal everywhere, so that no part of it is a dielectric.
-bool isMetal(const Material& material, const PrimitiveInputs& primitive) {
-    return material.metallicFactor == 1.0F &&
-           !isReadable(material, primitive, TextureSlot::MetallicRoughness);
-}
-
 bool isFullyRough(const Material& material, const PrimitiveInputs& primitive) {
     return material.roughnessFactor == 1.0F &&
            !isReadable(material, primitive, TextureSlot::MetallicRoughness);
@@ -68,6 +62,11 @@ bool hasThickness(const Material& material, const PrimitiveInputs& primitive) {
 }
 
 }  // namespace
+
+bool isMetal(const Material& material, const PrimitiveInputs& primitive) {
+    return material.metallicFactor == 1.0F &&
+           !isReadable(material, primitive, TextureSlot::MetallicRoughness);
+}
 
 Presence unlit(const Material& material, const PrimitiveInputs&, const KeyOptions&, FeatureMask) {
     return material.unlit ? present() : absent();

@@ -87,6 +87,10 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
 // Returns the same options, but with all lobes, as primary surfaces need them.
 KeyOptions keepAllLobes(KeyOptions options);
 
+// Returns whether rays can meet a surface that an alpha mask makes invisible in places. Requires every
+// PrimitiveInputs::material to index `materials`.
+bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives);
+
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);
 

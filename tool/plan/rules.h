@@ -37,6 +37,8 @@ bool isReadable(const Material& material, const PrimitiveInputs& primitive, Text
 // Returns whether the base colour is black everywhere. (With KHR_materials_pbrSpecularGlossiness it is the
 // diffuse colour.)
 bool isBlack(const Material& material);
+// Returns whether the surface is metal everywhere, so that no part of it is a dielectric.
+bool isMetal(const Material& material, const PrimitiveInputs& primitive);
 // Returns whether hits, or the raster pass, read alpha.
 bool isAlphaTested(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options);
 
@@ -82,6 +84,7 @@ Presence texCoord(const Material& material, const PrimitiveInputs& primitive, co
 }
 
 // Other inputs of the surface (input_rules.cpp)
+Rule partialMetal;
 Rule emissiveStrength;
 Rule vertexColor;
 Rule normals;

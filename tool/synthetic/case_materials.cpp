@@ -145,7 +145,7 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     const bool mirror = coherence == Coherence::Coherent;
     // The floor is not fully metallic, because metals have no dielectric lobes. It is not fully rough,
     // because anisotropy would then have no effect.
-    material.metallicFactor = mirror ? 1.0F - kFaint : 0.0F;
+    material.metallicFactor = mirror ? 1.0F - kFaint : kFaint;
     material.roughnessFactor = mirror ? 0.0F : 1.0F - kFaint;
     const auto fade = [](bool given, auto& value) { value = given ? kFaint : value; };
     fade(material.clearcoat.given, material.clearcoat.factor);

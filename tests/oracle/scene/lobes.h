@@ -41,8 +41,10 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     const Vec3 tint = toVec(material.specular.colorFactor) * Vec3(inputs.texel(TextureSlot::SpecularColor));
     const Vec3 dielectric = glm::min(squared((ior - 1.0) / (ior + 1.0)) * tint, Vec3(1.0)) * specular;
     bsdf.diffuse = base.color * (1.0 - base.metallic);
-    bsdf.f0 = glm::mix(dielectric, base.color, base.metallic);
-    bsdf.f90 = glm::mix(specular, 1.0, base.metallic);
+    bsdf.f0 = dielectric;
+    bsdf.f90 = specular;
+    bsdf.metalF0 = base.color;
+    bsdf.metallic = base.metallic;
     return base;
 }
 
@@ -94,7 +96,9 @@ struct SurfaceLobes {
     }
 
     glsl::Features features() const {
-        return {0U, 0U, 0xFFFFFFFFU, 0U, lobes, 0U};
+        // Here every material has both bases. The specification mixes them whatever the share of the metal
+        // is.
+        return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, lobes, 0U};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;
@@ -147,9 +151,12 @@ struct SurfaceLobes {
                                          inputs.texel(TextureSlot::IridescenceThickness).g);
         }
         const double cosine = std::clamp(toFrame(view).z, 0.0, 1.0);
-        const Vec3 film = glsl::iridescentFresnel(cosine, bsdf.f0, given.ior, thickness);
-        bsdf.f0 =
-            glm::mix(bsdf.f0, glm::min(glsl::schlickF0(film, bsdf.f90, cosine), Vec3(bsdf.f90)), factor);
+        const auto covered = [&](const Vec3& f0, double f90) {
+            const Vec3 film = glsl::iridescentFresnel(cosine, f0, given.ior, thickness);
+            return glm::mix(f0, glm::min(glsl::schlickF0(film, f90, cosine), Vec3(f90)), factor);
+        };
+        bsdf.f0 = covered(bsdf.f0, bsdf.f90);
+        bsdf.metalF0 = covered(bsdf.metalF0, 1.0);
     }
 
     // KHR_materials_transmission, _diffuse_transmission, _volume, _dispersion.

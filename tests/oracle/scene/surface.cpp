@@ -41,8 +41,8 @@ struct LitSurface::Lobes : SurfaceLobes {
         return behind;
     }
     Vec3 ambient(const GradientSky& sky) const {
-        const Vec3 all = glsl::specularAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias);
-        const Vec3 first = glsl::singleScatterAlbedo(bsdf, bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 all = glsl::specularAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 first = glsl::singleScatterAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
         const Vec3 passed3 = glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias);
         const double passed = std::max(std::min({passed3.x, passed3.y, passed3.z}), 0.0);
         const Vec3 n = frame[2];
@@ -50,7 +50,7 @@ struct LitSurface::Lobes : SurfaceLobes {
                        (all - first * tracedShare(roughness)) * skyAround(sky, reflectedView(), roughness)) *
                       occlusion;
         if (has(GLINT_TRANSMISSION)) {
-            result += bsdf.transmitted * skyBehind(sky) * std::max(1.0 - largestOf(all), 0.0);
+            result += bsdf.transmitted * skyBehind(sky) * passed;
         }
         if (has(GLINT_DIFFUSE_TRANSMISSION)) {
             result += bsdf.diffuseTransmitted * passed * diffuseSky(sky, -n);
@@ -68,12 +68,13 @@ struct LitSurface::Lobes : SurfaceLobes {
         return result;
     }
 
-    // Returns the mirror direction about a normal, lifted off the surface by a thousandth if it would point
-    // below it.
+    // Returns the mirror direction about a normal. Below the surface, it is reflected at the surface once
+    // more. It leaves the surface by at least a thousandth.
     Vec3 mirrorDirection(const Vec3& normal) const {
         const Vec3 direction = glm::reflect(-view, normal);
         const Vec3 out = side * inputs.point().geometricNormal;
-        return glm::normalize(direction + out * std::max(1e-3 - glm::dot(direction, out), 0.0));
+        const double height = glm::dot(direction, out);
+        return glm::normalize(direction + out * (std::max(std::abs(height), 1e-3) - height));
     }
 };
 
@@ -104,11 +105,18 @@ Vec3 LitSurface::geometricNormal() const {
 }
 
 Vec3 LitSurface::scattered(const Vec3& toLight) const {
-    const Vec3 light = lobes_->toFrame(toLight);
-    if (light.z * glm::dot(geometricNormal(), toLight) <= 0.0) {
-        return Vec3(0.0);
+    // A lobe counts if its normal and the triangle agree on which side the light is.
+    const Lobes& l = *lobes_;
+    const Vec3 light = l.toFrame(toLight);
+    const double height = glm::dot(geometricNormal(), toLight);
+    Vec3 result(0.0);
+    if (light.z * height > 0.0) {
+        result = glsl::evaluateBelowCoat(l.bsdf, l.features(), light) * (1.0 - l.coat());
     }
-    return glsl::evaluateBsdf(lobes_->bsdf, lobes_->features(), light);
+    if (l.has(GLINT_CLEARCOAT) && height > 0.0) {
+        result += glsl::evaluateCoat(l.bsdf, light);
+    }
+    return result;
 }
 
 Vec3 LitSurface::ambient(const GradientSky& sky) const {
@@ -120,7 +128,9 @@ std::vector<Mirror> LitSurface::mirrors() const {
     std::vector<Mirror> mirrors;
     if (const double traced = l.tracedShare(l.roughness); traced > 0.0) {
         const Vec3 weight =
-            glsl::fresnelSchlick(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z) * (traced * l.baseShare());
+            glm::mix(glsl::fresnelSchlick(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z),
+                     glsl::fresnelSchlick(l.bsdf.metalF0, 1.0, l.bsdf.view.z), l.bsdf.metallic) *
+            (traced * l.baseShare());
         if (weight != Vec3(0.0)) {
             mirrors.push_back({l.mirrorDirection(l.frame[2]), weight});
         }

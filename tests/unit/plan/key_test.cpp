@@ -147,6 +147,41 @@ INSTANTIATE_TEST_SUITE_P(
         NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m.alphaMode = AlphaMode::Blend; },
                     Feature::AlphaMask}));
 
+// Only a base that is part metal, part dielectric pays for both.
+TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
+    const auto hasBoth = [](float metallic, bool textured) {
+        Material material;
+        material.metallicFactor = metallic;
+        material.texture(TextureSlot::MetallicRoughness).texture = textured ? 0 : -1;
+        return (makeKey(material, fullPrimitive(), kTested) & bit(Feature::PartialMetal)) != 0;
+    };
+    EXPECT_FALSE(hasBoth(0.0F, false));
+    EXPECT_FALSE(hasBoth(0.0F, true));
+    EXPECT_TRUE(hasBoth(0.5F, false));
+    EXPECT_TRUE(hasBoth(0.5F, true));
+    EXPECT_FALSE(hasBoth(1.0F, false));
+    EXPECT_TRUE(hasBoth(1.0F, true));
+
+    Material glossy;
+    glossy.metallicFactor = 0.5F;
+    glossy.specularGlossiness.given = true;
+    EXPECT_EQ(makeKey(glossy, fullPrimitive(), kTested) & bit(Feature::PartialMetal), 0U);
+}
+
+TEST(Key, RaysMeetAlphaMasksThatCanFail) {
+    Material material;
+    const PrimitiveInputs primitive = fullPrimitive();
+    const auto masked = [&] { return hasAlphaMasks({&material, 1}, {&primitive, 1}); };
+    EXPECT_FALSE(masked());
+    material.alphaMode = AlphaMode::Mask;
+    EXPECT_TRUE(masked());
+    material.alphaCutoff = 0.0F;
+    EXPECT_FALSE(masked());
+    material.alphaCutoff = 0.5F;
+    material.alphaMode = AlphaMode::Blend;
+    EXPECT_FALSE(masked());
+}
+
 TEST(Key, AStrengthOfZeroIsNotNeutralForALightSource) {
     Material material = fullMaterial();
     material.emissiveStrength = 0.0F;
