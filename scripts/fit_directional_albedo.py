@@ -154,10 +154,24 @@ SHEEN_FALL = 0.2  # of the factor exp2(-fall cos² / alpha)
 MEAN_LOSS_N = [(i, j) for i in (0, 1) for j in (2, 3, 4, 5)]
 MEAN_BIAS_N = [(0, j) for j in (0, 1, 2)]
 POLYNOMIAL = [(0, 0)]
-LIKE = 0.2956
-ANISO_UNDER, ANISO_OVER, ANISO_GRAZING = 1e-3, 8.2e-3, 2e-2
-ANISO_LOSS = [(0, 0, 0, 0), (0, 0, 0, 2), (0, 0, 1, 1), (0, 0, 1, 2), (0, 0, 2, 1), (0, 0, 2, 2), (0, 1, 0, 1), (0, 1, 0, 3), (0, 1, 1, 0), (0, 1, 1, 1), (0, 2, 0, 1), (0, 2, 1, 1), (0, 3, 0, 1), (1, 0, 0, 0), (1, 0, 2, 1), (1, 2, 0, 0), (1, 3, 0, 0), (2, 0, 0, 0), (2, 0, 1, 0), (2, 0, 2, 0), (2, 1, 0, 0), (2, 1, 0, 1), (2, 1, 1, 0), (3, 0, 0, 0), (3, 0, 1, 0), (4, 0, 0, 0)]
-ANISO_LOSS = [(i, l, j, k) for i, j, k, l in ANISO_LOSS]
+# Anisotropic lobes: LIKE is of the alpha of the isotropic lobe that loses about as much. The terms of the factor on its
+# loss are exponents of the variables of anisotropic_view().
+LIKE = 0.22
+# Bounds of fit - truth: of the loss, low below a cosine of 0.05 too; of the weighted part.
+ANISO_UNDER, ANISO_OVER, ANISO_GRAZING, ANISO_BIAS_OVER = 1e-3, 9.2e-3, 1.7e-2, 5.5e-2
+ANISO_MEAN_LOW, ANISO_MEAN_SLACK = 0.9925, 6e-4
+ANISO_LOSS = [(0, 0, 0, 0), (0, 0, 1, 1), (0, 0, 2, 0), (0, 0, 3, 0), (0, 0, 4, 0), (0, 1, 1, 0), (0, 1, 1, 1)]
+ANISO_LOSS += [(0, 1, 2, 0), (0, 1, 2, 1), (0, 1, 3, 0), (0, 2, 0, 0), (0, 2, 0, 2), (0, 3, 1, 0)]
+ANISO_LOSS += [(1, 0, 0, 0), (1, 0, 2, 0), (1, 1, 0, 2), (1, 1, 2, 0), (1, 3, 0, 0)]
+ANISO_LOSS += [(2, 0, 0, 0), (2, 0, 0, 1), (2, 0, 0, 2), (2, 0, 1, 0), (2, 0, 1, 1), (2, 1, 1, 0), (3, 0, 0, 0)]
+ANISO_LOSS += [(4, 0, 0, 0)]
+
+# Of the factor on the shift of the alpha along the view, which is the second variable; the last is length.
+ANISO_BIAS = [(0, 0, 0, 0), (0, 0, 0, 1), (0, 0, 0, 2), (0, 0, 0, 3), (0, 0, 1, 0), (0, 0, 1, 1), (0, 0, 1, 2)]
+ANISO_BIAS += [(0, 1, 0, 0), (0, 1, 0, 1), (0, 1, 0, 2), (1, 0, 0, 0), (1, 0, 0, 2), (1, 0, 1, 0), (1, 0, 1, 1)]
+ANISO_BIAS += [(1, 0, 2, 0), (1, 1, 0, 1), (1, 2, 0, 0), (2, 0, 0, 0), (2, 0, 0, 1)]
+ANISO_MEAN = [(i, j) for i in range(5) for j in range(5) if i + j <= 4]  # of √ of the larger alpha, and of the ratio
+ANISO_MEAN_BIAS = [(i, j) for i in range(3) for j in range(3) if i + j <= 2]  # of both alphas
 
 
 def monomials(variables, exponents):
@@ -282,27 +296,110 @@ def fitted_anisotropic_loss(loss, aniso, view, alpha):
     return lost * (1 + (1 - ratio) * polynomial(aniso, ANISO_LOSS, variables))
 
 
-def anisotropic_grid(alphas, strengths, cosines, azimuths):
-    """(view, alpha) as flat arrays, for alphas as KHR_materials_anisotropy makes them of a roughness and a strength"""
-    across, strength, z, phi = (v.ravel() for v in np.meshgrid(alphas, strengths, cosines, azimuths, indexing="ij"))
+def anisotropic_shift(shift, view, alpha):
+    """The isotropic shift, for the alpha along the view"""
+    x, y, z = view
+    across = np.maximum(x * x + y * y, x.dtype.type(1e-12))
+    along = np.sqrt(((alpha[0] * x) ** 2 + (alpha[1] * y) ** 2) / across)
+    along = np.clip(along, x.dtype.type(MIN_ALPHA), x.dtype.type(1))
+    return along, rational(shift, SHIFT_N, SHIFT_Q, z, along)
+
+
+def fitted_anisotropic_bias(shift, bias, kept, view, alpha):
+    (cosine, _, larger, ratio), length = anisotropic_view(view, alpha)
+    along, moved = anisotropic_shift(shift, view, alpha)
+    terms = polynomial(bias[:-1], ANISO_BIAS, (cosine, along, ratio, length))
+    moved = moved + (1 - ratio) * (moved * terms + bias[-1].astype(larger.dtype) * larger * view[2] * cosine)
+    return kept * np.clip(1 - view[2] - moved, 0, 1) ** 5
+
+
+def anisotropic_samples(seed, count):
+    """(view, alpha) as flat arrays: roughness and strength as artists set them, many views near grazing and across"""
+    random = np.random.default_rng(seed)
+    across = np.maximum(random.random(count) ** 2, MIN_ALPHA)
+    strength = random.random(count) ** 0.7
+    strength[::7] = 1
+    z = np.where(random.random(count) < 0.4, 10 ** random.uniform(-4, 0, count), random.random(count))
+    phi = np.pi / 2 * (1 - np.where(random.random(count) < 0.5, random.random(count) ** 2, random.random(count)))
+    phi[::6], phi[1::9] = np.pi / 2, 0
     sine = np.sqrt((1 - z) * (1 + z))
     return (sine * np.cos(phi), sine * np.sin(phi), z), (across + (1 - across) * strength**2, across)
 
 
-def fit_anisotropic_loss(loss):
-    alphas = [1e-4, 2.5e-3, 0.01, 0.03, 0.06, 0.1, 0.16, 0.25, 0.36, 0.5, 0.7, 0.9]
-    strengths = [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1]
-    cosines = [1e-3, 5e-3, 0.02, 0.05, 0.1, 0.17, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.93, 0.98, 1]
-    view, alpha = anisotropic_grid(alphas, strengths, cosines, np.linspace(0, np.pi / 2, 8))
-    truth = 1 - anisotropic_ggx(view, alpha)[0]
-    variables, _ = anisotropic_view(view, alpha)
-    cosine, _, along, ratio = variables
-    base = rational(loss, LOSS_N, LOSS_Q, cosine, like_isotropic(along, ratio))
+def fit_anisotropic(loss, shift):
+    """(constants of the loss, of the bias)"""
+    view, alpha = anisotropic_samples(7, 36000)
+    white, weighted = anisotropic_ggx(view, alpha)
+    variables, length = anisotropic_view(view, alpha)
+    cosine, _, larger, ratio = variables
+    z = view[2]
+    base = rational(loss, LOSS_N, LOSS_Q, cosine, like_isotropic(larger, ratio))
     factor = (1 - ratio) * base
-    under = np.where(view[2] < 0.05, ANISO_GRAZING, ANISO_OVER) - 2e-4
-    low = (np.maximum(truth - under, 0) - base) / factor
-    high = (truth + ANISO_UNDER - 2e-4 - base) / factor
-    return fit("anisotropic loss", variables, ANISO_LOSS, [(0, 0, 0, 0)], low, high)
+    low = np.maximum(1 - white - np.where(z < 0.05, ANISO_GRAZING, ANISO_OVER) + 4e-4, 0)
+    high = 1 - white + np.where(z < 0.001, 3e-3, ANISO_UNDER - 2e-4)
+    rows = ratio < 0.97  # the rest is the isotropic fit, and has its errors
+    chosen = [v[rows] for v in variables]
+    bounds = [((v - base) / factor)[rows] for v in (low, high)]
+    aniso = fit("anisotropic loss", chosen, ANISO_LOSS, [(0,) * 4], *bounds)[:-1]
+
+    kept = 1 - fitted_anisotropic_loss(loss, aniso, view, alpha)
+    along, moved = anisotropic_shift(shift, view, alpha)
+    top, bottom = weighted + ANISO_BIAS_OVER - 1e-3, weighted - np.where(z < 2e-3, 4e-3, ANISO_UNDER - 2e-4)
+    low = np.where(top >= kept, -5, 1 - np.minimum(top / kept, 1) ** 0.2)
+    high = np.where(bottom < 2e-4, 5, 1 - np.clip(bottom / kept, 0, 1) ** 0.2)
+    low, high = ((v - z - moved) / (1 - ratio) for v in (low, high))
+    variables = [v[rows] for v in (cosine, along, ratio, length, moved, larger * z * cosine)]
+    terms = [e + (1, 0) for e in ANISO_BIAS] + [(0, 0, 0, 0, 0, 1)]
+    return aniso, fit("anisotropic shift", variables, terms, [(0,) * 6], low[rows], high[rows])[:-1]
+
+
+def anisotropic_means(loss, shift, aniso, bias, alpha):
+    """(mean loss, mean weighted part) of exactly these fits"""
+    x, w = np.polynomial.legendre.leggauss(120)
+    z = np.exp((x - 1) / 2 * np.log(1e9))
+    phi, around = np.polynomial.legendre.leggauss(24)
+    phi = np.pi / 4 * (phi + 1)
+    weight = (w * np.log(1e9) * z * z)[:, None] * around / 2
+    result = []
+    for larger, across in zip(*alpha):
+        z_, phi_ = np.meshgrid(z, phi, indexing="ij")
+        sine = np.sqrt((1 - z_) * (1 + z_))
+        view = (sine * np.cos(phi_), sine * np.sin(phi_), z_)
+        lost = fitted_anisotropic_loss(loss, aniso, view, (larger, across))
+        weighted = fitted_anisotropic_bias(shift, bias, 1 - lost, view, (larger, across))
+        result.append(((lost * weight).sum(), (weighted * weight).sum()))
+    return np.transpose(result)
+
+
+def anisotropic_pairs(seed, count):
+    random = np.random.default_rng(seed)
+    across = np.maximum(random.random(count) ** 2, MIN_ALPHA)
+    strength = random.random(count)
+    strength[::6], across[::11] = 1, MIN_ALPHA
+    return across + (1 - across) * strength**2, across
+
+
+def fitted_anisotropic_means(mean_loss, aniso_mean, larger, across):
+    ratio = across / larger
+    like = like_isotropic(larger, ratio)
+    lost = rational(mean_loss, MEAN_LOSS_N, POLYNOMIAL, -np.log2(like), like)
+    factor = 1 + (1 - ratio) * polynomial(aniso_mean[0], ANISO_MEAN, (np.sqrt(larger), ratio))
+    return lost * factor, polynomial(aniso_mean[1], ANISO_MEAN_BIAS, (larger, across))
+
+
+def fit_anisotropic_means(loss, shift, aniso, bias, mean_loss):
+    larger, across = anisotropic_pairs(11, 1500)
+    ratio = across / larger
+    rows = ratio < 0.97
+    larger, across, ratio = larger[rows], across[rows], ratio[rows]
+    lost, weighted = anisotropic_means(loss, shift, aniso, bias, (larger, across))
+    base = fitted_anisotropic_means(mean_loss, np.zeros((2, 99)), larger, across)[0]
+    bounds = lost / (1 + 2e-4), (lost + ANISO_MEAN_SLACK) / (ANISO_MEAN_LOW + 5e-4)
+    low, high = ((bound - base) / (base * (1 - ratio)) for bound in bounds)
+    return (
+        fit("anisotropic mean loss", (np.sqrt(larger), ratio), ANISO_MEAN, POLYNOMIAL, low, high)[:-1],
+        fit("anisotropic mean bias", (larger, across), ANISO_MEAN_BIAS, POLYNOMIAL, weighted - 8e-3, weighted)[:-1],
+    )
 
 
 def fitted_masking(masking, mu, alpha):
