@@ -24,7 +24,8 @@ struct Bsdf {
     GLINT_RELAXED float f90;      // reflectance at grazing angles, of the same base as f0
     GLINT_RELAXED vec3 metalF0;   // reflectance of the metal at normal incidence; it is 1 at grazing angles
     GLINT_RELAXED float metallic; // share of the metal; this and metalF0 are read if the key has both bases
-    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy
+    vec2 alpha;     // of the microfacets along x and y, at least kMinAlpha; equal unless the key has anisotropy, where x is
+                    // no smaller
     GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
@@ -95,23 +96,12 @@ GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
     return min(v.x, min(v.y, v.z));
 }
 
-// The part of the fitted loss that counts if the lobe is anisotropic. The fits are for isotropic lobes, and along some
-// azimuths an anisotropic lobe loses less than an isotropic lobe with either of its alphas. With this factor the
-// thousands of lobes of the furnace test make no light.
-float lossShare(Bsdf b) {
-    return 0.75 + 0.25 * min(b.alpha.x, b.alpha.y) / max(b.alpha.x, b.alpha.y);
-}
-
-// ggxAlbedo() of a lobe that may be anisotropic. E falls with alpha, except for views near grazing, where it rises. So
-// the smaller loss of the two alphas and the larger bias are taken, which makes no energy.
-vec2 lobeAlbedo(Bsdf b, Features features, float cosine) {
-    vec2 albedo = ggxAlbedo(cosine, b.alpha.x);
+// The loss 1 - E and the bias of the microfacets in a direction of the upper hemisphere.
+vec2 lobeAlbedo(Bsdf b, Features features, vec3 direction) {
     if (hasLobe(features, GLINT_ANISOTROPY)) {
-        vec2 other = ggxAlbedo(cosine, b.alpha.y);
-        float loss = min(albedo.x, other.x) * lossShare(b);
-        albedo = vec2(loss, min(max(albedo.y, other.y), 1.0 - loss));
+        return anisotropicGgxAlbedo(direction, b.alpha);
     }
-    return albedo;
+    return ggxAlbedo(direction.z, b.alpha.x);
 }
 
 // Prepares the BSDF for a view, which is a unit vector in the frame of the surface.
@@ -122,14 +112,10 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
         float length2 = dot(across, across);
         b.view = vec3(length2 > 0.0 ? across * inversesqrt(length2) : vec2(1.0, 0.0), kMinViewCosine);
     }
-    vec2 lossBias = lobeAlbedo(b, features, b.view.z);
+    vec2 lossBias = lobeAlbedo(b, features, b.view);
     b.viewLoss = lossBias.x;
     b.viewBias = lossBias.y;
-    vec2 mean = ggxMeanAlbedo(b.alpha.x);
-    if (hasLobe(features, GLINT_ANISOTROPY)) {
-        vec2 other = ggxMeanAlbedo(b.alpha.y);
-        mean = vec2(min(mean.x, other.x) * lossShare(b), max(mean.y, other.y));
-    }
+    vec2 mean = hasLobe(features, GLINT_ANISOTROPY) ? anisotropicGgxMeanAlbedo(b.alpha) : ggxMeanAlbedo(b.alpha.x);
     b.meanLoss = mean.x;
     b.meanBias = mean.y;
     b.sheenAlbedo = 0.0;
@@ -151,18 +137,19 @@ bool seenFromWithin(Bsdf b, Features features) {
 
 // The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
 // whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
-// Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5.
-GLINT_RELAXED float diffuseShare(Bsdf b, Features features, float lightCosine, GLINT_RELAXED float fresnel) {
+// Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light on
+// the far side is mirrored.
+GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
         // E does not include total reflection, so this uses what the smooth interface lets through, in both directions.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
-        vec2 light2 = exactSquare(vec2(lightCosine, 0.0));
+        vec2 light2 = exactSquare(vec2(l.z, 0.0));
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
     }
     if (GLINT_ENERGY_COMPENSATION == 0) {
         return 1.0 - fresnel;
     }
-    vec2 light = lobeAlbedo(b, features, lightCosine);
+    vec2 light = lobeAlbedo(b, features, l);
     float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
     float out1 = smallest(specularPassed(b, light.x, light.y));
     // If all light is reflected, both factors vanish together with the mean.
@@ -196,10 +183,10 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     Facet facet = facetBetween(b, features, l);
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
     if (GLINT_ENERGY_COMPENSATION != 0) {
-        float lightLoss = lobeAlbedo(b, features, l.z).x;
+        float lightLoss = lobeAlbedo(b, features, l).x;
         specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
     }
-    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l.z, largest(facet.dielectricFresnel)));
+    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
     return (diffuse + specular) * l.z;
 }
 
@@ -236,7 +223,7 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
         // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view counts.
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
-        result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, -l.z, fresnel) * -l.z);
+        result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, vec3(l.xy, -l.z), fresnel) * -l.z);
     }
     return result;
 }

@@ -42,3 +42,8 @@ vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {
 float visibleNormalPdf(vec3 v, vec3 h, vec2 alpha) {
     return 2.0 * ggxDistribution(h, alpha) * max(accurateDot(v, h), 0.0) / (v.z + ggxProjection(v, alpha));
 }
+
+// The density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), with the cosine cancelled.
+float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
+    return 0.5 * ggxDistribution(h, alpha) / (v.z + ggxProjection(v, alpha));
+}

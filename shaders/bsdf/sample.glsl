@@ -79,11 +79,6 @@ float sampledIndex(Bsdf b, Features features, float u) {
     return b.eta.y;
 }
 
-// The density of the mirror direction of a visible facet: visibleNormalPdf() / (4 v·h), with the cosine cancelled.
-float mirroredPdf(vec3 v, vec3 h, vec2 alpha) {
-    return 0.5 * ggxDistribution(h, alpha) / (v.z + ggxProjection(v, alpha));
-}
-
 // The density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {

@@ -1,19 +1,51 @@
 // The sky's light on a surface, for the part that no rays bring.
+#include "bsdf/ggx.glsl"
 #include "effects/sky.glsl"
 #include "effects/sky_shares.glsl"
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
-// The mirror direction. An anisotropic lobe spreads across its grooves, so the normal bends towards the view within the
-// plane of the grooves' normals (KHR_materials_anisotropy, implementation notes).
-vec3 ambientMirror(Surface surface, Features features, vec3 view) {
-    vec3 normal = surface.normal;
-    if (hasLobe(features, GLINT_ANISOTROPY)) {
-        vec3 across = cross(cross(surface.bitangent, view), surface.bitangent);
-        float bend = (surface.bsdf.alpha.x - surface.bsdf.alpha.y) * (1.0 - surface.roughness * surface.roughness);
-        normal = directionOr(mix(normal, directionOr(across, normal), bend), normal);
+// The number of directions in which an anisotropic lobe reads the sky.
+const int kLobeTaps = 16;
+
+// The roughness whose lobe about a direction stands for a sample of this density. Seen head on, a lobe has a density of
+// (1 + alpha²) / (4π alpha²) at its centre.
+float tapRoughness(float pdf) {
+    float filled = min(1.0 / (4.0 * kPi * float(kLobeTaps) * max(pdf, 1e-6)), 0.5);
+    return sqrt(sqrt(filled / (1.0 - filled)));
+}
+
+// The mean of the sky over an anisotropic lobe at the first bounce, by filtered importance sampling (Křivánek and
+// Colbert 2008, "Real-time Shading with Filtered Importance Sampling"). Hammersley's points choose visible normals. Each
+// direction reads the level of the map whose lobe fills its share of the solid angle. Fresnel does not weight them,
+// because the albedo has it.
+vec3 skyAroundLobe(Surface surface) {
+    Bsdf b = surface.bsdf;
+    vec3 sum = vec3(0.0);
+    float total = 0.0;
+    for (int i = 0; i < kLobeTaps; ++i) {
+        vec2 u = vec2(float(bitfieldReverse(uint(i))) * 2.3283064e-10, float(i) / float(kLobeTaps));
+        vec3 h = sampleVisibleNormal(b.view, b.alpha, u + vec2(0.5 / float(kLobeTaps)));
+        vec3 l = reflect(-b.view, h);
+        // G₂ / G₁. Light from below is masked.
+        float weight = max(l.z, 0.0) * ggxVisibility(l, b.view, b.alpha);
+        sum += weight * skyAround(toWorld(surface, l), tapRoughness(mirroredPdf(b.view, h, b.alpha)));
+        total += weight;
     }
-    return reflect(-view, normal);
+    return sum / max(total, 1e-12);
+}
+
+// The light that the microfacets reflect of the sky. `mirrored` is the share of the first bounce that the sky brings.
+vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELAXED float mirrored) {
+    GLINT_RELAXED vec3 all = specularAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss,
+                                                   surface.bsdf.viewBias);
+    if (hasLobe(features, GLINT_ANISOTROPY)) {
+        // Later bounces have nearly forgotten where the view was.
+        vec3 again = (all - first) * skyIrradianceOverPi(surface.normal);
+        return mirrored > 0.0 ? again + first * mirrored * skyAroundLobe(surface) : again;
+    }
+    return (all - first * (1.0 - mirrored)) * skyAround(reflect(-view, surface.normal), surface.roughness);
 }
 
 // The sky behind the surface, through the microfacets. A thin wall does not bend the view; a volume bends it where it
@@ -40,14 +72,11 @@ vec3 ambientTransmission(Surface surface, Features features) {
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
-    GLINT_RELAXED vec3 albedo = specularAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    GLINT_RELAXED vec3 reflected = albedo - first * (1.0 - sky.mirrored);
     GLINT_RELAXED float below = diffusePassed(surface);
     // The occlusion texture describes the outside, and so do the rays of ambient occlusion.
     GLINT_RELAXED float open = surface.occlusion * sky.open;
     vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * skyIrradianceOverPi(surface.normal) +
-                 reflected * skyAround(ambientMirror(surface, features, view), surface.roughness);
+                 ambientReflection(surface, features, view, sky.mirrored);
     vec3 back = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION) && sky.transmitted > 0.0) {
         back += ambientTransmission(surface, features) * sky.transmitted;

@@ -68,13 +68,18 @@ using Engine = std::mt19937_64;
     return std::max(roughness * roughness, leastAlpha);
 }
 
+// Returns the alpha along the direction of anisotropy: KHR_materials_anisotropy.
+[[maybe_unused]] double anisotropicAlpha(double alpha, double strength) {
+    return alpha + (1.0 - alpha) * strength * strength;
+}
+
 // Returns a material with any combination of the lobes in `allowed`.
 [[maybe_unused]] TestMaterial randomMaterial(Engine& engine, glsl::uint allowed, double leastAlpha = 1e-4) {
     TestMaterial material = makeMaterial(randomAlpha(engine, leastAlpha));
     glsl::Bsdf& b = material.bsdf;
     material.lobes = static_cast<glsl::uint>(engine()) & allowed;
     if (material.has(GLINT_ANISOTROPY)) {
-        b.alpha.x = randomAlpha(engine, leastAlpha);
+        b.alpha.x = anisotropicAlpha(b.alpha.y, uniform(engine));
     }
     const double ior = uniform(engine) < 0.1 ? 1.0 : uniform(engine, 1.0, 3.0);
     const bool leaves = material.has(GLINT_VOLUME) && uniform(engine) < 0.4;

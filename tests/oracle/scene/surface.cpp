@@ -2,6 +2,9 @@
 
 #include "oracle/scene/lobes.h"
 
+#include <array>
+#include <numbers>
+
 namespace glint::oracle {
 
 struct LitSurface::Lobes : SurfaceLobes {
@@ -16,15 +19,40 @@ struct LitSurface::Lobes : SurfaceLobes {
     static Vec3 skyAround(const GradientSky& sky, const Vec3& direction, double lobeRoughness) {
         return glm::mix(sky(direction), diffuseSky(sky, direction), lobeRoughness);
     }
-    // KHR_materials_anisotropy, implementation notes: the normal bends towards the view.
-    Vec3 reflectedView() const {
-        Vec3 normal = frame[2];
-        if (has(GLINT_ANISOTROPY)) {
-            const Vec3 across = glm::cross(glm::cross(frame[1], view), frame[1]);
-            const double bend = (bsdf.alpha.x - bsdf.alpha.y) * (1.0 - squared(roughness));
-            normal = glm::normalize(glm::mix(normal, glm::normalize(across), bend));
+    // Returns the sky over an anisotropic lobe by filtered importance sampling (Křivánek and Colbert 2008):
+    // 16 visible normals, by Hammersley's points, each of which sees a lobe whose density at its centre is
+    // that of the sample times 16.
+    Vec3 skyAroundLobe(const GradientSky& sky) const {
+        constexpr unsigned kTaps = 16;
+        constexpr std::array kReversed{0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+        const Vec3 v = bsdf.view;
+        Vec3 sum(0.0);
+        double total = 0.0;
+        for (unsigned i = 0; i < kTaps; ++i) {
+            const Vec2 u((kReversed[i] + 0.5) / kTaps, (i + 0.5) / kTaps);
+            const Vec3 h = glsl::sampleVisibleNormal(v, bsdf.alpha, u);
+            const Vec3 l = glm::reflect(-v, h);
+            if (l.z <= 0.0) {
+                continue;
+            }
+            const double weight = l.z * glsl::ggxVisibility(l, v, bsdf.alpha);
+            const double density = glsl::visibleNormalPdf(v, h, bsdf.alpha) / (4.0 * glm::dot(v, h));
+            // (1 + α²) / (4π α²) = 16 density
+            const double filled =
+                std::min(1.0 / (4.0 * std::numbers::pi * kTaps * std::max(density, 1e-6)), 0.5);
+            sum += weight * skyAround(sky, frame * l, std::pow(filled / (1.0 - filled), 0.25));
+            total += weight;
         }
-        return glm::reflect(-view, normal);
+        return sum / std::max(total, 1e-12);
+    }
+    // Returns what the microfacets reflect of the sky, of which rays bring `traced` of the first bounce.
+    Vec3 reflection(const GradientSky& sky, double traced) const {
+        const Vec3 all = glsl::specularAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 first = glsl::singleScatterAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
+        if (has(GLINT_ANISOTROPY)) {
+            return first * (1.0 - traced) * skyAroundLobe(sky) + (all - first) * diffuseSky(sky, frame[2]);
+        }
+        return (all - first * traced) * skyAround(sky, glm::reflect(-view, frame[2]), roughness);
     }
     // Returns the sky behind a thin wall, or where a volume bends the view to as it enters, with one index
     // for each channel.
@@ -41,13 +69,10 @@ struct LitSurface::Lobes : SurfaceLobes {
         return behind;
     }
     Vec3 ambient(const GradientSky& sky) const {
-        const Vec3 all = glsl::specularAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
-        const Vec3 first = glsl::singleScatterAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
         const Vec3 passed3 = glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias);
         const double passed = std::max(std::min({passed3.x, passed3.y, passed3.z}), 0.0);
         const Vec3 n = frame[2];
-        Vec3 result = (bsdf.diffuse * passed * diffuseSky(sky, n) +
-                       (all - first * tracedShare(roughness)) * skyAround(sky, reflectedView(), roughness)) *
+        Vec3 result = (bsdf.diffuse * passed * diffuseSky(sky, n) + reflection(sky, tracedShare(roughness))) *
                       occlusion;
         if (has(GLINT_TRANSMISSION)) {
             result += bsdf.transmitted * skyBehind(sky) * passed;
