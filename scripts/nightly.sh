@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs what takes too long for every change: all combinations of settings, clang-tidy, and fuzzing up to a number of
-# executions.
+# Runs what takes too long for every change: all combinations of settings, clang-tidy, fuzzing up to a number of
+# executions, and the comparison with a viewer that others wrote.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -14,16 +14,17 @@ Sets up, builds, and runs all parts, or those that are named:
           shadows, ordering and binning, where scripts/test.sh takes every pair of values
   lint    scripts/lint.sh
   fuzz    scripts/fuzz.sh --executions 10000000
+  viewer  scripts/viewer_compare.sh, which is left out without Chromium, npm or network
 TEXT
 }
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep lint fuzz)
+    parts=(sweep lint fuzz viewer)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | lint | fuzz) ;;
+        sweep | lint | fuzz | viewer) ;;
         -h | --help)
             usage
             exit 0
@@ -45,5 +46,11 @@ for part in "${parts[@]}"; do
             ;;
         lint) scripts/lint.sh ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;
+        viewer)
+            scripts/setup.sh --viewer || true
+            cmake --preset release >/dev/null
+            cmake --build --preset release --target glint
+            scripts/viewer_compare.sh
+            ;;
     esac
 done

@@ -1,0 +1,192 @@
+"""Renders scenes with Glint and with the Khronos glTF viewer and reports the ratios. scripts/viewer_compare.sh runs it."""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import browser
+import images
+import report
+import scenes
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENT = ROOT / "docs" / "materials.md"
+BEGIN, END = "<!-- begin viewer -->", "<!-- end viewer -->"
+MODES = {
+    "prefiltered": ["--effects", "none"],
+    "traced": ["--effects", "reflection,refraction", "--max-roughness", "1"],
+}
+SAMPLES = 16  # 4 x 4 of the viewer, which page.js has, too
+BACKGROUND_DIFFERENCE = 0.01  # at most; more means that cameras or maps differ
+
+# Models that the viewer reads, and that have materials. Draco and meshopt compression need further packages.
+MODELS = [
+    "AlphaBlendModeTest/AlphaBlendModeTest.gltf",
+    "AnisotropyBarnLamp-ktx2/AnisotropyBarnLamp.gltf",
+    "AnisotropyStrengthTest/AnisotropyStrengthTest.gltf",
+    "ClearCoatTest/ClearCoatTest.gltf",
+    "DiffuseTransmissionTest-rebuilt/DiffuseTransmissionTest-rebuilt.gltf",
+    "Duck-quantized/Duck.gltf",
+    "EmissiveStrengthTest/EmissiveStrengthTest.gltf",
+    "IridescenceSuzanne/IridescenceSuzanne.glb",
+    "MorphPrimitivesTest/MorphPrimitivesTest.glb",
+    "NegativeScaleTest/NegativeScaleTest.glb",
+    "NormalTangentMirrorTest/NormalTangentMirrorTest.gltf",
+    "SheenChair/SheenChair.gltf",
+    "SpecularTest/SpecularTest.glb",
+    "TextureTransformMultiTest/TextureTransformMultiTest.glb",
+    "TransmissionRoughnessTest/TransmissionRoughnessTest.glb",
+    "box-textured-separate-webp/box-textured-separate.gltf",
+    "dispersion-test/dispersion-test.glb",
+]
+# The pictures of the document.
+PICTURES = ["spheres_metallic", "spheres_anisotropy", "spheres_normals", "TextureTransformMultiTest",
+            "AnisotropyStrengthTest"]
+
+
+def say(message):
+    print(f"viewer_compare.sh: {message}", file=sys.stderr, flush=True)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--package", type=pathlib.Path, required=True, help="the folder of the viewer's package")
+    parser.add_argument("--package-name", required=True)
+    parser.add_argument("--glint", type=pathlib.Path, required=True)
+    parser.add_argument("--models", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--size", default="320x240", help="of the models' pictures")
+    parser.add_argument("--scenes", default="", help="only these, separated by commas")
+    parser.add_argument("--document", action="store_true", help="also write the table and pictures of the document")
+    return parser.parse_args()
+
+
+def write_scenes(options):
+    """Writes every wanted scene."""
+    wanted = set(filter(None, options.scenes.split(",")))
+    found = [scene for scene in scenes.write_all_spheres(options.out / "scenes")
+             if not wanted or scene.name in wanted]
+    tile = tuple(int(number) for number in options.size.split("x"))
+    for path in MODELS:
+        source = options.models / "features" / path
+        name = source.parent.name
+        if wanted and name not in wanted:
+            continue
+        if not source.exists():
+            say(f"{name} is left out: {source} is not there")
+            continue
+        found.append(scenes.write_with_camera(options.out / "scenes", name, source, tile))
+    unknown = wanted - {scene.name for scene in found}
+    if unknown:
+        say(f"no such scene: {', '.join(sorted(unknown))}")
+        sys.exit(2)
+    return found
+
+
+def assemble(scene, tiles):
+    """Puts the tiles of a scene together."""
+    columns = len(scene.columns)
+    rows = [np.concatenate(tiles[begin:begin + columns], axis=1) for begin in range(0, len(tiles), columns)]
+    return np.concatenate(rows, axis=0)
+
+
+def render_glint(options, scene, mode):
+    """Renders all tiles and returns the linear picture."""
+    count = len(scene.rows) * len(scene.columns)
+    output = scene.file.parent / f"{mode}.exr"
+    for old in scene.file.parent.glob(f"{mode}*.exr"):
+        old.unlink()
+    command = [options.glint, "render", scene.file, "-o", output, "--size", f"{scene.tile[0]}x{scene.tile[1]}",
+               "--spp", str(SAMPLES), "--environment", options.out / "map.hdr", "--sun", "off", "--quiet"]
+    if count > 1:
+        command += ["--camera", "all tiles", "--animation", "all tiles", "--fps", "1", "--frames", f"0:{count - 1}"]
+    else:
+        command += ["--camera", str(scene.first_camera)]
+    subprocess.run([*command, *MODES[mode]], check=True)
+    files = sorted(scene.file.parent.glob(f"{mode}*.exr"))
+    return assemble(scene, [images.read_exr(file) for file in files])
+
+
+def render_viewer(viewer, scene):
+    """Renders all tiles and returns the linear picture, the regions and the cosines of the view."""
+    viewer.use_scene(f"scenes/{scene.file.parent.name}/{scene.file.name}")
+    tiles = [viewer.render(scene.first_camera + number, *scene.tile)
+             for number in range(len(scene.rows) * len(scene.columns))]
+    return tuple(assemble(scene, [tile[part] for tile in tiles]) for part in range(3))
+
+
+def compare_scene(options, viewer, scene):
+    """Renders a scene with both, writes its picture and returns its result."""
+    begin = time.monotonic()
+    theirs, regions, cosines = render_viewer(viewer, scene)
+    np.savez_compressed(scene.file.parent / "viewer.npz", radiance=theirs, regions=regions, cosines=cosines)
+    between = time.monotonic()
+    modes = {mode: render_glint(options, scene, mode) for mode in MODES}
+    result = report.evaluate(scene, modes, theirs, regions, cosines)
+    inside = (regions > 0) & (regions < report.BACKGROUND)
+    picture = report.side_by_side(modes, theirs, inside)
+    (options.out / f"{scene.name}.png").write_bytes(images.png_bytes(picture))
+    say(f"{scene.name}: viewer {between - begin:.0f} s, Glint {time.monotonic() - between:.0f} s, ratio "
+        f"{report.channels(result['regions']['objects']['prefiltered'])} prefiltered, "
+        f"{report.channels(result['regions']['objects']['traced'])} traced")
+    return result
+
+
+def mismatches(result):
+    """Says where the backgrounds differ, which depend on camera and map alone."""
+    return [f"{result['name']}: the background differs by {100 * part['difference']:.1f} % ({mode}), so cameras or maps "
+            "do not match" for mode, part in result["background"].items()
+            if part and part["difference"] > BACKGROUND_DIFFERENCE]
+
+
+def update_document(options, lines, names):
+    """Replaces the text between the markers, and the pictures."""
+    before, found, rest = DOCUMENT.read_text(encoding="utf-8").partition(BEGIN)
+    _, found_end, after = rest.partition(END)
+    if not found or not found_end:
+        raise SystemExit(f"viewer_compare.sh: {DOCUMENT} lacks the lines that the table goes between")
+    DOCUMENT.write_text(before + BEGIN + "\n" + "\n".join(lines).rstrip() + "\n" + END + after, encoding="utf-8")
+    for name in PICTURES:
+        if name in names:
+            (DOCUMENT.parent / "images" / f"viewer_{name}.png").write_bytes((options.out / f"{name}.png").read_bytes())
+
+
+def main():
+    options = arguments()
+    options.out.mkdir(parents=True, exist_ok=True)
+    scenes.write_environment(options.out / "map.hdr")
+    scenes.write_sheen_albedo(options.out / "sheen_albedo.png")
+    wanted = write_scenes(options)
+    results, done, failures = [], [], []
+    with browser.Viewer(options.package, options.out) as viewer:
+        begin = time.monotonic()
+        viewer.use_environment("map.hdr", "sheen_albedo.png")
+        say(f"the viewer has filtered the map in {time.monotonic() - begin:.0f} s")
+        for scene in wanted:
+            try:
+                result = compare_scene(options, viewer, scene)
+            except (browser.ViewerError, subprocess.CalledProcessError) as error:
+                failures.append(f"{scene.name}: {error}")
+                continue
+            failures += mismatches(result)
+            results.append(result)
+            done.append(scene)
+    lines = report.markdown(done, results, options.package_name, SAMPLES)
+    (options.out / "viewer.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    faults = {name: text for name, (text, _) in report.FAULTS.items()}
+    data = {"viewer": options.package_name, "samples": SAMPLES, "modes": MODES, "faults": faults, "scenes": results}
+    (options.out / "viewer.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    if options.document and not failures:
+        update_document(options, lines, {scene.name for scene in done})
+    say(f"{len(results)} scenes in {options.out}: viewer.md, viewer.json, pictures")
+    for failure in failures:
+        say(f"error: {failure}")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()
