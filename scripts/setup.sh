@@ -242,6 +242,7 @@ fetch_basisu() {
 check_only=false
 browser=false
 sanitize=false
+viewer=false
 needs=("${kNeeds[@]}")
 for argument in "$@"; do
     case $argument in
@@ -250,10 +251,7 @@ for argument in "$@"; do
         --lint) needs+=("${kLintNeeds[@]}") ;;
         --portable) needs+=("${kPortableNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
-        --viewer)
-            browser=true
-            needs+=("command npm|npm")
-            ;;
+        --viewer) viewer=true ;;
         -h | --help)
             usage
             exit 0
@@ -270,8 +268,11 @@ if [[ -r /etc/os-release ]]; then
     # shellcheck source=/dev/null
     distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
 fi
-if [[ $browser == true ]]; then
+if [[ $browser == true || $viewer == true ]]; then
     add_browser_needs
+fi
+if [[ $viewer == true ]]; then
+    needs+=("command npm|npm")
 fi
 if [[ $sanitize == true ]]; then
     add_sanitizer_needs

@@ -26,8 +26,9 @@ FAULTS = {
         "the index of the base instead of 1.5.",
         lambda material: value(material, "clearcoat", "clearcoatFactor", 0) > 0),
     "sheen": (
-        "The table of the lobe takes the roughness for alpha, and another visibility than the albedo that scales the "
-        "base. 64 samples filter the map. The package lacks the table of the albedo, which the script computes.",
+        "The table of the lobe sums samples of the lobe without their density, takes the roughness for alpha, and has "
+        "another visibility than the extension. The package lacks the table of the albedo that scales the base; the "
+        "script computes it.",
         lambda material: any(value(material, "sheen", "sheenColorFactor", (0, 0, 0)))),
     "iridescence": (
         "The film's reflectance weighs the filtered map directly: no table, no light that bounces more than once.",
