@@ -89,6 +89,9 @@ function widenOpaquePicture(state) {
 }
 
 function readTarget({ framebuffer, width, height }) {
+    while (gl.getError() !== gl.NO_ERROR) {
+        // The viewer makes calls that fail without a consequence, such as mips of compressed textures.
+    }
     bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     const pixels = new Float32Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);

@@ -8,15 +8,19 @@ MIN_PIXELS = 12  # a smaller region is left out
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 FACING = 0.5  # cosine of the view from which a surface counts as facing
 
+COLOURS = {"baseColorTexture", "emissiveTexture", "sheenColorTexture", "specularColorTexture",
+           "diffuseTransmissionColorTexture", "diffuseTexture", "specularGlossinessTexture"}
+
 # What the viewer is known to do otherwise than the specification, found by reading its source (version 1.1.0). Each
 # has a sentence, and a function that says whether it concerns a material.
 FAULTS = {
     "split-sum": (
-        "The map is filtered as seen head-on, and a table of one direction stands for the angle (Karis 2013). The rims "
-        "of rough surfaces are too dark or too bright.",
+        "The map is filtered as if it were seen head-on, and a table stands for the angle (Karis 2013). Glint's "
+        "prefiltered lobes do the same.",
         lambda material: not has(material, "unlit")),
     "grazing-fresnel": (
-        "The reflectance of a rough dielectric at grazing angles is 1 − roughness instead of 1 (Fdez-Agüera 2019).",
+        "The reflectance of dielectrics rises twice towards grazing angles: in the table, and in the F0 that the table "
+        "scales (Fdez-Agüera 2019). Rims are too bright.",
         lambda material: metallic(material) < 1 and not has(material, "unlit")),
     "anisotropy": (
         "The map is filtered by the lesser roughness alone. The lobe is not stretched; only the normal is bent.",
@@ -37,12 +41,18 @@ FAULTS = {
         "What is behind glass is looked up in a picture of the opaque objects: one interface, nothing outside of the "
         "picture, nothing behind the camera, no glass behind glass. Roughness blurs that picture.",
         lambda material: value(material, "transmission", "transmissionFactor", 0) > 0),
+    "transmission-weight": (
+        "What a surface does not reflect weighs the transmitted light twice.",
+        lambda material: value(material, "transmission", "transmissionFactor", 0) > 0),
     "transmission-colour": (
         "The texture of the diffuse transmission's colour is read as linear instead of sRGB.",
         lambda material: "diffuseTransmissionColorTexture" in extension(material, "diffuse_transmission")),
     "specular-glossiness": (
         "Metallic stays without a value, and the textures are read as linear instead of sRGB.",
         lambda material: has(material, "pbrSpecularGlossiness")),
+    "shared-texture": (
+        "A texture that serves as colour and as data is read for both as its first use asks, sRGB or linear.",
+        lambda material: False),
     "no-scene-light": (
         "Only the map lights a surface. Objects neither hide it from each other nor reflect in each other. This concerns "
         "the traced pictures of models.",
@@ -67,8 +77,27 @@ def metallic(material):
     return 0 if "metallicRoughnessTexture" in base else base.get("metallicFactor", 1)
 
 
-def faults_of(material):
-    return [name for name, (_, concerns) in FAULTS.items() if concerns(material)]
+def textures_of(value):
+    """Yields the index of each texture in a material, and whether it is a colour."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key.endswith("Texture") and isinstance(item, dict):
+                yield item["index"], key in COLOURS
+            else:
+                yield from textures_of(item)
+
+
+def shared_textures(gltf):
+    """The textures that serve as colour and as data."""
+    uses = {use for material in gltf.get("materials", []) for use in textures_of(material)}
+    return {index for index, _ in uses if {(index, True), (index, False)} <= uses}
+
+
+def faults_of(material, shared):
+    names = [name for name, (_, concerns) in FAULTS.items() if concerns(material)]
+    if any(index in shared for index, _ in textures_of(material)):
+        names.append("shared-texture")
+    return names
 
 
 # ---- Numbers
@@ -92,7 +121,7 @@ def masks_of(scene, regions, cosines, left_out):
     """The regions of a picture, by name: all objects, their facing and grazing parts, nine cells, each material."""
     inside = (regions > 0) & (regions < BACKGROUND) & ~np.isin(regions, [index + 1 for index in left_out])
     masks = {"objects": inside, "facing": inside & (cosines >= FACING), "grazing": inside & (cosines < FACING)}
-    if not scene.is_grid() and inside.any():
+    if not scene.rows and inside.any():
         ys, xs = np.nonzero(inside)
         for row in range(3):
             for column in range(3):
@@ -111,8 +140,9 @@ def evaluate(scene, modes, viewer, regions, cosines):
     left_out = [i for i, material in enumerate(scene.materials) if material.get("alphaMode") == "BLEND"]
     shown = [material for i, material in enumerate(scene.materials) if (regions == i + 1).any() and i not in left_out]
     masks = masks_of(scene, regions, cosines, left_out)
-    faults = [name for name in FAULTS if any(name in faults_of(material) for material in shown)]
-    if not scene.is_grid():
+    shared = shared_textures(scene.gltf)
+    faults = [name for name in FAULTS if any(name in faults_of(material, shared) for material in shown)]
+    if not scene.rows:
         faults.append("no-scene-light")
     background = regions == BACKGROUND
     return {
@@ -123,7 +153,7 @@ def evaluate(scene, modes, viewer, regions, cosines):
         "background": {mode: compare(background, picture, viewer) for mode, picture in modes.items()},
         "regions": {name: {mode: compare(mask, picture, viewer) for mode, picture in modes.items()}
                     for name, mask in masks.items()},
-        "faultsOfMaterials": {f"material {i} {material.get('name', '')}".rstrip(): faults_of(material)
+        "faultsOfMaterials": {f"material {i} {material.get('name', '')}".rstrip(): faults_of(material, shared)
                               for i, material in enumerate(scene.materials)},
     }
 
@@ -171,7 +201,7 @@ def grid_table(scene, result):
         lines = ["| sphere | prefiltered, R G B | traced, R G B | faults of the viewer |", "|---|---|---|---|"]
         for region, material in zip(regions, scene.materials):
             lines.append(f"| {material['name']} | {channels(region['prefiltered'])} | {channels(region['traced'])} | "
-                         f"{', '.join(faults_of(material))} |")
+                         f"{', '.join(faults_of(material, set()))} |")
         return lines
     lines = ["| | " + " | ".join(str(label) for label in scene.columns) + " |", "|---" * (len(scene.columns) + 1) + "|"]
     for number, label in enumerate(scene.rows):
@@ -180,18 +210,17 @@ def grid_table(scene, result):
     return lines
 
 
-def markdown(scenes, results, package, samples):
+def markdown(scenes, results, package):
     """The report as lines: how it was made, the tables, the faults."""
-    size = next((result["size"] for scene, result in zip(scenes, results) if not scene.is_grid()), None)
-    lines = [f"{package}; {samples} samples a pixel in both; " +
-             (f"models at {size[0]} × {size[1]}, " if size else "") +
-             "spheres at 64 × 64. Every number is a ratio, Glint to the viewer; a pair is the ratio of luminance, "
-             "prefiltered and traced.", ""]
-    models = [result for scene, result in zip(scenes, results) if not scene.is_grid()]
+    size = next((result["size"] for scene, result in zip(scenes, results) if not scene.rows), None)
+    lines = [f"{package}; " + (f"models at {size[0]} × {size[1]}, " if size else "") + "spheres at 64 × 64. Every number "
+             "is a ratio, Glint to the viewer; a pair is the ratio of luminance, prefiltered and traced. \"Difference\" "
+             "is the mean of the absolute differences of luminance, over the mean luminance.", ""]
+    models = [result for scene, result in zip(scenes, results) if not scene.rows]
     if models:
         lines += scene_table(models) + [""]
     for scene, result in zip(scenes, results):
-        if scene.is_grid():
+        if scene.rows:
             lines += [f"**{scene.name}**" + (f": {scene.title}." if scene.title else "."), ""]
             lines += grid_table(scene, result) + [""]
     named = [name for name in FAULTS if any(name in result["faults"] for result in results)]

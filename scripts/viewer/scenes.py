@@ -1,8 +1,7 @@
 """What both renderers render: the environment map, spheres of many materials, and models with a common camera.
 
-Every scene is written into a folder of its own as scene.gltf or scene.glb. It has one camera for each tile of the
-picture, without punctual lights. Its last camera is animated: at second N it is where camera N is, so that one run of
-`glint render` makes all tiles.
+Every scene is written into a folder of its own as scene.gltf or scene.glb, without punctual lights. Its last camera is
+the one that both use.
 """
 import base64
 import dataclasses
@@ -19,22 +18,24 @@ import images
 
 MAP_SIZE = (256, 512)
 FIELD_OF_VIEW = math.radians(30)
+SPHERE_PIXELS = 64
 
 
 @dataclasses.dataclass
 class Scene:
-    """A scene that was written. Tiles are the cells of the picture, row by row."""
+    """A scene that was written."""
     name: str
     file: pathlib.Path
-    rows: list  # labels of the rows of tiles; one empty label for a model
-    columns: list
-    tile: tuple  # width and height
-    materials: list  # as in the glTF file
+    size: tuple  # width and height of the picture
+    gltf: dict
+    camera: int
+    rows: list = dataclasses.field(default_factory=list)  # of spheres: labels; empty for a model
+    columns: list = dataclasses.field(default_factory=list)
     title: str = ""  # what rows and columns mean
-    first_camera: int = 0
 
-    def is_grid(self):
-        return len(self.rows) * len(self.columns) > 1
+    @property
+    def materials(self):
+        return self.gltf.get("materials", [])
 
 
 # ---- The light
@@ -118,35 +119,13 @@ def look_at(position, backward):
     return matrix
 
 
-def add_cameras(gltf, matrices, near, far):
-    """Adds a camera for each matrix, and one that is at the place of matrix N at second N. Returns the first's index.
-
-    The matrices may only differ in their places.
-    """
-    cameras, nodes = gltf.setdefault("cameras", []), gltf.setdefault("nodes", [])
-    first = len(cameras)
-    roots = gltf["scenes"][gltf.get("scene", 0)].setdefault("nodes", [])
-    perspective = {"yfov": FIELD_OF_VIEW, "znear": near, "zfar": far}
-    for number, matrix in enumerate([*matrices, matrices[0]]):
-        cameras.append({"type": "perspective", "name": f"tile {number}", "perspective": perspective})
-        roots.append(len(nodes))
-        nodes.append({"camera": first + number, "matrix": matrix.T.ravel().tolist()})
-    cameras[-1]["name"] = "all tiles"
-    if len(matrices) == 1:
-        return first
-    del nodes[-1]["matrix"]
-    nodes[-1]["translation"] = matrices[0][:3, 3].tolist()
-    times = np.arange(len(matrices), dtype="<f4")
-    places = np.array([matrix[:3, 3] for matrix in matrices], "<f4")
-    builder = Buffer(gltf)
-    gltf.setdefault("animations", []).append({
-        "name": "all tiles",
-        "samplers": [{"input": builder.add(times, "SCALAR", bounds=True), "output": builder.add(places, "VEC3"),
-                      "interpolation": "STEP"}],
-        "channels": [{"sampler": 0, "target": {"node": len(nodes) - 1, "path": "translation"}}],
-    })
-    builder.finish()
-    return first
+def add_camera(gltf, matrix, field_of_view, near, far):
+    """Adds a camera, and returns its index."""
+    gltf.setdefault("cameras", []).append(
+        {"type": "perspective", "perspective": {"yfov": field_of_view, "znear": near, "zfar": far}})
+    gltf["scenes"][gltf.get("scene", 0)].setdefault("nodes", []).append(len(gltf["nodes"]))
+    gltf["nodes"].append({"camera": len(gltf["cameras"]) - 1, "matrix": matrix.T.ravel().tolist()})
+    return len(gltf["cameras"]) - 1
 
 
 class Buffer:
@@ -200,8 +179,12 @@ def bumps(size=64):
     return np.round((normal * 0.5 + 0.5) * 255)
 
 
-def write_spheres(folder, name, title, rows, columns, material_of, tile=64):
-    """Writes a sphere for each row and column. They are so far apart that none is seen in another."""
+def write_spheres(folder, name, title, rows, columns, material_of):
+    """Writes a sphere for each row and column, with the material that the labels of both give.
+
+    Each sphere is farther away than the one before, and larger by as much. So they look as if they lay side by side,
+    all seen from the same direction, and none is large enough in another one's view to change its light.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "bumps.png").write_bytes(images.png_bytes(bumps()))
     gltf = {"asset": {"version": "2.0", "generator": "scripts/viewer/scenes.py"}, "scene": 0,
@@ -213,28 +196,25 @@ def write_spheres(folder, name, title, rows, columns, material_of, tile=64):
                   "TANGENT": builder.add(tangents, "VEC4"), "TEXCOORD_0": builder.add(coordinates, "VEC2")}
     index_accessor = builder.add(indices, "SCALAR")
     builder.finish()
-    distance = 1.1 / math.sin(FIELD_OF_VIEW / 2)
-    matrices = []
-    for row, row_label in enumerate(rows):
-        for column, column_label in enumerate(columns):
-            material = material_of(row_label, column_label)
-            place = np.array([60.0 * column, -60.0 * row, 0.0])
-            number = len(gltf["materials"])
-            material.setdefault("name", f"{row_label}, {column_label}")
-            gltf["materials"].append(material)
-            gltf["meshes"].append({"primitives": [{"attributes": attributes, "indices": index_accessor,
-                                                   "material": number}]})
-            gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]))
-            gltf["nodes"].append({"mesh": number, "translation": place.tolist()})
-            matrices.append(look_at(place + [0, 0, distance], np.array([0.0, 0.0, 1.0])))
-    # One camera stays turned the same way, and only moves, so that the animated one shows the same.
-    first = add_cameras(gltf, matrices, distance - 1.2, distance + 1.2)
+    first, step, cell = 1000.0, 20.0, 2.2
+    for number, (row, column) in enumerate(np.ndindex(len(rows), len(columns))):
+        material = material_of(rows[row], columns[column])
+        material.setdefault("name", f"{rows[row]}, {columns[column]}")
+        gltf["materials"].append(material)
+        gltf["meshes"].append({"primitives": [{"attributes": attributes, "indices": index_accessor,
+                                               "material": number}]})
+        growth = 1 + number * step / first
+        place = np.array([cell * (column - (len(columns) - 1) / 2), cell * ((len(rows) - 1) / 2 - row), -first]) * growth
+        gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]))
+        gltf["nodes"].append({"mesh": number, "translation": place.tolist(), "scale": [growth] * 3})
+    camera = add_camera(gltf, np.eye(4), 2 * math.atan(cell * len(rows) / 2 / first), first - 5, first * growth + 5)
     used = sorted({extension for material in gltf["materials"] for extension in material.get("extensions", {})})
     if used:
         gltf["extensionsUsed"] = used
     file = folder / "scene.gltf"
     file.write_text(json.dumps(gltf))
-    return Scene(name, file, list(rows), list(columns), (tile, tile), gltf["materials"], title, first)
+    size = (SPHERE_PIXELS * len(columns), SPHERE_PIXELS * len(rows))
+    return Scene(name, file, size, gltf, camera, list(rows), list(columns), title)
 
 
 def surface(colour, metallic, roughness, name=None, normal_scale=None, **extensions):
@@ -395,14 +375,13 @@ def fitted_camera(low, high, aspect):
     return matrix, max(distance - depth, 1e-3 * distance), distance + depth
 
 
-def write_with_camera(folder, name, source, tile):
+def write_with_camera(folder, name, source, size):
     """Writes a model with a camera that frames it, and without its punctual lights."""
     gltf, binary = read_model(source)
     for node in gltf["nodes"]:
         if node.get("extensions", {}).pop("KHR_lights_punctual", None) is not None and not node["extensions"]:
             del node["extensions"]
     low, high = bounds_of(gltf)
-    matrix, near, far = fitted_camera(low, high, tile[0] / tile[1])
-    first = add_cameras(gltf, [matrix], near, far)
-    file = write_model(folder / name, gltf, binary, source)
-    return Scene(name, file, [""], [""], tile, gltf.get("materials", []), "", first)
+    matrix, near, far = fitted_camera(low, high, size[0] / size[1])
+    camera = add_camera(gltf, matrix, FIELD_OF_VIEW, near, far)
+    return Scene(name, write_model(folder / name, gltf, binary, source), size, gltf, camera)
