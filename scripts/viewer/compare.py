@@ -130,11 +130,18 @@ def mismatches(result):
 
 
 def outliers(result):
-    """Names the spheres that are farther from the viewer than their bound."""
+    """Says how many spheres are farther from the viewer than their bound, and which is the farthest."""
     bound = BOUNDS.get(result["name"])
-    return [f"{result['name']}: {name} has {part['luminanceRatio']:.2f} times the viewer's luminance ({mode}); the bound "
-            f"is {bound:.0%}" for name, region in result["regions"].items() if bound and name.startswith("material ")
-            for mode, part in region.items() if part and abs(part["luminanceRatio"] - 1) > bound]
+    lines = []
+    for mode in MODES:
+        ratios = {name.partition(" ")[2]: region[mode]["luminanceRatio"] for name, region in result["regions"].items()
+                  if bound and name.startswith("material ") and region[mode]}
+        far = {name: ratio for name, ratio in ratios.items() if abs(ratio - 1) > bound}
+        if far:
+            name = max(far, key=lambda key: abs(far[key] - 1))
+            lines.append(f"{result['name']}, {mode}: {len(far)} of {len(ratios)} spheres are more than {bound:.0%} from "
+                         f"the viewer's luminance; {name} has {far[name]:.2f} times as much")
+    return lines
 
 
 def update_document(options, lines, names):

@@ -196,7 +196,7 @@ def write_spheres(folder, name, title, rows, columns, material_of):
                   "TANGENT": builder.add(tangents, "VEC4"), "TEXCOORD_0": builder.add(coordinates, "VEC2")}
     index_accessor = builder.add(indices, "SCALAR")
     builder.finish()
-    first, step, cell = 1000.0, 20.0, 2.2
+    first, step, cell = 1000.0, 40.0, 2.2
     for number, (row, column) in enumerate(np.ndindex(len(rows), len(columns))):
         material = material_of(rows[row], columns[column])
         material.setdefault("name", f"{rows[row]}, {columns[column]}")
