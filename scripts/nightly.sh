@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs what takes too long for every change: all combinations of settings, every command with sanitizers over every
-# scene, clang-tidy, and fuzzing up to a number of executions.
+# scene, all materials against the specification, the comparison with a viewer that others wrote, clang-tidy, and
+# fuzzing up to a number of executions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,6 +14,10 @@ Sets up, builds, and runs all parts, or those that are named:
   sweep     test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values
   sanitize  scripts/sanitize.sh --all
+  spec      every material of tests/oracle/spec against the glTF specification, from six
+            views, where scripts/test.sh compares a short list from three; writes
+            out/specification.json and out/specification.md
+  viewer    scripts/viewer_compare.sh, which is left out without Chromium, npm or network
   lint      scripts/lint.sh
   fuzz      scripts/fuzz.sh --executions 10000000
 TEXT
@@ -20,11 +25,11 @@ TEXT
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize lint fuzz)
+    parts=(sweep sanitize spec viewer lint fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | lint | fuzz) ;;
+        sweep | sanitize | spec | viewer | lint | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -36,15 +41,31 @@ for part in "${parts[@]}"; do
     esac
 done
 
+# build TARGET…: in the preset release.
+build() {
+    cmake --preset release >/dev/null
+    cmake --build --preset release --target "$@"
+}
+
 scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            cmake --preset release >/dev/null
-            cmake --build --preset release --target test_combinations
+            build test_combinations
             GLINT_NIGHTLY=1 build/release/tests/test_combinations
             ;;
         sanitize) scripts/sanitize.sh --all ;;
+        spec)
+            build glint_spec_oracle
+            mkdir -p out
+            build/release/bin/glint_spec_oracle --many-views --samples 64 --map-width 512 --points 96 \
+                --json out/specification.json --markdown out/specification.md
+            ;;
+        viewer)
+            scripts/setup.sh --viewer || true
+            build glint
+            scripts/viewer_compare.sh
+            ;;
         lint) scripts/lint.sh ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;
     esac

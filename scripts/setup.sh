@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize]
+usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize] [--viewer]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
@@ -16,6 +16,7 @@ they can't be had, that is said, and Glint builds without.
   --lint      also what scripts/lint.sh needs
   --portable  also what scripts/portable.sh needs, which is for Debian 12
   --sanitize  also what scripts/sanitize.sh and scripts/fuzz.sh need
+  --viewer    also what scripts/viewer_compare.sh needs: what --browser adds, and npm
 TEXT
 }
 
@@ -241,6 +242,7 @@ fetch_basisu() {
 check_only=false
 browser=false
 sanitize=false
+viewer=false
 needs=("${kNeeds[@]}")
 for argument in "$@"; do
     case $argument in
@@ -249,6 +251,7 @@ for argument in "$@"; do
         --lint) needs+=("${kLintNeeds[@]}") ;;
         --portable) needs+=("${kPortableNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
+        --viewer) viewer=true ;;
         -h | --help)
             usage
             exit 0
@@ -265,8 +268,11 @@ if [[ -r /etc/os-release ]]; then
     # shellcheck source=/dev/null
     distribution=$(. /etc/os-release && printf '%s %s' "${ID:-unknown}" "${VERSION_ID:-}")
 fi
-if [[ $browser == true ]]; then
+if [[ $browser == true || $viewer == true ]]; then
     add_browser_needs
+fi
+if [[ $viewer == true ]]; then
+    needs+=("command npm|npm")
 fi
 if [[ $sanitize == true ]]; then
     add_sanitizer_needs
