@@ -97,7 +97,7 @@ double Bsdf::layersAbove(const Vec3& l) const {
         // KHR_materials_sheen, "Albedo-scaling technique". The text has no light from the far side, which
         // passes the sheen once, on its way to the view.
         double below = belowSheenOfView();
-        if (l.z > 0.0) {
+        if (l.z > 0.0 && !choices_.sheenAtView) {
             const double albedo = sheenAlbedo_->at(l.z);
             below = std::min(below, 1.0 - largest(m_.sheenColor) *
                                               (choices_.sheenBounded ? std::min(albedo, 1.0) : albedo));

@@ -17,6 +17,9 @@ struct Choices {
     bool iridescenceAtView = false;
     // The sheen's roughness is at least 0.07, its lobe is divided by max(1, E(v), E(l)), and E counts up to 1.
     bool sheenBounded = false;
+    // The sheen leaves to the base what the view's albedo says, whatever the light's (the simplified form of
+    // the extension's text).
+    bool sheenAtView = false;
     // Diffuse transmission counts the Fresnel of the view, not that of a mirrored half vector.
     bool transmittedAtView = false;
     Masking masking = Masking::HeightCorrelated;
@@ -74,6 +77,9 @@ public:
     }
     // The indices of red, green and blue.
     Vec3 iors() const;
+    bool compensated() const {
+        return choices_.compensation;
+    }
 
 private:
     struct Base {
