@@ -60,7 +60,8 @@ MicrofacetAlbedo::MicrofacetAlbedo(const Vec2& alpha, Masking masking) {
         for (int i = 0; i < kCosines; ++i) {
             const double weight = share * std::pow((i + 0.5) / kCosines, 3.0);
             mean_.whole += weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].whole;
-            mean_.weighted += weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].weighted;
+            mean_.weighted +=
+                weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].weighted;
             total += weight;
         }
     }

@@ -52,7 +52,8 @@ void Bsdf::setFilm(Base& base) const {
         base.filmF0 = base.f0;
         return;
     }
-    const Vec3 film = glm::min(filmFresnel(m_.iridescenceIor, base.f0, m_.iridescenceThickness, view_.z), Vec3(1.0));
+    const Vec3 film =
+        glm::min(filmFresnel(m_.iridescenceIor, base.f0, m_.iridescenceThickness, view_.z), Vec3(1.0));
     const double weight = schlickWeight(view_.z);
     const Vec3 f0 = (film - base.f90 * weight) / std::max(1.0 - weight, 1e-4);
     base.f0 = glm::mix(base.f0, glm::clamp(f0, Vec3(0.0), Vec3(base.f90)), m_.iridescence);
@@ -133,7 +134,8 @@ Vec3 Bsdf::specular(const Vec3& l) const {
     const double cosine = glm::dot(view_, h);
     // Appendix B.2: material = mix(dielectric_brdf, metal_brdf, metallic).
     const Vec3 both = glm::mix(fresnel(dielectric_, cosine), fresnel(metal_, cosine), m_.metallic);
-    return both * (distribution(h, alpha_) * visibility(l, view_, alpha_, choices_.masking) * l.z * layersAbove(l));
+    return both *
+           (distribution(h, alpha_) * visibility(l, view_, alpha_, choices_.masking) * l.z * layersAbove(l));
 }
 
 Vec3 Bsdf::multiple(const Vec3& l) const {
@@ -162,7 +164,8 @@ Vec3 Bsdf::diffuse(const Vec3& l) const {
     const Vec3 h = glm::normalize(view_ + l);
     // KHR_materials_pbrSpecularGlossiness: c_diff = diffuse (1 - max(specular)).
     const double kept = m_.specularGlossiness ? 1.0 - largest(m_.specularColor) : 1.0;
-    const double share = (1.0 - m_.metallic) * (1.0 - m_.transmission) * (1.0 - m_.diffuseTransmission) * kept;
+    const double share =
+        (1.0 - m_.metallic) * (1.0 - m_.transmission) * (1.0 - m_.diffuseTransmission) * kept;
     return m_.baseColor * (share * diffuseShare(l, glm::dot(view_, h)) / kPi * l.z * layersAbove(l));
 }
 
@@ -170,7 +173,8 @@ Vec3 Bsdf::diffuseTransmitted(const Vec3& l) const {
     if (l.z >= 0.0 || m_.diffuseTransmission <= 0.0) {
         return Vec3(0.0);
     }
-    // The text gives no half vector for light from the far side. This takes that of KHR_materials_transmission.
+    // The text gives no half vector for light from the far side. This takes that of
+    // KHR_materials_transmission.
     const Vec3 h = glm::normalize(view_ + mirrored(l));
     const double cosine = choices_.transmittedAtView ? view_.z : glm::dot(view_, h);
     const double share = (1.0 - m_.metallic) * (1.0 - m_.transmission) * m_.diffuseTransmission;
@@ -188,7 +192,8 @@ bool Bsdf::straight() const {
 }
 
 Vec3 Bsdf::straightWeight() const {
-    const double share = (1.0 - m_.metallic) * m_.transmission * (1.0 - largest(fresnel(dielectric_, view_.z)));
+    const double share =
+        (1.0 - m_.metallic) * m_.transmission * (1.0 - largest(fresnel(dielectric_, view_.z)));
     return m_.baseColor * (share * layersAbove({0.0, 0.0, -1.0}));
 }
 
@@ -208,8 +213,8 @@ double Bsdf::transmittedChannel(const Vec3& l, double eta) const {
         return 0.0;
     }
     // G / (|n·l| |n·v|) is four times the visibility.
-    const double lobe = -lightCosine * viewCosine * 4.0 * visibility(l, view_, alpha_, choices_.masking) * eta *
-                        eta * distribution(h, alpha_) / squared(viewCosine + eta * lightCosine);
+    const double lobe = -lightCosine * viewCosine * 4.0 * visibility(l, view_, alpha_, choices_.masking) *
+                        eta * eta * distribution(h, alpha_) / squared(viewCosine + eta * lightCosine);
     return lobe * (1.0 - largest(fresnel(dielectric_, eta >= 1.0 ? viewCosine : -lightCosine)));
 }
 
@@ -244,8 +249,8 @@ Vec3 Bsdf::coat(const Vec3& l) const {
     if (m_.clearcoat <= 0.0 || lightCosine <= 0.0 || viewCosine <= 0.0 || l.z <= 0.0) {
         return Vec3(0.0);
     }
-    // The lobe is isotropic, so any frame about the coat's normal serves. The cosine is that to this normal, as
-    // the layer's own surface receives the light.
+    // The lobe is isotropic, so any frame about the coat's normal serves. The cosine is that to this normal,
+    // as the layer's own surface receives the light.
     const glm::dmat3 toCoat = glm::transpose(oracle::frameAbout(coatNormal_));
     const Vec3 v = toCoat * view_;
     const Vec3 light = toCoat * l;
@@ -255,7 +260,8 @@ Vec3 Bsdf::coat(const Vec3& l) const {
 }
 
 Vec3 Bsdf::all(const Vec3& l) const {
-    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) + sheen(l) + coat(l);
+    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) + sheen(l) +
+           coat(l);
 }
 
 // KHR_materials_clearcoat, "Emission".

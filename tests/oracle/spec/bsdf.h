@@ -1,6 +1,6 @@
 // The BSDF of a glTF material for one view, lobe by lobe, from the specification's structure:
-// coat(sheen(mix(dielectric, metal, metallic))). The plain formulas are those of the texts. Choices that Glint
-// documents are options here, in formulas of their own.
+// coat(sheen(mix(dielectric, metal, metallic))). The plain formulas are those of the texts. Choices that
+// Glint documents are options here, in formulas of their own.
 #pragma once
 
 #include "oracle/spec/albedo.h"
@@ -10,12 +10,13 @@ namespace glint::spec {
 // Choices of Glint that docs/materials.md states. Without any of them the result is the specification's.
 struct Choices {
     // Microfacets give back what leaves them after several bounces (Kulla and Conty 2017, with Hill's Fresnel
-    // of 2018), and the diffuse lobes have what the dielectric's microfacets leave in both directions (Kelemen
-    // and Szirmay-Kalos 2001) instead of 1 - F(v·h). Implies `iridescenceAtView`.
+    // of 2018), and the diffuse lobes have what the dielectric's microfacets leave in both directions
+    // (Kelemen and Szirmay-Kalos 2001) instead of 1 - F(v·h). Implies `iridescenceAtView`.
     bool compensation = false;
     // The film's reflectance at the angle of the view becomes the F0 of Schlick's approximation.
     bool iridescenceAtView = false;
-    // The sheen's roughness is at least 0.07, its lobe is divided by max(1, E(v), E(l)), and E counts up to 1.
+    // The sheen's roughness is at least 0.07, its lobe is divided by max(1, E(v), E(l)), and E counts up
+    // to 1.
     bool sheenBounded = false;
     // The sheen leaves to the base what the view's albedo says, whatever the light's (the simplified form of
     // the extension's text).
@@ -27,17 +28,17 @@ struct Choices {
 
 class Bsdf {
 public:
-    // `view` is in the frame of the base, z > 0. `coatNormal` is a unit vector in the same frame. The material
-    // and the albedos must outlive the BSDF.
+    // `view` is in the frame of the base, z > 0. `coatNormal` is a unit vector in the same frame. The
+    // material and the albedos must outlive the BSDF.
     Bsdf(const Material& material, const Choices& choices, Albedos& albedos, const Vec3& view,
          const Vec3& coatNormal = {0.0, 0.0, 1.0});
 
     // Each lobe's value for light from l, times its |cosine|, with what the layers above leave of it.
-    Vec3 specular(const Vec3& l) const;            // the base's microfacets, once
-    Vec3 multiple(const Vec3& l) const;            // later bounces; 0 without compensation
+    Vec3 specular(const Vec3& l) const;  // the base's microfacets, once
+    Vec3 multiple(const Vec3& l) const;  // later bounces; 0 without compensation
     Vec3 diffuse(const Vec3& l) const;
     Vec3 diffuseTransmitted(const Vec3& l) const;
-    Vec3 transmitted(const Vec3& l) const;         // through microfacets
+    Vec3 transmitted(const Vec3& l) const;  // through microfacets
     Vec3 sheen(const Vec3& l) const;
     Vec3 coat(const Vec3& l) const;
     Vec3 all(const Vec3& l) const;
@@ -49,8 +50,8 @@ public:
 
     // Shares of a uniform white sky for the view, without the layers above.
     struct Albedo {
-        Vec3 once{0.0};      // the base's microfacets reflect after one bounce
-        Vec3 reflected{0.0}; // after all bounces that the choices count
+        Vec3 once{0.0};       // the base's microfacets reflect after one bounce
+        Vec3 reflected{0.0};  // after all bounces that the choices count
         double below = 0.0;  // the dielectric leaves to what lies below, in the channel where it leaves least
         double lost = 0.0;   // single scattering loses, whatever the reflectance
     };

@@ -64,15 +64,18 @@ struct Statement {
 };
 constexpr const char* kViewAlbedo = "diffuse light is weighed by the albedo of the view";
 constexpr Statement kStatements[] = {
-    {"specular", &Terms::specular, "mirrors below roughness 0.05; a film at the angle of the view; sheen weighed at the view",
+    {"specular", &Terms::specular,
+     "mirrors below roughness 0.05; a film at the angle of the view; sheen weighed at the view",
      "the map's mean over a lobe seen head on"},
     {"multiple", &Terms::multiple, "later bounces, by the map's mean", "later bounces, by the map's mean"},
-    {"diffuse", &Terms::diffuse, kViewAlbedo, "nine harmonics; diffuse light is weighed by the albedo of the view"},
+    {"diffuse", &Terms::diffuse, kViewAlbedo,
+     "nine harmonics; diffuse light is weighed by the albedo of the view"},
     {"diffuse transmission", &Terms::diffuseTransmitted, kViewAlbedo,
      "nine harmonics; diffuse light is weighed by the albedo of the view"},
     {"transmission", &Terms::transmitted, "sheen and film at the angle of the view",
      "the map's mean about the refracted view; nothing is lost at later bounces"},
-    {"sheen", &Terms::sheen, "the lobe's albedo times nine harmonics", "the lobe's albedo times nine harmonics"},
+    {"sheen", &Terms::sheen, "the lobe's albedo times nine harmonics",
+     "the lobe's albedo times nine harmonics"},
     {"clearcoat", &Terms::coat, "mirrors below roughness 0.05",
      "the map's mean over a lobe seen head on; no loss by single scattering"},
 };
@@ -148,8 +151,9 @@ Comparer::Comparer(const Rows& rows, const ComparisonOptions& options)
 const Comparer::LoadedMap& Comparer::mapOf(MapKind kind) {
     LoadedMap& loaded = maps_[kind];
     if (!loaded.map) {
-        loaded.map = std::make_unique<Map>(options_.mapWidth, options_.mapWidth / 2,
-                                           [&](const Vec3& direction) { return radianceOf(kind, direction); });
+        loaded.map =
+            std::make_unique<Map>(options_.mapWidth, options_.mapWidth / 2,
+                                  [&](const Vec3& direction) { return radianceOf(kind, direction); });
         loaded.harmonics = std::make_unique<Harmonics>(*loaded.map);
         loaded.environment = Device::makeEnvironment(*loaded.map);
     }

@@ -18,8 +18,8 @@ inline constexpr const char* kLightingNames[] = {"lights", "traced", "untraced"}
 // Means over views, and ratios of such means, by channel.
 struct Seen {
     Vec3 device{0.0};
-    Vec3 error{0.0};  // standard error of the device's mean
-    Vec3 plain{0.0};  // the specification's
+    Vec3 error{0.0};   // standard error of the device's mean
+    Vec3 plain{0.0};   // the specification's
     Vec3 stated{0.0};  // with the approximations that Glint states
 };
 
@@ -43,9 +43,9 @@ struct Comparison {
 
     // The ratio in the channel where it is farthest from 1. Channels with less than a thousandth of the light
     // of the brightest do not count.
-    double ratio() const;          // device over specification
+    double ratio() const;           // device over specification
     double predictedRatio() const;  // stated over specification
-    double statedRatio() const;    // device over stated
+    double statedRatio() const;     // device over stated
     // How far statedRatio() may be off by chance: four standard errors, relative.
     double noise() const;
 };

@@ -47,9 +47,8 @@ void addLights(test::GltfBuilder& file) {
         const double intensity = largest(light.irradiance);
         const Vec3 color = light.irradiance / intensity;
         Json& lights = file.root["extensions"]["KHR_lights_punctual"]["lights"];
-        lights.push_back({{"type", "directional"},
-                          {"color", {color.x, color.y, color.z}},
-                          {"intensity", intensity}});
+        lights.push_back(
+            {{"type", "directional"}, {"color", {color.x, color.y, color.z}}, {"intensity", intensity}});
         // A light shines along its node's -Z.
         file.append("nodes", {{"matrix", matrixOf(oracle::frameAbout(light.direction), Vec3(0.0))},
                               {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}});
@@ -104,7 +103,8 @@ Measured average(const LinearImage& image) {
         result.mean += value / count;
         squares += value * value / count;
     }
-    result.error = glm::sqrt(glm::max(squares - result.mean * result.mean, Vec3(0.0)) / std::max(count - 1.0, 1.0));
+    result.error =
+        glm::sqrt(glm::max(squares - result.mean * result.mean, Vec3(0.0)) / std::max(count - 1.0, 1.0));
     return result;
 }
 
@@ -124,8 +124,9 @@ Device::Device(const Rows& rows, const DeviceOptions& options) : options_(option
     settings.plan.merge = MergePolicy::All;
     settings.environmentMap = true;
     settings.energyCompensation = options.compensation;
-    settings.effects = {false, package::kEffectReflection | package::kEffectRefraction | package::kEffectIndirectDiffuse,
-                        1.0F};
+    settings.effects = {
+        false, package::kEffectReflection | package::kEffectRefraction | package::kEffectIndirectDiffuse,
+        1.0F};
     loaded_ = std::make_unique<testing::LoadedScene>(*scene, settings);
     if (!loaded_->ok()) {
         return;

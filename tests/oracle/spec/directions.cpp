@@ -15,8 +15,8 @@ Direction cosineDirection(const Vec2& point) {
 }
 
 Vec3 visibleNormal(const Vec3& v, const Vec2& alpha, const Vec2& point) {
-    // In the space where the microsurface is a hemisphere, visible normals are a projected disk: half of it as
-    // it is, half of it foreshortened.
+    // In the space where the microsurface is a hemisphere, visible normals are a projected disk: half of it
+    // as it is, half of it foreshortened.
     const Vec3 s = glm::normalize(Vec3(alpha.x * v.x, alpha.y * v.y, v.z));
     const double across = std::hypot(s.x, s.y);
     const Vec3 t1 = across > 1e-12 ? Vec3(-s.y / across, s.x / across, 0.0) : Vec3(1.0, 0.0, 0.0);
@@ -24,7 +24,8 @@ Vec3 visibleNormal(const Vec3& v, const Vec2& alpha, const Vec2& point) {
     const double radius = std::sqrt(point.x);
     const double phi = 2.0 * kPi * point.y;
     const double p1 = radius * std::cos(phi);
-    const double p2 = std::lerp(std::sqrt(std::max(1.0 - p1 * p1, 0.0)), radius * std::sin(phi), 0.5 * (1.0 + s.z));
+    const double p2 =
+        std::lerp(std::sqrt(std::max(1.0 - p1 * p1, 0.0)), radius * std::sin(phi), 0.5 * (1.0 + s.z));
     const Vec3 n = p1 * t1 + p2 * t2 + std::sqrt(std::max(1.0 - p1 * p1 - p2 * p2, 0.0)) * s;
     return glm::normalize(Vec3(alpha.x * n.x, alpha.y * n.y, std::max(n.z, 0.0)));
 }

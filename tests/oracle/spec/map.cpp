@@ -15,10 +15,14 @@ std::array<double, 9> harmonicsAt(const Vec3& d) {
     const double root = std::sqrt(1.0 / kPi);
     const double first = std::sqrt(3.0) * 0.5 * root;
     const double second = std::sqrt(15.0) * 0.5 * root;
-    return {0.5 * root,          first * d.x,
-            first * d.y,         first * d.z,
-            second * d.x * d.y,  second * d.y * d.z,
-            second * d.x * d.z,  std::sqrt(5.0) * 0.25 * root * (3.0 * d.z * d.z - 1.0),
+    return {0.5 * root,
+            first * d.x,
+            first * d.y,
+            first * d.z,
+            second * d.x * d.y,
+            second * d.y * d.z,
+            second * d.x * d.z,
+            std::sqrt(5.0) * 0.25 * root * (3.0 * d.z * d.z - 1.0),
             0.5 * second * (d.x * d.x - d.y * d.y)};
 }
 
@@ -34,9 +38,9 @@ Map::Map(std::size_t width, std::size_t height, const std::function<Vec3(const V
     : width_(width), height_(height) {
     for (std::size_t row = 0; row < height; ++row) {
         for (std::size_t column = 0; column < width; ++column) {
-            const Vec3 value = radiance(directionAt(static_cast<double>(column) + 0.5,
-                                                    static_cast<double>(row) + 0.5,
-                                                    static_cast<double>(width), static_cast<double>(height)));
+            const Vec3 value =
+                radiance(directionAt(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5,
+                                     static_cast<double>(width), static_cast<double>(height)));
             texels_.emplace_back(static_cast<float>(value.x), static_cast<float>(value.y),
                                  static_cast<float>(value.z));
         }
@@ -67,8 +71,8 @@ Harmonics::Harmonics(const Map& map) {
         const double solidAngle =
             2.0 * kPi / width * (std::cos(kPi * top / height) - std::cos(kPi * (top + 1.0) / height));
         for (std::size_t column = 0; column < map.width(); ++column) {
-            const auto basis = harmonicsAt(
-                directionAt(static_cast<double>(column) + 0.5, top + 0.5, width, height));
+            const auto basis =
+                harmonicsAt(directionAt(static_cast<double>(column) + 0.5, top + 0.5, width, height));
             const Vec3 light = map.texels()[row * map.width() + column] * solidAngle;
             for (std::size_t i = 0; i < 9; ++i) {
                 coefficients_[i] += light * basis[i];

@@ -48,8 +48,8 @@ private:
     std::array<Vec3, 9> coefficients_{};
 };
 
-// The mean of the map around a direction over the facets of one roughness that are seen head on, weighted by the
-// light's cosine (Karis 2013, "Real Shading in Unreal Engine 4").
+// The mean of the map around a direction over the facets of one roughness that are seen head on, weighted by
+// the light's cosine (Karis 2013, "Real Shading in Unreal Engine 4").
 Vec3 lobeMean(const Map& map, const Vec3& direction, double roughness);
 // The same, mixed between the two nearest of `levels` evenly spaced roughnesses.
 Vec3 levelMean(const Map& map, const Vec3& direction, double roughness, int levels);

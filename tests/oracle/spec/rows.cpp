@@ -91,12 +91,13 @@ void addBases(List& list) {
 
 void addReflectingLobes(List& list) {
     for (const double ior : {0.0, 1.0, 1.2, 1.33, 2.4}) {
-        list.add("lobe", fmt::format("ior {}", ior), extended(base(kWhite, 0, 0.4), kIor, {{"ior", ior}}), true,
-                 ior == 2.4);
+        list.add("lobe", fmt::format("ior {}", ior), extended(base(kWhite, 0, 0.4), kIor, {{"ior", ior}}),
+                 true, ior == 2.4);
     }
     for (const double factor : {0.0, 0.5}) {
         list.add("lobe", fmt::format("specular {}", factor),
-                 extended(base(kWhite, 0, 0.4), kSpecular, {{"specularFactor", factor}}), true, factor == 0.5);
+                 extended(base(kWhite, 0, 0.4), kSpecular, {{"specularFactor", factor}}), true,
+                 factor == 0.5);
     }
     list.add("lobe", "specular, coloured",
              extended(base(kOlive, 0, 0.4), kSpecular,
@@ -105,12 +106,14 @@ void addReflectingLobes(List& list) {
     for (const double roughness : {0.0, 0.2, 0.6, 1.0}) {
         const Json coat{{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", roughness}};
         const std::string at = fmt::format("clearcoat of roughness {}", roughness);
-        list.add("lobe", at + " on white", extended(base(kWhite, 0, 0.6), kCoat, coat), true, roughness == 0.2);
+        list.add("lobe", at + " on white", extended(base(kWhite, 0, 0.6), kCoat, coat), true,
+                 roughness == 0.2);
         list.add("lobe", at + " on black metal", extended(base({"black", 0, 0, 0}, 1, 1), kCoat, coat));
     }
-    list.add("lobe", "clearcoat 0.5 on gold",
-             extended(base(kGold, 1, 0.5), kCoat, {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.1}}),
-             false, true);
+    list.add(
+        "lobe", "clearcoat 0.5 on gold",
+        extended(base(kGold, 1, 0.5), kCoat, {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.1}}),
+        false, true);
     Json lamp = extended(base(kOlive, 0, 0.6), kCoat, {{"clearcoatFactor", 1.0}});
     lamp["emissiveFactor"] = {0.2, 0.5, 1.0};
     lamp["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 3.0}};
@@ -130,15 +133,15 @@ void addReflectingLobes(List& list) {
         for (const double roughness : {0.25, 0.5}) {
             const Json values{{"anisotropyStrength", strength}, {"anisotropyRotation", 0.7}};
             const std::string at = fmt::format("anisotropy {}, roughness {}", strength, roughness);
-            list.add("lobe", "white metal, " + at, extended(base(kWhite, 1, roughness), kAnisotropy, values), true,
-                     strength == 0.6 && roughness == 0.25);
-            list.add("lobe", "olive dielectric, " + at, extended(base(kOlive, 0, roughness), kAnisotropy, values));
+            list.add("lobe", "white metal, " + at, extended(base(kWhite, 1, roughness), kAnisotropy, values),
+                     true, strength == 0.6 && roughness == 0.25);
+            list.add("lobe", "olive dielectric, " + at,
+                     extended(base(kOlive, 0, roughness), kAnisotropy, values));
         }
     }
     for (const double thickness : {250.0, 550.0}) {
-        const Json film{{"iridescenceFactor", 1.0},
-                        {"iridescenceIor", 1.6},
-                        {"iridescenceThicknessMaximum", thickness}};
+        const Json film{
+            {"iridescenceFactor", 1.0}, {"iridescenceIor", 1.6}, {"iridescenceThicknessMaximum", thickness}};
         for (const double metallic : {0.0, 0.5, 1.0}) {
             list.add("lobe", fmt::format("iridescence of {} nm, metallic {}", thickness, metallic),
                      extended(base(kGold, metallic, 0.3), kFilm, film), false, thickness == 550.0);
@@ -162,7 +165,8 @@ void addTransmittingLobes(List& list) {
              extended(base(kOlive, 0, 0.3), kTransmission, {{"transmissionFactor", 0.5}}), false, true);
     for (const double metallic : {0.25, 0.5}) {
         list.add("partial metal", fmt::format("thin glass, metallic {}", metallic),
-                 extended(base(kWhite, metallic, 0.1), kTransmission, {{"transmissionFactor", 1.0}}), true, true);
+                 extended(base(kWhite, metallic, 0.1), kTransmission, {{"transmissionFactor", 1.0}}), true,
+                 true);
     }
     Json water = extended(base(kWhite, 0, 0.1), kTransmission, {{"transmissionFactor", 1.0}});
     water["extensions"][kVolume] = {{"thicknessFactor", 1.0}};
@@ -176,9 +180,10 @@ void addTransmittingLobes(List& list) {
                  extended(base(kWhite, 0, 0.4), kDiffuse, {{"diffuseTransmissionFactor", factor}}), true,
                  factor == 0.3);
     }
-    list.add("lobe", "diffuse transmission, coloured",
-             extended(base(kOlive, 0.3, 0.4), kDiffuse,
-                      {{"diffuseTransmissionFactor", 0.6}, {"diffuseTransmissionColorFactor", {0.9, 0.4, 0.1}}}));
+    list.add(
+        "lobe", "diffuse transmission, coloured",
+        extended(base(kOlive, 0.3, 0.4), kDiffuse,
+                 {{"diffuseTransmissionFactor", 0.6}, {"diffuseTransmissionColorFactor", {0.9, 0.4, 0.1}}}));
     list.add("lobe", "specular-glossiness",
              {{"extensions",
                {{kGloss,
@@ -198,14 +203,18 @@ std::vector<std::pair<std::string, Lobe>> pairedLobes() {
         {"anisotropy", lobe(kAnisotropy, {{"anisotropyStrength", 0.6}, {"anisotropyRotation", 0.4}})},
         {"iridescence", lobe(kFilm, {{"iridescenceFactor", 0.9}, {"iridescenceIor", 1.5}})},
         {"transmission", lobe(kTransmission, {{"transmissionFactor", 0.7}})},
-        {"volume", [](Json& m) {
+        {"volume",
+         [](Json& m) {
              m["extensions"][kTransmission] = {{"transmissionFactor", 0.7}};
              m["extensions"][kVolume] = {{"thicknessFactor", 1.0}};
          }},
         {"diffuse transmission", lobe(kDiffuse, {{"diffuseTransmissionFactor", 0.5},
                                                  {"diffuseTransmissionColorFactor", {0.3, 0.8, 0.6}}})},
         {"half metal", [](Json& m) { m["pbrMetallicRoughness"]["metallicFactor"] = 0.5; }},
-        {"emission", [](Json& m) { m["emissiveFactor"] = {0.1, 0.2, 0.3}; }},
+        {"emission",
+         [](Json& m) {
+             m["emissiveFactor"] = {0.1, 0.2, 0.3};
+         }},
     };
 }
 
@@ -228,7 +237,9 @@ void addPairs(List& list) {
 constexpr Texel kTexel{180, 120, 60, 210};
 
 void addTextures(List& list) {
-    const auto add = [&](const std::string& name, Json material) { list.add("texture", name, std::move(material)); };
+    const auto add = [&](const std::string& name, Json material) {
+        list.add("texture", name, std::move(material));
+    };
     Json m = base(kWhite, 1, 0.4);
     m["pbrMetallicRoughness"]["baseColorTexture"] = list.texture(kTexel);
     add("base colour", m);
@@ -254,14 +265,16 @@ void addTextures(List& list) {
     };
     slot("specular", kSpecular, "specularTexture", {{"specularFactor", 1.0}});
     slot("specular colour", kSpecular, "specularColorTexture", {{"specularColorFactor", {8.0, 8.0, 8.0}}});
-    slot("clearcoat", kCoat, "clearcoatTexture", {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.3}});
+    slot("clearcoat", kCoat, "clearcoatTexture",
+         {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.3}});
     slot("clearcoat roughness", kCoat, "clearcoatRoughnessTexture",
          {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 1.0}});
     slot("sheen colour", kSheen, "sheenColorTexture",
          {{"sheenColorFactor", {1.0, 1.0, 1.0}}, {"sheenRoughnessFactor", 0.5}});
     slot("sheen roughness", kSheen, "sheenRoughnessTexture",
          {{"sheenColorFactor", {0.8, 0.8, 0.8}}, {"sheenRoughnessFactor", 1.0}});
-    slot("anisotropy", kAnisotropy, "anisotropyTexture", {{"anisotropyStrength", 1.0}, {"anisotropyRotation", 0.3}});
+    slot("anisotropy", kAnisotropy, "anisotropyTexture",
+         {{"anisotropyStrength", 1.0}, {"anisotropyRotation", 0.3}});
     slot("iridescence", kFilm, "iridescenceTexture", {{"iridescenceFactor", 1.0}, {"iridescenceIor", 1.7}});
     slot("iridescence thickness", kFilm, "iridescenceThicknessTexture",
          {{"iridescenceFactor", 1.0},
@@ -269,8 +282,10 @@ void addTextures(List& list) {
           {"iridescenceThicknessMaximum", 700.0}});
     slot("transmission", kTransmission, "transmissionTexture", {{"transmissionFactor", 1.0}});
     slot("thickness", kVolume, "thicknessTexture",
-         {{"thicknessFactor", 1.0}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.7, 0.9}}}, kWhite);
-    slot("diffuse transmission", kDiffuse, "diffuseTransmissionTexture", {{"diffuseTransmissionFactor", 1.0}});
+         {{"thicknessFactor", 1.0}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.7, 0.9}}},
+         kWhite);
+    slot("diffuse transmission", kDiffuse, "diffuseTransmissionTexture",
+         {{"diffuseTransmissionFactor", 1.0}});
     slot("diffuse transmission colour", kDiffuse, "diffuseTransmissionColorTexture",
          {{"diffuseTransmissionFactor", 0.5}});
     Json gloss{{"glossinessFactor", 0.9}, {"specularFactor", {0.6, 0.7, 0.8}}};
@@ -287,8 +302,8 @@ void addNormalMaps(List& list) {
         for (const double roughness : {0.04, 0.06, 0.2, 0.31, 0.7}) {
             Json metal = base(kWhite, 1, roughness);
             metal["normalTexture"] = list.texture(texel);
-            list.add("normal map", fmt::format("white metal, roughness {}, {}° off", roughness, tilt), metal, true,
-                     tilt == 20 && roughness != 0.2);
+            list.add("normal map", fmt::format("white metal, roughness {}, {}° off", roughness, tilt), metal,
+                     true, tilt == 20 && roughness != 0.2);
         }
         Json plastic = base(kWhite, 0, 0.2);
         plastic["normalTexture"] = list.texture(texel);

@@ -38,11 +38,14 @@ Terms Terms::operator/(double count) const {
 }
 
 Surface::Surface(const Material& material, const Choices& choices, Albedos& albedos, const Point& point)
-    : material_(material), meshNormal_(point.frame[2]), frame_(baseFrame(point)),
+    : material_(material),
+      meshNormal_(point.frame[2]),
+      frame_(baseFrame(point)),
       bsdf_(material, choices, albedos, glm::transpose(frame_) * point.view,
             glm::transpose(frame_) * coatNormal(point)) {}
 
-// glTF 2.0, section 3.9.3, and KHR_materials_anisotropy: the direction is in the space of the mesh's tangents.
+// glTF 2.0, section 3.9.3, and KHR_materials_anisotropy: the direction is in the space of the mesh's
+// tangents.
 glm::dmat3 Surface::baseFrame(const Point& point) const {
     const Vec3 normal = glm::normalize(point.frame * material_.normal);
     const Vec2& d = material_.anisotropyDirection;
@@ -90,9 +93,8 @@ Vec3 Surface::integrateTransmitted(const Map& map, int points) const {
                 d = reflectedDirection(bsdf_.view(), bsdf_.alpha(), point);
                 d.l.z = -d.l.z;
             }
-            return d.l.z < 0.0 && d.solidAngle > 0.0
-                       ? bsdf_.transmitted(d.l) * world(map, d.l) * d.solidAngle
-                       : Vec3(0.0);
+            return d.l.z < 0.0 && d.solidAngle > 0.0 ? bsdf_.transmitted(d.l) * world(map, d.l) * d.solidAngle
+                                                     : Vec3(0.0);
         });
     };
     const Vec3 iors = bsdf_.iors();
@@ -170,7 +172,8 @@ Terms Surface::underSky(const Sky& sky, const Quality& quality) const {
     const double dielectric = (1.0 - material_.metallic) * (1.0 - material_.transmission);
     const double kept = material_.specularGlossiness ? 1.0 - largest(material_.specularColor) : 1.0;
     const auto around = [&](const Vec3& normal) {
-        return traced && sky.diffuseRays ? cosineMean(sky.map, normal) : sky.harmonics.irradianceOverPi(normal);
+        return traced && sky.diffuseRays ? cosineMean(sky.map, normal)
+                                         : sky.harmonics.irradianceOverPi(normal);
     };
     const Vec3 normal = frame_[2];
     Terms terms;

@@ -2,7 +2,6 @@
 #include "oracle/spec/comparison.h"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 namespace glint::spec {
@@ -25,7 +24,8 @@ nlohmann::ordered_json arrayOf(const Vec3& v) {
 std::string toMarkdown(const std::vector<Comparison>& comparisons) {
     std::string text =
         "| group | material | light | compensation | device / specification | by n·v | relative difference | "
-        "predicted | device / predicted | noise | approximation |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+        "predicted | device / predicted | noise | approximation "
+        "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (const Comparison& row : comparisons) {
         std::string zones;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -35,9 +35,9 @@ std::string toMarkdown(const std::vector<Comparison>& comparisons) {
                          : "none";
         }
         text += fmt::format("| {} | {} | {} | {} | {:.4f} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {} |\n",
-                            row.group, row.name, lightOf(row), row.compensation ? "on" : "off", row.ratio(), zones,
-                            row.relativeDifference, row.predictedRatio(), row.statedRatio(), row.noise(),
-                            row.approximations);
+                            row.group, row.name, lightOf(row), row.compensation ? "on" : "off", row.ratio(),
+                            zones, row.relativeDifference, row.predictedRatio(), row.statedRatio(),
+                            row.noise(), row.approximations);
     }
     return text;
 }

@@ -35,15 +35,18 @@ Plane planeOf(std::size_t row) {
 
 std::vector<View> viewsOf(bool many) {
     if (!many) {
-        return {{around(0.9, 0.5), Zone::Steep}, {around(0.5, 1.1), Zone::Middle}, {around(0.2, -0.4), Zone::Grazing}};
+        return {{around(0.9, 0.5), Zone::Steep},
+                {around(0.5, 1.1), Zone::Middle},
+                {around(0.2, -0.4), Zone::Grazing}};
     }
-    return {{around(0.97, 0.5), Zone::Steep},  {around(0.8, 2.9), Zone::Steep},
-            {around(0.6, 1.1), Zone::Middle},  {around(0.4, -1.3), Zone::Middle},
+    return {{around(0.97, 0.5), Zone::Steep},    {around(0.8, 2.9), Zone::Steep},
+            {around(0.6, 1.1), Zone::Middle},    {around(0.4, -1.3), Zone::Middle},
             {around(0.25, -0.4), Zone::Grazing}, {around(0.12, 4.0), Zone::Grazing}};
 }
 
 bool faces(const Material& material, const View& view) {
-    return glm::dot(material.normal, view.local) > 0.05 && glm::dot(material.clearcoatNormal, view.local) > 0.05;
+    return glm::dot(material.normal, view.local) > 0.05 &&
+           glm::dot(material.clearcoatNormal, view.local) > 0.05;
 }
 
 std::vector<Light> lightsOfScene() {
@@ -66,7 +69,8 @@ Vec3 radianceOf(MapKind kind, const Vec3& d) {
         return smooth;
     }
     // From the full brightness at 8° to none at 12°.
-    const double angle = std::acos(std::clamp(glm::dot(d, glm::normalize(Vec3(0.35, 0.85, -0.4))), -1.0, 1.0));
+    const double angle =
+        std::acos(std::clamp(glm::dot(d, glm::normalize(Vec3(0.35, 0.85, -0.4))), -1.0, 1.0));
     const double edge = std::clamp((12.0 - angle * 180.0 / kPi) / 4.0, 0.0, 1.0);
     return 0.4 * smooth + Vec3(26.0, 22.0, 16.0) * (edge * edge * (3.0 - 2.0 * edge));
 }
