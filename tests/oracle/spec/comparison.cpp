@@ -1,10 +1,24 @@
 #include "oracle/spec/comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace glint::spec {
 namespace {
+
+// The part of `whole` that a change is, in the channel where it is largest.
+double largestShare(const Vec3& change, const Vec3& whole) {
+    double share = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        if (whole[i] > 1e-3 * largest(whole) && std::abs(change[i] / whole[i]) > std::abs(share)) {
+            share = change[i] / whole[i];
+        }
+    }
+    return share;
+}
 
 // Sums over the views of a row.
 class Sums {
@@ -37,15 +51,6 @@ private:
     static Seen mean(const Seen& sums, int count) {
         const double n = std::max(count, 1);
         return {sums.device / n, glm::sqrt(sums.error) / n, sums.plain / n, sums.stated / n};
-    }
-    static double largestShare(const Vec3& part, const Vec3& whole) {
-        double share = 0.0;
-        for (int i = 0; i < 3; ++i) {
-            if (whole[i] > 1e-3 * largest(whole)) {
-                share = std::max(share, part[i] / whole[i]);
-            }
-        }
-        return share;
     }
 
     Seen whole_;
@@ -80,23 +85,41 @@ constexpr Statement kStatements[] = {
      "the map's mean over a lobe seen head on; no loss by single scattering"},
 };
 
+void appendStatement(std::string& text, const char* what, double share, const char* why) {
+    if (std::abs(share) >= 0.005) {
+        text += fmt::format("{}{} {:+.1f} %{}", text.empty() ? "" : "; ", what, 100.0 * share,
+                            *why == '\0' ? "" : fmt::format(" ({})", why));
+    }
+}
+
 std::string approximationsOf(const Terms& plain, const Terms& stated, Lighting lighting) {
     const Vec3 whole = plain.sum();
     std::string text;
     for (const Statement& statement : kStatements) {
-        const Vec3 change = stated.*statement.term - plain.*statement.term;
-        double share = 0.0;
-        for (int i = 0; i < 3; ++i) {
-            if (whole[i] > 1e-3 * largest(whole) && std::abs(change[i] / whole[i]) > std::abs(share)) {
-                share = change[i] / whole[i];
-            }
-        }
-        if (std::abs(share) >= 0.005) {
-            char buffer[64];
-            std::snprintf(buffer, sizeof buffer, "%+.1f %%", 100.0 * share);
-            text += std::string(text.empty() ? "" : "; ") + statement.lobe + " " + buffer + " (" +
-                    (lighting == Lighting::Untraced ? statement.untraced : statement.traced) + ")";
-        }
+        appendStatement(text, statement.lobe,
+                        largestShare(stated.*statement.term - plain.*statement.term, whole),
+                        lighting == Lighting::Untraced ? statement.untraced : statement.traced);
+    }
+    return text;
+}
+
+// The choices that change a BSDF itself, one at a time.
+struct NamedChoice {
+    const char* name;
+    bool Choices::*choice;
+};
+constexpr NamedChoice kNamedChoices[] = {
+    {"energy compensation", &Choices::compensation},
+    {"film at the angle of the view", &Choices::iridescenceAtView},
+    {"sheen divided by its albedo where that exceeds 1, roughness at least 0.07", &Choices::sheenBounded},
+    {"diffuse transmission by the Fresnel of the view", &Choices::transmittedAtView},
+};
+using ChoiceSums = std::array<Vec3, std::size(kNamedChoices)>;
+
+std::string choicesOf(const ChoiceSums& alone, const Vec3& plain) {
+    std::string text;
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        appendStatement(text, kNamedChoices[i].name, largestShare(alone[i] - plain, plain), "");
     }
     return text;
 }
@@ -184,17 +207,26 @@ Comparison Comparer::underLights(std::size_t row) {
     const Material material = readMaterial(rows_.rows[row].material, rows_.texels);
     const std::vector<Light> lights = lightsOfScene();
     Sums sums;
+    ChoiceSums alone{};
+    Vec3 specification(0.0);
     for (const View& view : viewsOf(options_.manyViews)) {
         if (!faces(material, view)) {
             continue;
         }
         const Point point = pointOf(row, view);
         const Surface plain(material, {}, albedos_, point);
+        specification += plain.underLights(lights);
+        for (std::size_t i = 0; i < alone.size(); ++i) {
+            Choices choices;
+            choices.*kNamedChoices[i].choice = statedChoices().*kNamedChoices[i].choice;
+            alone[i] += Surface(material, choices, albedos_, point).underLights(lights);
+        }
         const Surface stated(material, statedChoices(), albedos_, point);
         sums.add(view.zone, device_.underLights(row, view, *any.environment), plain.underLights(lights),
                  stated.underLights(lights));
     }
     sums.finish(result);
+    result.approximations = choicesOf(alone, specification);
     return result;
 }
 

@@ -95,7 +95,10 @@ TEST_P(SpecDevice, KeepsAllLightInAWhiteFurnace) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, SpecDevice, ::testing::Values(false, true),
-                         [](const auto& info) { return info.param ? "Compensated" : "Plain"; });
+const char* packageName(const ::testing::TestParamInfo<bool>& compensation) {
+    return compensation.param ? "Compensated" : "Plain";
+}
+
+INSTANTIATE_TEST_SUITE_P(, SpecDevice, ::testing::Values(false, true), packageName);
 
 }  // namespace
