@@ -1,0 +1,203 @@
+#include "oracle/spec/device.h"
+
+#include "unit/gltf/gltf_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace glint::spec {
+namespace {
+
+// Half the width of a view. At the most grazing one it covers half of a plane, which is 2 metres wide.
+constexpr float kHalfWidth = 0.05F;
+
+std::array<float, 3> toFloats(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+Json matrixOf(const glm::dmat3& frame, const Vec3& origin) {
+    Json matrix = Json::array();
+    for (int column = 0; column < 4; ++column) {
+        const Vec3& v = column < 3 ? frame[column] : origin;
+        for (int i = 0; i < 3; ++i) {
+            matrix.push_back(v[i]);
+        }
+        matrix.push_back(column < 3 ? 0.0 : 1.0);
+    }
+    return matrix;
+}
+
+void declareExtensions(const Json& object, Json& used) {
+    if (!object.contains("extensions")) {
+        return;
+    }
+    for (const auto& [name, value] : object["extensions"].items()) {
+        if (std::find(used.begin(), used.end(), name) == used.end()) {
+            used.push_back(name);
+        }
+    }
+}
+
+void addLights(test::GltfBuilder& file) {
+    file.root["extensionsUsed"].push_back("KHR_lights_punctual");
+    for (const Light& light : lightsOfScene()) {
+        const double intensity = largest(light.irradiance);
+        const Vec3 color = light.irradiance / intensity;
+        Json& lights = file.root["extensions"]["KHR_lights_punctual"]["lights"];
+        lights.push_back(
+            {{"type", "directional"}, {"color", {color.x, color.y, color.z}}, {"intensity", intensity}});
+        // A light shines along its node's -Z.
+        file.append("nodes", {{"matrix", matrixOf(oracle::frameAbout(light.direction), Vec3(0.0))},
+                              {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}});
+    }
+}
+
+// Returns the file as Glint imports it. The pixels of textures are put in afterwards, because no file format
+// has to be read to compare what they mean.
+Result<Scene> sceneOf(const Rows& rows) {
+    test::GltfBuilder file;
+    file.root["extensionsUsed"] = Json::array();
+    const int positions = file.addAccessor<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, 3);
+    file.root["accessors"][static_cast<std::size_t>(positions)]["min"] = {-1, -1, 0};
+    file.root["accessors"][static_cast<std::size_t>(positions)]["max"] = {1, 1, 0};
+    const int normals = file.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    const int tangents = file.addAccessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, 4);
+    const int coordinates = file.addAccessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, 2);
+    const int indices = file.addAccessor<std::uint32_t>({0, 1, 2, 0, 2, 3}, 1);
+    for (std::size_t i = 0; i < rows.texels.size(); ++i) {
+        file.append("images", {{"uri", std::string("data:image/png;base64,") + test::kPng8}});
+        file.append("textures", {{"source", i}});
+    }
+    for (std::size_t i = 0; i < rows.rows.size(); ++i) {
+        const Row& row = rows.rows[i];
+        declareExtensions(row.material, file.root["extensionsUsed"]);
+        file.addMesh({{"material", file.append("materials", row.material)},
+                      {"indices", indices},
+                      {"attributes",
+                       {{"POSITION", positions},
+                        {"NORMAL", normals},
+                        {"TANGENT", tangents},
+                        {"TEXCOORD_0", coordinates}}}});
+        const Plane plane = planeOf(i);
+        file.root["nodes"].back()["matrix"] = matrixOf(plane.frame, plane.center);
+    }
+    addLights(file);
+    Result<Scene> scene = test::import(file);
+    for (std::size_t i = 0; scene && i < rows.texels.size(); ++i) {
+        Image& image = scene->images[i];
+        image.width = image.height = 1;
+        image.pixels.assign(rows.texels[i].begin(), rows.texels[i].end());
+    }
+    return scene;
+}
+
+Measured average(const LinearImage& image) {
+    Measured result;
+    Vec3 squares(0.0);
+    const auto count = static_cast<double>(image.pixels.size());
+    for (const auto& pixel : image.pixels) {
+        const Vec3 value(pixel[0], pixel[1], pixel[2]);
+        result.mean += value / count;
+        squares += value * value / count;
+    }
+    result.error =
+        glm::sqrt(glm::max(squares - result.mean * result.mean, Vec3(0.0)) / std::max(count - 1.0, 1.0));
+    return result;
+}
+
+}  // namespace
+
+Device::Device(const Rows& rows, const DeviceOptions& options) : options_(options) {
+    const Result<Scene> scene = sceneOf(rows);
+    if (!scene) {
+        ADD_FAILURE() << toString(scene.error());
+        return;
+    }
+    for (const Diagnostic& warning : scene->warnings) {
+        ADD_FAILURE() << toString(warning);
+    }
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = MergePolicy::All;
+    settings.environmentMap = true;
+    settings.energyCompensation = options.compensation;
+    settings.effects = {
+        false, package::kEffectReflection | package::kEffectRefraction | package::kEffectIndirectDiffuse,
+        1.0F};
+    loaded_ = std::make_unique<testing::LoadedScene>(*scene, settings);
+    if (!loaded_->ok()) {
+        return;
+    }
+    RendererOptions wanted;
+    wanted.strategy = package::kStrategyUber;
+    wanted.width = wanted.height = options.size;
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(testing::sharedContext(), loaded_->package(), loaded_->gpuScene(), wanted);
+    if (!renderer) {
+        ADD_FAILURE() << toString(renderer.error());
+        return;
+    }
+    renderer_ = std::move(*renderer);
+}
+
+Device::~Device() {
+    testing::expectNoValidationMessages();
+}
+
+std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
+    LinearImage image{static_cast<std::uint32_t>(map.width()), static_cast<std::uint32_t>(map.height()), {}};
+    for (const Vec3& texel : map.texels()) {
+        const auto color = toFloats(texel);
+        image.pixels.push_back({color[0], color[1], color[2], 1.0F});
+    }
+    Result<std::unique_ptr<Environment>> environment = Environment::create(testing::sharedContext(), image);
+    if (!environment) {
+        ADD_FAILURE() << toString(environment.error());
+        return nullptr;
+    }
+    return std::move(*environment);
+}
+
+Measured Device::render(std::size_t row, const View& view, FrameOptions frame, std::uint32_t samples) {
+    const Plane plane = planeOf(row);
+    const glm::dmat3 camera = oracle::frameAbout(plane.frame * view.local);
+    frame.camera.position = toFloats(plane.center + camera[2]);
+    frame.camera.forward = toFloats(-camera[2]);
+    frame.camera.up = toFloats(camera[1]);
+    frame.camera.orthographic = true;
+    frame.camera.halfWidth = frame.camera.halfHeight = kHalfWidth;
+    frame.camera.far = 2.0F;
+    frame.maxReflectionRoughness = 1.0F;
+    const Result<LinearImage> image = renderer_->render(frame, samples);
+    if (!image) {
+        ADD_FAILURE() << toString(image.error());
+        return {};
+    }
+    return average(*image);
+}
+
+Measured Device::underLights(std::size_t row, const View& view, const Environment& any) {
+    FrameOptions frame;
+    frame.environment = &any;
+    frame.environmentIntensity = 0.0F;
+    frame.effects = 0;
+    return render(row, view, frame, 1);
+}
+
+Measured Device::underMap(std::size_t row, const View& view, const Environment& map, Transport transport) {
+    FrameOptions frame;
+    frame.environment = &map;
+    const bool traced = transport == Transport::Traced;
+    if (!traced) {
+        frame.effects = 0;
+    }
+    Measured result = render(row, view, frame, traced ? options_.samples : 1);
+    // The lights are part of the scene, so what they bring is taken away. Emission is then taken away too.
+    result.mean -= underLights(row, view, map).mean;
+    return result;
+}
+
+}  // namespace glint::spec
