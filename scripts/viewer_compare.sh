@@ -9,7 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/viewer_compare.sh [--document] [--scenes NAME,NAME…] [--size WxH]
+usage: scripts/viewer_compare.sh --document
+       scripts/viewer_compare.sh [--scenes NAME,NAME…] [--size WxH]
 
 Renders models (scripts/models.sh) and spheres with Glint and with the Khronos glTF viewer
 in headless Chromium, under the same map and camera, in linear radiance, and compares the
@@ -19,15 +20,16 @@ Writes to out/viewer: viewer.md (tables), viewer.json (every region and channel)
 picture for each scene: Glint prefiltered, Glint traced, the viewer, the ratio. In the
 ratio, red means that Glint is brighter, blue that it is darker, by up to a factor of 1.5.
 
-  --document   also replaces the table in docs/materials.md and docs/images/viewer_*.png
+  --document   also replaces the table in docs/materials.md and docs/images/viewer_*.jpg
   --scenes     only these scenes
   --size       pixels of the models' pictures (default 320x240)
 
 Needs Chromium, its driver and npm (scripts/setup.sh --viewer). npm fetches the viewer's
 package once, into $XDG_CACHE_HOME/glint-sources or ~/.cache/glint-sources, and its
 checksum is compared. Where one of them is missing, the script says so in one line and
-exits 0, or 1 with --document. It also exits 1 where a scene can't be rendered, or where
-the backgrounds of the two differ.
+exits 0, or 1 with --document. It also exits 1 where a scene can't be rendered, where the
+backgrounds of the two differ, or where a sphere is outside of its bound; --document writes
+all the same in the last case.
 
 Environment: GLINT_BIN, the folder of glint (build/release/bin).
 TEXT
@@ -63,6 +65,10 @@ while [[ $# -gt 0 ]]; do
     esac
     shift
 done
+if [[ $document == true && ${#options[@]} -gt 1 ]]; then
+    usage >&2
+    exit 2
+fi
 
 # skip REASON…: leaves the comparison out. That is an error only where the document depends on it.
 skip() {

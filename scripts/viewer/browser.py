@@ -121,3 +121,7 @@ class Viewer:
 
         regions = floats("regions", 2)
         return floats("radiance", 3), regions[..., 0].astype(int), regions[..., 1]
+
+    def to_jpeg(self, name):
+        """The bytes of a picture below the work folder as JPEG."""
+        return base64.b64decode(self.call("toJpeg", f"/work/{name}"))

@@ -144,16 +144,15 @@ def outliers(result):
     return lines
 
 
-def update_document(options, lines, names):
+def update_document(lines, pictures):
     """Replaces the text between the markers, and the pictures."""
     before, found, rest = DOCUMENT.read_text(encoding="utf-8").partition(BEGIN)
     _, found_end, after = rest.partition(END)
     if not found or not found_end:
         raise SystemExit(f"viewer_compare.sh: {DOCUMENT} lacks the lines that the table goes between")
     DOCUMENT.write_text(before + BEGIN + "\n" + "\n".join(lines).rstrip() + "\n" + END + after, encoding="utf-8")
-    for name in PICTURES:
-        if name in names:
-            (DOCUMENT.parent / "images" / f"viewer_{name}.png").write_bytes((options.out / f"{name}.png").read_bytes())
+    for name, data in pictures.items():
+        (DOCUMENT.parent / "images" / f"viewer_{name}.jpg").write_bytes(data)
 
 
 def main():
@@ -177,13 +176,15 @@ def main():
             outside += outliers(result)
             results.append(result)
             done.append(scene)
+        pictures = {scene.name: viewer.to_jpeg(f"{scene.name}.png") for scene in done
+                    if options.document and scene.name in PICTURES}
     lines = report.markdown(done, results, options.package_name)
     (options.out / "viewer.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     faults = {name: text for name, (text, _) in report.FAULTS.items()}
     data = {"viewer": options.package_name, "modes": MODES, "faults": faults, "scenes": results}
     (options.out / "viewer.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
     if options.document and not failures:
-        update_document(options, lines, {scene.name for scene in done})
+        update_document(lines, pictures)
     say(f"{len(results)} scenes in {options.out}: viewer.md, viewer.json, pictures")
     for failure in failures + outside:
         say(f"error: {failure}")

@@ -1,4 +1,4 @@
-// Renders scenes with the Khronos glTF viewer and returns linear radiance. browser.py calls the three functions
+// Renders scenes with the Khronos glTF viewer and returns linear radiance. browser.py calls the functions
 // that this module puts into `window`.
 //
 // The viewer's shading stays as it is. Only its output is changed:
@@ -135,8 +135,9 @@ function findRegions(image, pixels) {
     return regions;
 }
 
-function toBase64(floats) {
-    const bytes = new Uint8Array(floats.buffer);
+// Converts in parts, because a call takes a limited number of arguments.
+function toBase64(buffer) {
+    const bytes = new Uint8Array(buffer);
     const parts = [];
     for (let begin = 0; begin < bytes.length; begin += 0x8000) {
         parts.push(String.fromCharCode(...bytes.subarray(begin, begin + 0x8000)));
@@ -159,6 +160,7 @@ state.animationIndices = [];
 
 window.useEnvironment = async (map, sheenAlbedo) => {
     state.environment = await loader.loadEnvironment(map, { lut_sheen_E_file: sheenAlbedo });
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));  // waits until the map is filtered
 };
 
 window.useScene = async (scene) => {
@@ -180,8 +182,19 @@ window.renderScene = (camera, width, height) => {
         view.renderFrame(state, image.width, image.height);
         return readTarget(image);
     });
-    const result = { radiance: toBase64(meanRadiance(image, pictures[0])), regions: toBase64(findRegions(image, pictures[1])) };
     gl.deleteFramebuffer(image.framebuffer);
-    return result;
+    return {
+        radiance: toBase64(meanRadiance(image, pictures[0]).buffer),
+        regions: toBase64(findRegions(image, pictures[1]).buffer),
+    };
 };
+// Returns a picture as JPEG, in base64. The noise of traced pictures makes them large as PNG.
+window.toJpeg = async (address) => {
+    const bitmap = await createImageBitmap(await (await fetch(address)).blob());
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+    const blob = await canvas.convertToBlob({ type: "image/jpeg", quality: 0.88 });
+    return toBase64(await blob.arrayBuffer());
+};
+
 window.isReady = true;

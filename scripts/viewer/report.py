@@ -165,6 +165,10 @@ def ratio(result, key="luminanceRatio"):
     return "" if result is None else f"{result[key]:.2f}"
 
 
+def pair(region):
+    return ", ".join(ratio(region[mode]) for mode in ("prefiltered", "traced") if region[mode])
+
+
 def channels(result):
     return "" if result is None else " ".join(f"{number:.2f}" for number in result["ratio"])
 
@@ -182,8 +186,7 @@ def scene_table(results):
         regions = result["regions"]
         objects = regions["objects"]
         materials = [region["prefiltered"] for name, region in regions.items() if name.startswith("material ")]
-        pairs = [f"{ratio(regions[name]['prefiltered'])}, {ratio(regions[name]['traced'])}"
-                 for name in ("facing", "grazing")]
+        pairs = [pair(regions[name]) for name in ("facing", "grazing")]
         lines.append(f"| {result['name']} | {channels(objects['prefiltered'])} | {channels(objects['traced'])} | "
                      f"{pairs[0]} | {pairs[1]} | {span(materials)} | {ratio(objects['prefiltered'], 'difference')} | "
                      f"{', '.join(result['faults'])} |")
@@ -194,9 +197,6 @@ def grid_table(scene, result):
     """One cell for each sphere."""
     regions = [region for name, region in result["regions"].items() if name.startswith("material ")]
 
-    def cell(region):
-        return f"{ratio(region['prefiltered'])}, {ratio(region['traced'])}"
-
     if not scene.title:
         lines = ["| sphere | prefiltered, R G B | traced, R G B | faults of the viewer |", "|---|---|---|---|"]
         for region, material in zip(regions, scene.materials):
@@ -206,7 +206,7 @@ def grid_table(scene, result):
     lines = ["| | " + " | ".join(str(label) for label in scene.columns) + " |", "|---" * (len(scene.columns) + 1) + "|"]
     for number, label in enumerate(scene.rows):
         row = regions[number * len(scene.columns):(number + 1) * len(scene.columns)]
-        lines.append(f"| {label} | " + " | ".join(cell(region) for region in row) + " |")
+        lines.append(f"| {label} | " + " | ".join(pair(region) for region in row) + " |")
     return lines
 
 
