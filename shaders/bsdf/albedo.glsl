@@ -67,8 +67,8 @@ float likeIsotropic(float larger, float ratio) {
 // ggxAlbedo() of an anisotropic lobe, alpha.x >= alpha.y. Between grooves along y, no facet changes the part of a
 // direction along them, so the loss depends on the rest of the view alone. The fit knows the view with this part
 // shortened by the ratio of the alphas, and is ggxAlbedo() if they are equal. E exceeds the truth by at most 1e-2, below
-// a cosine of 0.05 by at most 1.8e-2, and falls short by at most 2e-3, below a cosine of 1e-3 by 4e-3. y exceeds the
-// truth by at most 6e-2, for views across the grooves near grazing, and falls short by as little as E.
+// a cosine of 0.04 by at most 1.8e-2, and falls short by at most 3e-3. y exceeds the truth by at most 6e-2 and falls
+// short by at most 7e-3, both for oblique views of strong anisotropy.
 vec2 anisotropicGgxAlbedo(vec3 v, vec2 alpha) {
     float larger = alpha.x;
     float ratio = alpha.y / alpha.x;
@@ -77,44 +77,42 @@ vec2 anisotropicGgxAlbedo(vec3 v, vec2 alpha) {
     float cosine = v.z / size;
     float along2 = v.x * v.x / (size * size);
     float change =
-        -0.077007 + 0.03531598 * along2 * along2 +
-        larger * (along2 * (-0.7711984 - 0.2279319 * along2 * along2) +
-                  larger * (-0.7612256 + 0.9750253 * along2 +
-                            larger * (1.273515 - 0.3085845 * along2 - 0.5572752 * larger))) +
-        ratio * (larger * (-0.4126142 + along2 * (1.054066 * larger - 1.134699)) + 0.05162086 * ratio * along2 * along2) +
-        cosine * (1.048589 - 0.09434109 * along2 * along2 * along2 + larger * larger * (0.5907374 * along2 - 0.4909076) +
-                  0.475225 * ratio * ratio * along2 +
-                  cosine * (-3.134041 + larger * (0.8910212 - 0.9274723 * along2) +
-                            ratio * (-0.855289 + 0.9241211 * larger + 0.2766631 * ratio) +
-                            cosine * (3.323889 - 1.680387 * cosine)));
+        -0.07129767 + 0.08130389 * along2 * along2 + larger * (along2 * (-1.076848 -
+        0.2940859 * along2 * along2) + larger * (-0.5439288 + 1.65534 * along2 + larger * (0.7614213 -
+        0.6125532 * along2 - 0.2975765 * larger))) + ratio * (along2 * (0.5611683 - 0.5718784 * along2) +
+        larger * (-0.3020957 - 1.392543 * along2 + 1.145875 * larger * along2) + ratio * (along2 * (-1.093594 +
+        1.193578 * along2))) + cosine * (0.9123158 - 0.01780192 * along2 * along2 * along2 +
+        larger * larger * (-0.3598492 + 0.3408334 * along2) + 0.9035594 * ratio * ratio * along2 +
+        cosine * (-2.775457 + larger * (0.7769664 - 0.7840454 * along2) + ratio * (-1.220514 + 0.7470105 * larger +
+        0.3480447 * ratio) + cosine * (2.988206 + 0.3926723 * ratio - 1.54729 * cosine)));
     float loss = ggxLoss(cosine, likeIsotropic(larger, ratio)) * (1.0 + (1.0 - ratio) * change);
     // The alpha along the view.
     vec2 slope = alpha * v.xy;
     float a = clamp(sqrt(dot(slope, slope) / max(dot(v.xy, v.xy), 1e-12)), kMinAlpha, 1.0);
     float shift = ggxShift(v.z, a);
     float further =
-        -0.6991083 - 1.30728 * a + 2.139458 * ratio +
-        size * (2.37751 + 3.01326 * a - 7.973229 * ratio +
-                size * (-2.43892 - 1.716259 * a + 5.934398 * ratio + 0.66923 * size)) +
-        cosine * (-0.1421445 - 0.3743089 * a * a + ratio * (1.222041 - 4.495758 * ratio) +
-                  size * (0.5239388 * ratio - 1.891122 * a + 1.255972 * size) -
-                  cosine * (0.1149143 + 1.464606 * size));
-    shift += (1.0 - ratio) * (shift * further - 0.106513 * larger * v.z * cosine);
+        -0.7044803 - 1.062169 * a + 2.208309 * ratio + size * (2.280829 + 2.003423 * a -
+        8.326199 * ratio + size * (-2.091328 - 0.843733 * a + 6.308936 * ratio + 0.3956468 * size)) +
+        cosine * (-0.1642611 - 0.7560449 * a * a + ratio * (1.872618 + 1.079922 * ratio) + size * (-2.069043 * a -
+        5.063027 * ratio + 1.287943 * size) + cosine * (-0.3774205 - 0.376236 * size));
+    shift += (1.0 - ratio) * (shift * further - 0.1069687 * larger * v.z * cosine);
     return albedoAt(loss, v.z + shift);
 }
 
-// ggxMeanAlbedo() of exactly this fit, over all azimuths. If S is as there, 1 - S̄ is 0.99 to 1.0003 times its
-// integral, or falls short by less than 7e-4.
+// ggxMeanAlbedo() of exactly this fit, over all azimuths: the integral of the loss is 0.995 to 1.0003 times its x, but
+// for 4e-5 of a small loss.
 vec2 anisotropicGgxMeanAlbedo(vec2 alpha) {
     float ratio = alpha.y / alpha.x;
     float roughness = sqrt(alpha.x);
-    float change = 0.03235323 + ratio * (-0.4034162 + ratio * (-0.114043 + ratio * (0.314674 * ratio - 0.5263376))) +
-                   roughness * (-2.953443 + ratio * (-0.464126 + ratio * (2.657039 - 0.1588423 * ratio)) +
-                                roughness * (7.001456 - 1.967016 * ratio * ratio +
-                                             roughness * (0.5317459 * ratio - 6.210062 + 2.000493 * roughness)));
+    float change =
+        -0.3274147 + ratio * (-0.4135516 + ratio * (-0.3130759 + ratio * (0.441129 +
+        ratio * (-0.2336199 + 0.03670227 * ratio)))) + roughness * (-0.6699184 + ratio * (-0.6234454 +
+        ratio * (3.093386 + ratio * (-1.963356 + 0.4824332 * ratio))) + roughness * (1.644908 + ratio * (1.095875 +
+        ratio * (-2.621545 + 0.9443727 * ratio)) + roughness * (-0.4543675 + ratio * (-1.06005 + 0.3805428 * ratio) +
+        roughness * (-0.7258241 + 0.6633156 * ratio + 0.4011726 * roughness))));
     return vec2(ggxMeanAlbedo(likeIsotropic(alpha.x, ratio)).x * (1.0 + (1.0 - ratio) * change),
-                0.04013285 + alpha.y * (0.002212934 * alpha.y - 0.04291694) +
-                    alpha.x * (-0.04294941 + 0.02613824 * alpha.y + 0.01336527 * alpha.x));
+                0.04012245 + alpha.y * (-0.04584752 - 0.01377789 * alpha.y) + alpha.x * (-0.0402732 +
+                0.04390965 * alpha.y + 0.01139369 * alpha.x));
 }
 
 // 1 / (n·v (1 + sheenLambda())), accurate to 0.4% near grazing and to 4% elsewhere. sheenLambda() is the exponential of

@@ -1,6 +1,7 @@
 // The GGX microfacet lobe. Vectors are unit vectors in the frame of the surface, where z is the normal. There |n×h|² is
 // h.x² + h.y². It keeps its digits where h is near n, which is where a smooth lobe has its energy; 1 - (n·h)² would
 // lose all of them. alpha has values along x and y, at least kMinAlpha.
+#include "bsdf/constants.glsl"
 #include "bsdf/exact.glsl"
 
 // The Trowbridge-Reitz NDF: glTF 2.0, appendix B.3.2; with two alphas as in KHR_materials_anisotropy.

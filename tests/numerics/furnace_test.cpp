@@ -93,6 +93,34 @@ TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
     EXPECT_GT(rows, 0);
 }
 
+// Returns the share of a white sky that black microfacets (f0 = 0, f90 = 1) or white ones reflect once.
+double reflectedOnce(TestMaterial material, double f0, const glm::dvec3& view) {
+    glsl::energyCompensation = 0;
+    material.bsdf.f0 = glm::dvec3(f0);
+    const double result = albedo(material.seenFrom(view), 8000).x;
+    glsl::energyCompensation = 1;
+    return result;
+}
+
+// The bounds are those that albedo.glsl states.
+TEST(Ggx, AnisotropicAlbedoIsWithinItsBounds) {
+    Engine engine(kSeed);
+    for (int i = 0; i < 400; ++i) {
+        TestMaterial material = makeMaterial(randomAlpha(engine, 1e-3));
+        material.lobes = GLINT_ANISOTROPY;
+        material.bsdf.alpha.x = anisotropicAlpha(material.bsdf.alpha.y, i % 3 == 0 ? 1.0 : uniform(engine));
+        const double cosine = i % 2 == 0 ? std::exp(uniform(engine, std::log(1e-3), 0.0)) : uniform(engine);
+        const glm::dvec3 view = direction(cosine, uniform(engine, 0.0, 2.0 * kPi));
+        const TestMaterial seen = material.seenFrom(view);
+        const double white = 1.0 - seen.bsdf.viewLoss - reflectedOnce(material, 1.0, view);
+        const double weighted = seen.bsdf.viewBias - reflectedOnce(material, 0.0, view);
+        EXPECT_GE(white, -2.5e-3) << seen;
+        EXPECT_LE(white, cosine < 0.05 ? 1.8e-2 : 1e-2) << seen;
+        EXPECT_GE(weighted, -2.5e-3) << seen;
+        EXPECT_LE(weighted, 6e-2) << seen;
+    }
+}
+
 TEST(Furnace, WhiteMetalReflectsEverything) {
     for (const double roughness : {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0}) {
         TestMaterial metal = makeMaterial(roughness * roughness);
