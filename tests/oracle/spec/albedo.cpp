@@ -11,11 +11,6 @@ namespace {
 constexpr int kCosines = 96;
 constexpr int kAzimuths = 9;
 
-Vec3 directionOf(double cosine, double azimuth) {
-    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
-}
-
 // Node i is at a cosine of ((i + ½) / kCosines)², so that there are more of them near grazing.
 double cosineOfNode(int node) {
     return squared((node + 0.5) / kCosines);
@@ -50,7 +45,7 @@ MicrofacetAlbedo::MicrofacetAlbedo(const Vec2& alpha, Masking masking) {
         const double azimuth = azimuths == 1 ? 0.0 : 0.5 * kPi * j / (kAzimuths - 1);
         std::vector<Value>& row = table_.emplace_back();
         for (int i = 0; i < kCosines; ++i) {
-            row.push_back(integrate(directionOf(cosineOfNode(i), azimuth), alpha, masking));
+            row.push_back(integrate(polarDirection(cosineOfNode(i), azimuth), alpha, masking));
         }
     }
     // Over s = √μ the mean is 4 ∫ E s³ ds, at midpoints; azimuths by the trapezoidal rule.
@@ -88,7 +83,7 @@ MicrofacetAlbedo::Value MicrofacetAlbedo::at(const Vec3& v) const {
 
 SheenAlbedo::SheenAlbedo(double alpha) {
     for (int i = 0; i < kCosines; ++i) {
-        const Vec3 v = directionOf(cosineOfNode(i), 0.0);
+        const Vec3 v = polarDirection(cosineOfNode(i), 0.0);
         table_.push_back(midpoints(64, 96, 0.0, [&](const Vec2& point) {
             const Direction d = cosineDirection(point);
             const Vec3 h = glm::normalize(v + d.l);

@@ -187,6 +187,11 @@ Vec3 Bsdf::iors() const {
     return dispersedIors(m_.ior, m_.dispersion);
 }
 
+// KHR_materials_volume, "Attenuation".
+Vec3 Bsdf::absorbed() const {
+    return choices_.absorbsAlongRays ? Vec3(1.0) : glm::exp(-m_.absorption * m_.thickness);
+}
+
 bool Bsdf::straight() const {
     return m_.volume && m_.transmission > 0.0 && std::abs(m_.ior - 1.0) < 1e-4;
 }
@@ -194,7 +199,7 @@ bool Bsdf::straight() const {
 Vec3 Bsdf::straightWeight() const {
     const double share =
         (1.0 - m_.metallic) * m_.transmission * (1.0 - largest(fresnel(dielectric_, view_.z)));
-    return m_.baseColor * (share * layersAbove({0.0, 0.0, -1.0}));
+    return m_.baseColor * absorbed() * (share * layersAbove({0.0, 0.0, -1.0}));
 }
 
 double Bsdf::transmittedChannel(const Vec3& l, double eta) const {
@@ -228,7 +233,7 @@ Vec3 Bsdf::transmitted(const Vec3& l) const {
         lobe.x = transmittedChannel(l, indices.x);
         lobe.z = transmittedChannel(l, indices.z);
     }
-    return lobe * m_.baseColor * ((1.0 - m_.metallic) * m_.transmission * -l.z * layersAbove(l));
+    return lobe * m_.baseColor * absorbed() * ((1.0 - m_.metallic) * m_.transmission * -l.z * layersAbove(l));
 }
 
 Vec3 Bsdf::sheen(const Vec3& l) const {

@@ -23,6 +23,10 @@ struct Choices {
     bool sheenAtView = false;
     // Diffuse transmission counts the Fresnel of the view, not that of a mirrored half vector.
     bool transmittedAtView = false;
+    // A ray absorbs over its own distance in a volume. The comparisons' rays end in the volume that they
+    // enter, without having met a surface, so nothing is absorbed. Otherwise the thickness at the surface
+    // counts.
+    bool absorbsAlongRays = false;
     Masking masking = Masking::HeightCorrelated;
 };
 
@@ -97,6 +101,7 @@ private:
     // Of light that reaches the lobes below the dielectric's microfacets and leaves them again.
     double diffuseShare(const Vec3& l, double facetCosine) const;
     double layersAbove(const Vec3& l) const;
+    Vec3 absorbed() const;  // the share that passes the volume
     double transmittedChannel(const Vec3& l, double eta) const;
     void setFilm(Base& base) const;
 

@@ -238,6 +238,8 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
     const Material material = readMaterial(rows_.rows[row].material, rows_.texels);
     Choices choices = statedChoices();
     choices.sheenAtView = true;
+    Choices specification;
+    choices.absorbsAlongRays = specification.absorbsAlongRays = transport == Transport::Traced;
     const Surface::Sky sky{*loaded.map, *loaded.harmonics,
                            static_cast<int>(loaded.environment->statistics().levels), transport};
     Sums sums;
@@ -248,7 +250,8 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
             continue;
         }
         const Point point = pointOf(row, view);
-        Terms plain = Surface(material, {}, albedos_, point).underMap(*loaded.map, {options_.quality});
+        Terms plain =
+            Surface(material, specification, albedos_, point).underMap(*loaded.map, {options_.quality});
         Terms stated = Surface(material, choices, albedos_, point).underSky(sky, {options_.quality});
         // The device's picture has lost its emission with the lights'.
         plain.emission = stated.emission = Vec3(0.0);

@@ -68,7 +68,8 @@ Result<Scene> sceneOf(const Rows& rows) {
     const int coordinates = file.addAccessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, 2);
     const int indices = file.addAccessor<std::uint32_t>({0, 1, 2, 0, 2, 3}, 1);
     for (std::size_t i = 0; i < rows.texels.size(); ++i) {
-        file.append("images", {{"uri", std::string("data:image/png;base64,") + test::kPng8}});
+        file.append("images", {{"name", std::to_string(i)},
+                               {"uri", std::string("data:image/png;base64,") + test::kPng8}});
         file.append("textures", {{"source", i}});
     }
     for (std::size_t i = 0; i < rows.rows.size(); ++i) {
@@ -86,10 +87,13 @@ Result<Scene> sceneOf(const Rows& rows) {
     }
     addLights(file);
     Result<Scene> scene = test::import(file);
-    for (std::size_t i = 0; scene && i < rows.texels.size(); ++i) {
-        Image& image = scene->images[i];
-        image.width = image.height = 1;
-        image.pixels.assign(rows.texels[i].begin(), rows.texels[i].end());
+    if (scene) {
+        // Images that no material uses are left out.
+        for (Image& image : scene->images) {
+            const Texel& texel = rows.texels.at(std::stoul(image.name));
+            image.width = image.height = 1;
+            image.pixels.assign(texel.begin(), texel.end());
+        }
     }
     return scene;
 }

@@ -7,6 +7,11 @@
 
 namespace glint::spec {
 
+Vec3 polarDirection(double cosine, double azimuth) {
+    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+}
+
 Direction cosineDirection(const Vec2& point) {
     const double sine = std::sqrt(point.x);
     const double phi = 2.0 * kPi * point.y;
@@ -34,18 +39,32 @@ double visibleNormalDensity(const Vec3& v, const Vec3& h, const Vec2& alpha) {
     return masking(v, alpha) * distribution(h, alpha) * std::max(glm::dot(v, h), 0.0) / v.z;
 }
 
+namespace {
+
+// Moves points towards the edge of the disk of visible normals: facets that are seen from the side, which
+// lose the light, lie within alpha² of it. `factor` is the area of the disk for that of the square.
+Vec2 towardsEdge(const Vec2& point, double& factor) {
+    const double rest = 1.0 - point.x;
+    factor = 3.0 * rest * rest;
+    return {1.0 - rest * rest * rest, point.y};
+}
+
+}  // namespace
+
 Direction reflectedDirection(const Vec3& v, const Vec2& alpha, const Vec2& point) {
-    const Vec3 h = visibleNormal(v, alpha, point);
+    double factor = 0.0;
+    const Vec3 h = visibleNormal(v, alpha, towardsEdge(point, factor));
     const double cosine = glm::dot(v, h);
     const double density = visibleNormalDensity(v, h, alpha);
     if (!(density > 0.0)) {
         return {};
     }
-    return {glm::normalize(2.0 * cosine * h - v), 4.0 * cosine / density};
+    return {glm::normalize(2.0 * cosine * h - v), factor * 4.0 * cosine / density};
 }
 
 Direction refractedDirection(const Vec3& v, const Vec2& alpha, double eta, const Vec2& point) {
-    const Vec3 h = visibleNormal(v, alpha, point);
+    double factor = 0.0;
+    const Vec3 h = visibleNormal(v, alpha, towardsEdge(point, factor));
     const double cosine = glm::dot(v, h);
     const double density = visibleNormalDensity(v, h, alpha);
     const double refracted2 = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
@@ -56,7 +75,7 @@ Direction refractedDirection(const Vec3& v, const Vec2& alpha, double eta, const
     // Walter et al. 2007, equation 17: the solid angle of h is that of l times this.
     const double lh = std::abs(glm::dot(l, h));
     const double jacobian = eta * eta * lh / squared(glm::dot(v, h) - eta * lh);
-    return {l, 1.0 / (density * jacobian)};
+    return {l, factor / (density * jacobian)};
 }
 
 }  // namespace glint::spec

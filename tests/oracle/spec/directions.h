@@ -9,6 +9,9 @@ namespace glint::spec {
 using oracle::Vec2;
 using oracle::Vec3;
 
+// The unit vector at this cosine to z, turned by the azimuth from x.
+Vec3 polarDirection(double cosine, double azimuth);
+
 struct Direction {
     Vec3 l{0.0};
     double solidAngle = 0.0;  // of the unit square; 0 where no light passes

@@ -147,7 +147,7 @@ void addReflectingLobes(List& list) {
                      extended(base(kGold, metallic, 0.3), kFilm, film), false, thickness == 550.0);
         }
         list.add("lobe", fmt::format("iridescence of {} nm on white", thickness),
-                 extended(base(kWhite, 0, 0.3), kFilm, film), true);
+                 extended(base(kWhite, 0, 0.3), kFilm, film));
     }
     list.add("lobe", "iridescence 0.4",
              extended(base(kOlive, 0, 0.3), kFilm, {{"iridescenceFactor", 0.4}, {"iridescenceIor", 2.0}}));
@@ -291,7 +291,7 @@ void addTextures(List& list) {
     Json gloss{{"glossinessFactor", 0.9}, {"specularFactor", {0.6, 0.7, 0.8}}};
     gloss["diffuseTexture"] = list.texture({200, 90, 150, 255});
     gloss["specularGlossinessTexture"] = list.texture(kTexel);
-    add("specular-glossiness", {{"extensions", {{kGloss, gloss}}}});
+    add("specular-glossiness textures", {{"extensions", {{kGloss, gloss}}}});
 }
 
 void addNormalMaps(List& list) {

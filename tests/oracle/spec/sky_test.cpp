@@ -1,6 +1,7 @@
 // Tests the whole materials of the oracle: reading, reciprocity, energy, and light from maps.
 #include "oracle/spec/sky.h"
 
+#include "oracle/spec/directions.h"
 #include "oracle/spec/rows.h"
 
 #include <gtest/gtest.h>
@@ -11,11 +12,6 @@
 namespace {
 
 using namespace glint::spec;
-
-Vec3 direction(double cosine, double azimuth) {
-    const double sine = std::sqrt(1.0 - cosine * cosine);
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
-}
 
 const Rows& rows() {
     static const Rows kRows = allRows();
@@ -36,6 +32,7 @@ Choices compensated() {
     Choices choices;
     choices.compensation = true;
     choices.sheenBounded = true;
+    choices.sheenAtView = true;  // the smaller of two shares loses light
     return choices;
 }
 
@@ -46,7 +43,7 @@ const Map& whiteMap() {
 
 Vec3 inFurnace(const Material& material, const Choices& choices, const Vec3& view, Albedos& albedos) {
     const Point point{glm::dmat3(1.0), view};
-    return Surface(material, choices, albedos, point).underMap(whiteMap(), {96}).sum();
+    return Surface(material, choices, albedos, point).underMap(whiteMap(), {48}).sum();
 }
 
 TEST(SpecMaterial, DefaultsAreThoseOfTheSpecification) {
@@ -79,7 +76,7 @@ TEST(SpecMaterial, TexturesHaveTheirChannelsAndColourSpaces) {
     EXPECT_NEAR(materialOf("thickness").thickness, 120.0 / 255.0, 1e-12);
     EXPECT_NEAR(materialOf("thickness").absorption.x, -std::log(0.5) / 0.5, 1e-12);
     EXPECT_NEAR(materialOf("diffuse transmission").diffuseTransmission, 210.0 / 255.0, 1e-12);
-    EXPECT_NEAR(materialOf("specular-glossiness").roughness, 1.0 - 0.9 * 210.0 / 255.0, 1e-12);
+    EXPECT_NEAR(materialOf("specular-glossiness textures").roughness, 1.0 - 0.9 * 210.0 / 255.0, 1e-12);
 }
 
 // f(v, l) = f(l, v), where nothing is weighed at the view alone.
@@ -97,8 +94,8 @@ TEST(SpecBsdf, IsReciprocal) {
             if (compensation && material.iridescence > 0.0) {
                 continue;  // the film's angle is then the view's
             }
-            const Vec3 v = direction(0.3, 0.2);
-            const Vec3 l = direction(0.8, 2.0);
+            const Vec3 v = polarDirection(0.3, 0.2);
+            const Vec3 l = polarDirection(0.8, 2.0);
             const Choices choices = compensation ? compensated() : Choices{};
             const Vec3 there = Bsdf(material, choices, albedos, v).all(l) / l.z;
             const Vec3 back = Bsdf(material, choices, albedos, l).all(v) / v.z;
@@ -121,8 +118,8 @@ TEST(SpecBsdf, WhiteBasesKeepAllLight) {
             continue;
         }
         ++compared;
-        for (const double cosine : {0.9, 0.4, 0.15}) {
-            const Vec3 light = inFurnace(m, compensated(), direction(cosine, 0.5), albedos);
+        for (const double cosine : {0.9, 0.2}) {
+            const Vec3 light = inFurnace(m, compensated(), polarDirection(cosine, 0.5), albedos);
             for (int i = 0; i < 3; ++i) {
                 EXPECT_NEAR(light[i], 1.0, 4e-3) << row.name << " at " << cosine;
             }
@@ -136,8 +133,8 @@ TEST(SpecBsdf, PlainMetalLosesItsAlbedo) {
     Albedos albedos;
     const Material m = materialOf("white metal, roughness 1");
     const double cosine = 0.5;
-    EXPECT_NEAR(inFurnace(m, {}, direction(cosine, 0.5), albedos).x, 1.0 - cosine * std::log1p(1.0 / cosine),
-                2e-3);
+    EXPECT_NEAR(inFurnace(m, {}, polarDirection(cosine, 0.5), albedos).x,
+                1.0 - cosine * std::log1p(1.0 / cosine), 2e-3);
 }
 
 // A formula that mixes the F0 of metal and dielectric, and takes the diffuse light from the mixture, is told
@@ -145,7 +142,7 @@ TEST(SpecBsdf, PlainMetalLosesItsAlbedo) {
 TEST(SpecBsdf, MixesTwoBases) {
     Albedos albedos;
     const Material m = materialOf("white, metallic 0.5, roughness 0.5");
-    const Vec3 view = direction(0.9, 0.5);
+    const Vec3 view = polarDirection(0.9, 0.5);
     EXPECT_NEAR(inFurnace(m, compensated(), view, albedos).x, 1.0, 2e-3);
     // F0 0.52: half of the diffuse light is there, and it has less than half of that.
     Material mixed = m;
@@ -159,7 +156,7 @@ TEST(SpecBsdf, MixesTwoBases) {
 TEST(SpecBsdf, SmoothGlassShowsWhatIsBehind) {
     Albedos albedos;
     const Map map(512, 256, [](const Vec3& d) { return Vec3(2.0 + d.x, 2.0 + d.y, 2.0 + d.z); });
-    const Vec3 view = direction(0.6, 1.0);
+    const Vec3 view = polarDirection(0.6, 1.0);
     const Point point{glm::dmat3(1.0), view};
     const double passed = 0.96 * (1.0 - std::pow(0.4, 5.0));
     const Terms thin = Surface(materialOf("thin glass, roughness 0"), {}, albedos, point).underMap(map, {64});
@@ -204,7 +201,7 @@ TEST(SpecSky, QuadraturesHaveConverged) {
                              "clearcoat 0.5 on gold", "thin glass, tinted, half"}) {
         const Material m = materialOf(name);
         for (const double cosine : {0.9, 0.2}) {
-            const Point point{glm::dmat3(1.0), direction(cosine, 0.5)};
+            const Point point{glm::dmat3(1.0), polarDirection(cosine, 0.5)};
             const Surface surface(m, {}, albedos, point);
             const Vec3 coarse = surface.underMap(map, {64}).sum();
             const Vec3 fine = surface.underMap(map, {160}).sum();

@@ -1,5 +1,7 @@
 #include "oracle/spec/views.h"
 
+#include "oracle/spec/directions.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,11 +13,6 @@ constexpr std::size_t kPlanesInRow = 6;
 // 2π / φ², which never repeats.
 constexpr double kGoldenAngle = 2.39996322972865332;
 
-Vec3 around(double cosine, double azimuth) {
-    const double sine = std::sqrt(1.0 - cosine * cosine);
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
-}
-
 }  // namespace
 
 Plane planeOf(std::size_t row) {
@@ -25,7 +22,7 @@ Plane planeOf(std::size_t row) {
                     along(row / (kPlanesInRow * kPlanesInRow))};
     const auto index = static_cast<double>(row);
     const double tilt = 0.7 * std::sqrt(std::fmod(0.61803398875 * index + 0.3, 1.0));
-    const Vec3 z = around(std::cos(tilt), kGoldenAngle * index);
+    const Vec3 z = polarDirection(std::cos(tilt), kGoldenAngle * index);
     const glm::dmat3 frame = oracle::frameAbout(Vec3(z.x, z.z, z.y));
     const double turn = 1.7 * index;
     plane.frame = {std::cos(turn) * frame[0] + std::sin(turn) * frame[1],
@@ -35,13 +32,13 @@ Plane planeOf(std::size_t row) {
 
 std::vector<View> viewsOf(bool many) {
     if (!many) {
-        return {{around(0.9, 0.5), Zone::Steep},
-                {around(0.5, 1.1), Zone::Middle},
-                {around(0.2, -0.4), Zone::Grazing}};
+        return {{polarDirection(0.9, 0.5), Zone::Steep},
+                {polarDirection(0.5, 1.1), Zone::Middle},
+                {polarDirection(0.2, -0.4), Zone::Grazing}};
     }
-    return {{around(0.97, 0.5), Zone::Steep},    {around(0.8, 2.9), Zone::Steep},
-            {around(0.6, 1.1), Zone::Middle},    {around(0.4, -1.3), Zone::Middle},
-            {around(0.25, -0.4), Zone::Grazing}, {around(0.12, 4.0), Zone::Grazing}};
+    return {{polarDirection(0.97, 0.5), Zone::Steep},    {polarDirection(0.8, 2.9), Zone::Steep},
+            {polarDirection(0.6, 1.1), Zone::Middle},    {polarDirection(0.4, -1.3), Zone::Middle},
+            {polarDirection(0.25, -0.4), Zone::Grazing}, {polarDirection(0.12, 4.0), Zone::Grazing}};
 }
 
 bool faces(const Material& material, const View& view) {
