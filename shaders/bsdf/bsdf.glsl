@@ -240,11 +240,9 @@ float coatViewCosine(Bsdf b) {
     return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
 }
 
-// The view for the coat. If the coat's normal turns away from the viewer, the view is lifted above its horizon, as
-// prepareBsdf() does for the base.
-vec3 coatView(Bsdf b) {
-    float cosine = accurateDot(b.clearcoatNormal, b.view);
-    return cosine >= kMinViewCosine ? b.view : normalize(b.view + b.clearcoatNormal * (kMinViewCosine - cosine));
+// Returns whether the coat's normal faces the viewer.
+bool facesViewer(Bsdf b) {
+    return accurateDot(b.clearcoatNormal, b.view) >= kMinViewCosine;
 }
 
 // What lies below the coat: base and sheen, times |n·l|, without the coat's absorption.
@@ -273,14 +271,16 @@ vec3 evaluateBelowCoat(Bsdf b, Features features, vec3 l) {
     return result;
 }
 
-// What the coat reflects, times the cosine to its own normal. The coat covers one hemisphere about
-// that normal, whatever the normal of the base is.
+// What the coat reflects, times the cosine to its own normal. The coat covers the hemisphere about that normal, whatever
+// the normal of the base is. If it turns away from the viewer, it covers only what is above the base, too.
 float evaluateCoat(Bsdf b, vec3 l) {
     float nDotL = accurateDot(b.clearcoatNormal, l);
     float nDotV = coatViewCosine(b);
-    return nDotL > 0.0 ? clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
-                             clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, coatView(b), l, b.clearcoatAlpha)
-                       : 0.0;
+    if (nDotL <= 0.0 || (l.z <= 0.0 && !facesViewer(b))) {
+        return 0.0;
+    }
+    return clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
+           clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha);
 }
 
 // Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is

@@ -44,6 +44,11 @@ LobeChances lobeChances(Bsdf b, Features features) {
         diffuse *= underCoat;
         passed *= underCoat;
     }
+    if (hasLobe(features, GLINT_CLEARCOAT) && !facesViewer(b)) {
+        // If the coat's normal turns away from the view, it has no visible normals.
+        diffuse += coat;
+        coat = 0.0;
+    }
     float total = coat + microfacets + diffuse + passed;
     // A black surface samples its microfacets; the weight of these samples is 0.
     return total > 0.0 ? LobeChances(coat / total, microfacets / total, diffuse / total, passed / total)
@@ -123,7 +128,7 @@ float coatPdf(Bsdf b, vec3 l) {
         return 0.0;
     }
     float nDotV = coatViewCosine(b);
-    return 0.5 * clearcoatDistribution(b.clearcoatNormal, coatView(b), l, b.clearcoatAlpha) /
+    return 0.5 * clearcoatDistribution(b.clearcoatNormal, b.view, l, b.clearcoatAlpha) /
            (nDotV + clearcoatProjection(nDotV, b.clearcoatAlpha));
 }
 
@@ -178,10 +183,9 @@ vec3 sampleCoat(Bsdf b, vec2 u) {
     vec3 tangent;
     vec3 bitangent;
     buildBasis(b.clearcoatNormal, tangent, bitangent);
-    vec3 seenFrom = coatView(b);
-    vec3 view = vec3(dot(tangent, seenFrom), dot(bitangent, seenFrom), coatViewCosine(b));
+    vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
     vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u);
-    vec3 l = reflectAbout(seenFrom, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
+    vec3 l = reflectAbout(b.view, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
     return accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
 }
 

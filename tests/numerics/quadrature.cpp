@@ -70,10 +70,10 @@ dvec3 direction(double cosine, double phi) {
 
 void Quadrature::addReflection(const dvec2& alpha, const dvec3& normal) {
     const glm::dmat3 frame = normal.z >= 1.0 ? glm::dmat3(1.0) : frameOf(normal);
-    // From below its horizon, a lobe is seen as from the horizon.
-    dvec3 view = view_ * frame;
-    view.z = std::max(view.z, 1e-7);
-    places_.push_back({Kind::Reflection, alpha, 1.0, frame, glm::normalize(view)});
+    const dvec3 view = view_ * frame;
+    if (view.z > 0.0) {
+        places_.push_back({Kind::Reflection, alpha, 1.0, frame, view});
+    }
 }
 
 void Quadrature::addThinTransmission(const dvec2& alpha) {
