@@ -213,8 +213,9 @@ GivenMaterial putMaterial(InputSource& in, std::uint32_t without = 0) {
     const auto lobes = static_cast<std::uint32_t>(in.uniform(0.0, 2048.0)) * 4U;
     in.put(in.chance(0.3) ? 0U : lobes & ~without);
     GivenMaterial material;
-    material.alphaX = in.alpha();
-    material.alphaY = in.chance(0.5) ? material.alphaX : in.alpha();
+    // KHR_materials_anisotropy: the alpha along the direction is the larger one.
+    material.alphaY = in.alpha();
+    material.alphaX = in.chance(0.5) ? material.alphaY : std::max(in.alpha(), material.alphaY);
     material.eta = in.eta();
     const double metal = in.chance(0.5) ? in.pick({0.0, 1.0}) : in.uniform();
     const double transmitted = in.chance(0.5) ? in.pick({0.0, 1.0}) : in.uniform();
