@@ -1,4 +1,7 @@
-"""Renders scenes with Glint and with the Khronos glTF viewer and reports the ratios. scripts/viewer_compare.sh runs it."""
+"""Renders scenes with Glint and with the Khronos glTF viewer and reports the ratios.
+
+scripts/viewer_compare.sh runs it.
+"""
 import argparse
 import json
 import pathlib
@@ -107,7 +110,7 @@ def render_viewer(viewer, scene):
 
 
 def compare_scene(options, viewer, scene):
-    """Renders a scene with both, writes its picture and returns its result."""
+    """Renders a scene with both and writes its picture. Returns its result, and what is wrong with it."""
     begin = time.monotonic()
     theirs, regions, cosines = render_viewer(viewer, scene)
     between = time.monotonic()
@@ -119,14 +122,21 @@ def compare_scene(options, viewer, scene):
     say(f"{scene.name}: viewer {between - begin:.0f} s, Glint {time.monotonic() - between:.0f} s, ratio "
         f"{report.channels(result['regions']['objects']['prefiltered'])} prefiltered, "
         f"{report.channels(result['regions']['objects']['traced'])} traced")
-    return result
+    return result, mismatches(scene, result, modes)
 
 
-def mismatches(result):
-    """Says where the backgrounds differ, which depend on camera and map alone."""
-    return [f"{result['name']}: the background differs by {100 * part['difference']:.1f} % ({mode}), so cameras or maps "
-            "do not match" for mode, part in result["background"].items()
-            if part and part["difference"] > BACKGROUND_DIFFERENCE]
+def mismatches(scene, result, modes):
+    """Says what keeps a comparison from meaning something. The backgrounds depend on camera and map alone."""
+    lines = [f"the background differs by {100 * part['difference']:.1f} % ({mode}): cameras or maps do not match"
+             for mode, part in result["background"].items() if part and part["difference"] > BACKGROUND_DIFFERENCE]
+    lines += [f"Glint's picture has pixels that are not finite ({mode})" for mode, picture in modes.items()
+              if not np.isfinite(picture).all()]
+    compared = sum(region["prefiltered"] is not None for name, region in result["regions"].items()
+                   if name.startswith("material "))
+    expected = len(scene.rows) * len(scene.columns) if scene.rows else 1
+    if compared < expected:
+        lines.append(f"the viewer shows {compared} of at least {expected} materials")
+    return [f"{result['name']}: {line}" for line in lines]
 
 
 def outliers(result):
@@ -139,8 +149,8 @@ def outliers(result):
         far = {name: ratio for name, ratio in ratios.items() if abs(ratio - 1) > bound}
         if far:
             name = max(far, key=lambda key: abs(far[key] - 1))
-            lines.append(f"{result['name']}, {mode}: {len(far)} of {len(ratios)} spheres are more than {bound:.0%} from "
-                         f"the viewer's luminance; {name} has {far[name]:.2f} times as much")
+            lines.append(f"{result['name']}, {mode}: {len(far)} of {len(ratios)} spheres are more than {bound:.0%} "
+                         f"from the viewer's luminance; {name} has {far[name]:.2f} times as much")
     return lines
 
 
@@ -168,11 +178,11 @@ def main():
         say(f"the viewer has filtered the map in {time.monotonic() - begin:.0f} s")
         for scene in wanted:
             try:
-                result = compare_scene(options, viewer, scene)
+                result, wrong = compare_scene(options, viewer, scene)
             except (browser.ViewerError, subprocess.CalledProcessError) as error:
                 failures.append(f"{scene.name}: {error}")
                 continue
-            failures += mismatches(result)
+            failures += wrong
             outside += outliers(result)
             results.append(result)
             done.append(scene)

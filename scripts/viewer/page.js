@@ -64,7 +64,8 @@ gl.bindFramebuffer = (kind, framebuffer) => bindFramebuffer(kind, framebuffer ??
 function makeTarget(width, height) {
     const framebuffer = gl.createFramebuffer();
     bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-    for (const [attachment, format] of [[gl.COLOR_ATTACHMENT0, gl.RGBA32F], [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24]]) {
+    const formats = [[gl.COLOR_ATTACHMENT0, gl.RGBA32F], [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24]];
+    for (const [attachment, format] of formats) {
         const buffer = gl.createRenderbuffer();
         gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
         gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);

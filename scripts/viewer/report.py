@@ -26,8 +26,8 @@ FAULTS = {
         "The map is filtered by the lesser roughness alone. The lobe is not stretched; only the normal is bent.",
         lambda material: value(material, "anisotropy", "anisotropyStrength", 0) > 0),
     "coat": (
-        "The coat weighs the map by Schlick's Fresnel at the view's angle, without a table for its roughness, and takes "
-        "the index of the base instead of 1.5.",
+        "The coat weighs the map by Schlick's Fresnel at the view's angle, without a table for its roughness, and "
+        "takes the index of the base instead of 1.5.",
         lambda material: value(material, "clearcoat", "clearcoatFactor", 0) > 0),
     "sheen": (
         "The table of the lobe sums samples of the lobe without their density, takes the roughness for alpha, and has "
@@ -54,8 +54,8 @@ FAULTS = {
         "A texture that serves as colour and as data is read for both as its first use asks, sRGB or linear.",
         lambda material: False),
     "no-scene-light": (
-        "Only the map lights a surface. Objects neither hide it from each other nor reflect in each other. This concerns "
-        "the traced pictures of models.",
+        "Only the map lights a surface. Objects neither hide it from each other nor reflect in each other. This "
+        "concerns the traced pictures of models.",
         lambda material: False),
 }
 
@@ -213,9 +213,10 @@ def grid_table(scene, result):
 def markdown(scenes, results, package):
     """The report as lines: how it was made, the tables, the faults."""
     size = next((result["size"] for scene, result in zip(scenes, results) if not scene.rows), None)
-    lines = [f"{package}; " + (f"models at {size[0]} × {size[1]}, " if size else "") + "spheres at 64 × 64. Every number "
-             "is a ratio, Glint to the viewer; a pair is the ratio of luminance, prefiltered and traced. \"Difference\" "
-             "is the mean of the absolute differences of luminance, over the mean luminance.", ""]
+    sizes = (f"models at {size[0]} × {size[1]}, " if size else "") + "spheres at 64 × 64"
+    lines = [f"{package}; {sizes}. Every number is a ratio, Glint to the viewer; a pair is the ratio of luminance, "
+             "prefiltered and traced. \"Difference\" is the mean of the absolute differences of luminance, over the "
+             "mean luminance.", ""]
     models = [result for scene, result in zip(scenes, results) if not scene.rows]
     if models:
         lines += scene_table(models) + [""]

@@ -60,7 +60,8 @@ def write_environment(path):
         return low + (high - low) * t[..., None]
 
     above = 1 / (1 + np.exp(-8 * up))
-    radiance = blend(above, colour(0.22, 0.17, 0.13), blend(np.clip(up, 0, 1), colour(0.75, 0.8, 0.85), colour(0.25, 0.4, 0.8)))
+    sky = blend(np.clip(up, 0, 1), colour(0.75, 0.8, 0.85), colour(0.25, 0.4, 0.8))
+    radiance = blend(above, colour(0.22, 0.17, 0.13), sky)
     # A lobe of 5 times the sky, with a half width of 20 degrees, in front at the left; a weaker one behind.
     for direction, width_cosine, light in (((-0.5, 0.6, 0.65), 0.06, colour(5.0, 4.4, 3.6)),
                                            ((0.8, 0.2, -0.5), 0.15, colour(0.5, 0.9, 1.2))):
@@ -204,7 +205,8 @@ def write_spheres(folder, name, title, rows, columns, material_of):
         gltf["meshes"].append({"primitives": [{"attributes": attributes, "indices": index_accessor,
                                                "material": number}]})
         growth = 1 + number * step / first
-        place = np.array([cell * (column - (len(columns) - 1) / 2), cell * ((len(rows) - 1) / 2 - row), -first]) * growth
+        x, y = column - (len(columns) - 1) / 2, (len(rows) - 1) / 2 - row
+        place = np.array([cell * x, cell * y, -first]) * growth
         gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]))
         gltf["nodes"].append({"mesh": number, "translation": place.tolist(), "scale": [growth] * 3})
     camera = add_camera(gltf, np.eye(4), 2 * math.atan(cell * len(rows) / 2 / first), first - 5, first * growth + 5)
