@@ -95,6 +95,17 @@ TEST_P(SpecDevice, KeepsAllLightInAWhiteFurnace) {
     }
 }
 
+// Closed surfaces: what enters a sphere of glass leaves it again.
+TEST_P(SpecDevice, KeepsAllLightOnSpheres) {
+    ASSERT_TRUE(comparer().ok());
+    for (std::size_t row = 0; row < kRows->rows.size(); ++row) {
+        if (kRows->rows[row].sphere) {
+            expectWithin(comparer().inFurnaceOnSphere(row, Transport::Traced));
+            expectWithin(comparer().inFurnaceOnSphere(row, Transport::Untraced));
+        }
+    }
+}
+
 const char* packageName(const ::testing::TestParamInfo<bool>& compensation) {
     return compensation.param ? "Compensated" : "Plain";
 }
