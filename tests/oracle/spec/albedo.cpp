@@ -23,16 +23,22 @@ std::pair<std::size_t, double> placeOf(double cosine) {
     return {node, place - static_cast<double>(node)};
 }
 
+// The loss is integrated, not the albedo, whose difference from 1 would have no digits for smooth lobes.
 MicrofacetAlbedo::Value integrate(const Vec3& v, const Vec2& alpha, Masking masking) {
-    const Vec2 sums = midpoints(64, 128, Vec2(0.0), [&](const Vec2& point) {
+    // Anisotropic lobes have nine times as many views.
+    const int points = alpha.x == alpha.y ? 64 : 32;
+    const Vec2 sums = midpoints(points, 2 * points, Vec2(0.0), [&](const Vec2& point) {
         const Direction d = reflectedDirection(v, alpha, point);
-        if (d.solidAngle <= 0.0 || d.l.z <= 0.0) {
+        if (d.solidAngle <= 0.0) {
             return Vec2(0.0);
         }
         const Vec3 h = glm::normalize(v + d.l);
+        // What the facets that are visible would reflect if nothing hid them from the light.
+        const double seen = 0.25 * visibleNormalDensity(v, h, alpha) / glm::dot(v, h) * d.solidAngle;
         const double lobe =
-            distribution(h, alpha) * visibility(d.l, v, alpha, masking) * d.l.z * d.solidAngle;
-        return Vec2(lobe, lobe * schlickWeight(glm::dot(v, h)));
+            d.l.z > 0.0 ? distribution(h, alpha) * visibility(d.l, v, alpha, masking) * d.l.z * d.solidAngle
+                        : 0.0;
+        return Vec2(seen - lobe, lobe * schlickWeight(glm::dot(v, h)));
     });
     return {sums.x, sums.y};
 }
@@ -54,20 +60,20 @@ MicrofacetAlbedo::MicrofacetAlbedo(const Vec2& alpha, Masking masking) {
         const double share = azimuths > 1 && (j == 0 || j == azimuths - 1) ? 0.5 : 1.0;
         for (int i = 0; i < kCosines; ++i) {
             const double weight = share * std::pow((i + 0.5) / kCosines, 3.0);
-            mean_.whole += weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].whole;
+            mean_.lost += weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].lost;
             mean_.weighted +=
                 weight * table_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)].weighted;
             total += weight;
         }
     }
-    mean_.whole /= total;
+    mean_.lost /= total;
     mean_.weighted /= total;
 }
 
 MicrofacetAlbedo::Value MicrofacetAlbedo::at(const Vec3& v) const {
     const auto [node, share] = placeOf(v.z);
     const auto between = [&, node = node, share = share](const std::vector<Value>& row) {
-        return Value{std::lerp(row[node].whole, row[node + 1].whole, share),
+        return Value{std::lerp(row[node].lost, row[node + 1].lost, share),
                      std::lerp(row[node].weighted, row[node + 1].weighted, share)};
     };
     if (table_.size() == 1) {
@@ -78,7 +84,7 @@ MicrofacetAlbedo::Value MicrofacetAlbedo::at(const Vec3& v) const {
     const double next = azimuth - static_cast<double>(row);
     const Value a = between(table_[row]);
     const Value b = between(table_[row + 1]);
-    return {std::lerp(a.whole, b.whole, next), std::lerp(a.weighted, b.weighted, next)};
+    return {std::lerp(a.lost, b.lost, next), std::lerp(a.weighted, b.weighted, next)};
 }
 
 SheenAlbedo::SheenAlbedo(double alpha) {

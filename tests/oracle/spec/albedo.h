@@ -16,8 +16,11 @@ public:
     MicrofacetAlbedo(const Vec2& alpha, Masking masking);
 
     struct Value {
-        double whole = 0.0;     // E: with a reflectance of 1
+        double lost = 0.0;      // 1 - E, where E is the albedo with a reflectance of 1
         double weighted = 0.0;  // y: with a reflectance of (1 - v·h)⁵
+        double whole() const {
+            return 1.0 - lost;
+        }
     };
     // At a direction with z > 0, interpolated between 96 cosines, and 9 azimuths if the alphas differ.
     Value at(const Vec3& v) const;

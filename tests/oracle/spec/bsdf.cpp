@@ -70,20 +70,20 @@ Vec3 Bsdf::fresnel(const Base& base, double cosine) const {
 }
 
 Vec3 Bsdf::albedoOnce(const Base& base, const MicrofacetAlbedo::Value& value) const {
-    return base.f0 * (value.whole - value.weighted) + base.f90 * value.weighted;
+    return base.f0 * (value.whole() - value.weighted) + base.f90 * value.weighted;
 }
 
 Vec3 Bsdf::laterFresnel(const Base& base) const {
     // 2 ∫ F(μ) μ dμ of Schlick's Fresnel.
     const Vec3 mean = base.f0 + (Vec3(base.f90) - base.f0) / 21.0;
-    const double lost = 1.0 - microfacets_->mean().whole;
+    const double lost = microfacets_->mean().lost;
     return mean * mean * (1.0 - lost) / (Vec3(1.0) - mean * lost);
 }
 
 Vec3 Bsdf::reflectedAlbedo(const Base& base, const MicrofacetAlbedo::Value& value) const {
     Vec3 result = albedoOnce(base, value);
     if (choices_.compensation) {
-        result += laterFresnel(base) * (1.0 - value.whole);
+        result += laterFresnel(base) * value.lost;
     }
     return result;
 }
@@ -142,8 +142,8 @@ Vec3 Bsdf::multiple(const Vec3& l) const {
     if (!choices_.compensation || l.z <= 0.0) {
         return Vec3(0.0);
     }
-    const double lost = (1.0 - microfacets_->at(view_).whole) * (1.0 - microfacets_->at(l).whole) /
-                        std::max(1.0 - microfacets_->mean().whole, 1e-12);
+    const double lost =
+        microfacets_->at(view_).lost * microfacets_->at(l).lost / std::max(microfacets_->mean().lost, 1e-15);
     return glm::mix(laterFresnel(dielectric_), laterFresnel(metal_), m_.metallic) *
            (lost / kPi * l.z * layersAbove(l));
 }
@@ -278,7 +278,7 @@ Bsdf::Albedo Bsdf::albedo() const {
     const MicrofacetAlbedo::Value value = microfacets_->at(view_);
     return {glm::mix(albedoOnce(dielectric_, value), albedoOnce(metal_, value), m_.metallic),
             glm::mix(reflectedAlbedo(dielectric_, value), reflectedAlbedo(metal_, value), m_.metallic),
-            leftBelow(value), 1.0 - value.whole};
+            leftBelow(value), value.lost};
 }
 
 }  // namespace glint::spec

@@ -192,6 +192,12 @@ Choices Comparer::statedChoices() const {
     return choices;
 }
 
+bool Comparer::losesByDesign(const Row& row, Transport transport) const {
+    const Material m = readMaterial(row.material, rows_.texels);
+    return transport == Transport::Traced && ((m.transmission > 0.0 && m.roughness > 0.05) ||
+                                              (m.clearcoat > 0.0 && m.clearcoatRoughness > 0.05));
+}
+
 Comparison Comparer::start(std::size_t row) const {
     Comparison result;
     result.group = rows_.rows[row].group;
@@ -234,6 +240,7 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
     Comparison result = start(row);
     result.map = kind;
     result.lighting = transport == Transport::Traced ? Lighting::Traced : Lighting::Untraced;
+    result.losesByDesign = losesByDesign(rows_.rows[row], transport);
     const LoadedMap& loaded = mapOf(kind);
     const Material material = readMaterial(rows_.rows[row].material, rows_.texels);
     Choices choices = statedChoices();
@@ -262,6 +269,20 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
     }
     sums.finish(result);
     result.approximations = approximationsOf(plainTerms, statedTerms, result.lighting);
+    return result;
+}
+
+Comparison Comparer::inFurnaceOnSphere(std::size_t row, Transport transport) {
+    Comparison result = start(row);
+    result.group = "sphere";
+    result.lighting = transport == Transport::Traced ? Lighting::Traced : Lighting::Untraced;
+    result.losesByDesign = losesByDesign(rows_.rows[row], transport);
+    const auto zones = device_.onSphere(row, *mapOf(MapKind::White).environment, transport);
+    Sums sums;
+    for (const Zone zone : {Zone::Steep, Zone::Middle, Zone::Grazing}) {
+        sums.add(zone, zones[static_cast<std::size_t>(zone)], Vec3(1.0), Vec3(1.0));
+    }
+    sums.finish(result);
     return result;
 }
 

@@ -30,6 +30,9 @@ struct Comparison {
     MapKind map = MapKind::White;  // without lights
     bool compensation = true;
     bool white = false;
+    // Light scatters once where it passes microfacets or a coat by rays, and nothing gives back what that
+    // loses.
+    bool losesByDesign = false;
     Seen whole;
     std::array<Seen, 3> zones;         // by Zone
     std::array<int, 3> viewsOfZone{};  // 0: no view of the zone faces the surface
@@ -68,6 +71,8 @@ public:
     }
     Comparison underLights(std::size_t row);
     Comparison underMap(std::size_t row, MapKind kind, Transport transport);
+    // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation.
+    Comparison inFurnaceOnSphere(std::size_t row, Transport transport);
 
 private:
     struct LoadedMap {
@@ -77,6 +82,7 @@ private:
     };
     const LoadedMap& mapOf(MapKind kind);
     Choices statedChoices() const;
+    bool losesByDesign(const Row& row, Transport transport) const;
     Comparison start(std::size_t row) const;
 
     const Rows& rows_;

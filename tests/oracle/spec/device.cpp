@@ -41,6 +41,53 @@ void declareExtensions(const Json& object, Json& used) {
     }
 }
 
+// Adds a closed sphere of radius 1 with smooth normals.
+class SphereShape {
+public:
+    explicit SphereShape(test::GltfBuilder& file) {
+        constexpr int kRings = 48;
+        std::vector<float> points;
+        std::vector<std::uint32_t> indices;
+        for (int ring = 0; ring <= kRings; ++ring) {
+            for (int step = 0; step <= 2 * kRings; ++step) {
+                const double polar = kPi * ring / kRings;
+                const double azimuth = kPi * (step % (2 * kRings)) / kRings;
+                points.push_back(static_cast<float>(std::sin(polar) * std::cos(azimuth)));
+                points.push_back(static_cast<float>(std::cos(polar)));
+                points.push_back(static_cast<float>(-std::sin(polar) * std::sin(azimuth)));
+            }
+        }
+        for (int ring = 0; ring < kRings; ++ring) {
+            for (int step = 0; step < 2 * kRings; ++step) {
+                const auto first = static_cast<std::uint32_t>(ring * (2 * kRings + 1) + step);
+                const auto below = first + static_cast<std::uint32_t>(2 * kRings + 1);
+                if (ring > 0) {
+                    indices.insert(indices.end(), {first, below, first + 1});
+                }
+                if (ring + 1 < kRings) {
+                    indices.insert(indices.end(), {first + 1, below, below + 1});
+                }
+            }
+        }
+        positions_ = file.addAccessor(points, 3);
+        file.root["accessors"][static_cast<std::size_t>(positions_)]["min"] = {-1, -1, -1};
+        file.root["accessors"][static_cast<std::size_t>(positions_)]["max"] = {1, 1, 1};
+        normals_ = file.addAccessor(points, 3);
+        indices_ = file.addAccessor(indices, 1);
+    }
+    void add(test::GltfBuilder& file, int material, const Vec3& center) const {
+        file.addMesh({{"material", material},
+                      {"indices", indices_},
+                      {"attributes", {{"POSITION", positions_}, {"NORMAL", normals_}}}});
+        file.root["nodes"].back()["matrix"] = matrixOf(glm::dmat3(1.0), center);
+    }
+
+private:
+    int positions_ = 0;
+    int normals_ = 0;
+    int indices_ = 0;
+};
+
 void addLights(test::GltfBuilder& file) {
     file.root["extensionsUsed"].push_back("KHR_lights_punctual");
     for (const Light& light : lightsOfScene()) {
@@ -67,6 +114,7 @@ Result<Scene> sceneOf(const Rows& rows) {
     const int tangents = file.addAccessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, 4);
     const int coordinates = file.addAccessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, 2);
     const int indices = file.addAccessor<std::uint32_t>({0, 1, 2, 0, 2, 3}, 1);
+    const SphereShape sphere(file);
     for (std::size_t i = 0; i < rows.texels.size(); ++i) {
         file.append("images", {{"name", std::to_string(i)},
                                {"uri", std::string("data:image/png;base64,") + test::kPng8}});
@@ -75,7 +123,11 @@ Result<Scene> sceneOf(const Rows& rows) {
     for (std::size_t i = 0; i < rows.rows.size(); ++i) {
         const Row& row = rows.rows[i];
         declareExtensions(row.material, file.root["extensionsUsed"]);
-        file.addMesh({{"material", file.append("materials", row.material)},
+        const int material = file.append("materials", row.material);
+        if (row.sphere) {
+            sphere.add(file, material, planeOf(rows.rows.size() + i).center);
+        }
+        file.addMesh({{"material", material},
                       {"indices", indices},
                       {"attributes",
                        {{"POSITION", positions},
@@ -114,7 +166,8 @@ Measured average(const LinearImage& image) {
 
 }  // namespace
 
-Device::Device(const Rows& rows, const DeviceOptions& options) : options_(options) {
+Device::Device(const Rows& rows, const DeviceOptions& options)
+    : options_(options), rowCount_(rows.rows.size()) {
     const Result<Scene> scene = sceneOf(rows);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
@@ -165,22 +218,58 @@ std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
     return std::move(*environment);
 }
 
-Measured Device::render(std::size_t row, const View& view, FrameOptions frame, std::uint32_t samples) {
-    const Plane plane = planeOf(row);
-    const glm::dmat3 camera = oracle::frameAbout(plane.frame * view.local);
-    frame.camera.position = toFloats(plane.center + camera[2]);
+LinearImage Device::picture(const Vec3& center, const Vec3& direction, float halfWidth, FrameOptions frame,
+                            std::uint32_t samples) {
+    const glm::dmat3 camera = oracle::frameAbout(direction);
+    frame.camera.position = toFloats(center + 2.0 * camera[2]);
     frame.camera.forward = toFloats(-camera[2]);
     frame.camera.up = toFloats(camera[1]);
     frame.camera.orthographic = true;
-    frame.camera.halfWidth = frame.camera.halfHeight = kHalfWidth;
-    frame.camera.far = 2.0F;
+    frame.camera.halfWidth = frame.camera.halfHeight = halfWidth;
+    frame.camera.far = 4.0F;
     frame.maxReflectionRoughness = 1.0F;
-    const Result<LinearImage> image = renderer_->render(frame, samples);
+    Result<LinearImage> image = renderer_->render(frame, samples);
     if (!image) {
         ADD_FAILURE() << toString(image.error());
         return {};
     }
-    return average(*image);
+    return std::move(*image);
+}
+
+Measured Device::render(std::size_t row, const View& view, FrameOptions frame, std::uint32_t samples) {
+    const Plane plane = planeOf(row);
+    return average(picture(plane.center, plane.frame * view.local, kHalfWidth, frame, samples));
+}
+
+std::array<Measured, 3> Device::onSphere(std::size_t row, const Environment& map, Transport transport) {
+    constexpr float kSphereHalfWidth = 1.05F;
+    const Vec3 center = planeOf(rowCount_ + row).center;
+    const Vec3 direction = glm::normalize(Vec3(0.3, 0.4, 0.8));
+    FrameOptions lit;
+    lit.environment = &map;
+    if (transport == Transport::Untraced) {
+        lit.effects = 0;
+    }
+    FrameOptions dark = lit;
+    dark.environmentIntensity = 0.0F;
+    dark.effects = 0;
+    const LinearImage all = picture(center, direction, kSphereHalfWidth, lit, options_.samples);
+    const LinearImage lights = picture(center, direction, kSphereHalfWidth, dark, options_.samples);
+    std::array<LinearImage, 3> zones;
+    for (std::size_t i = 0; i < all.pixels.size() && i < lights.pixels.size(); ++i) {
+        const double scale = 2.0 * kSphereHalfWidth / all.width;
+        const double x = (static_cast<double>(i % all.width) + 0.5) * scale - kSphereHalfWidth;
+        const double y = (static_cast<double>(i / all.width) + 0.5) * scale - kSphereHalfWidth;
+        const double cosine = std::sqrt(std::max(1.0 - x * x - y * y, 0.0));
+        if (cosine > 0.1) {
+            std::array<float, 4> pixel = all.pixels[i];
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                pixel[channel] -= lights.pixels[i][channel];
+            }
+            zones[cosine > 0.7 ? 0 : cosine > 0.3 ? 1 : 2].pixels.push_back(pixel);
+        }
+    }
+    return {average(zones[0]), average(zones[1]), average(zones[2])};
 }
 
 Measured Device::underLights(std::size_t row, const View& view, const Environment& any) {

@@ -6,6 +6,7 @@
 
 #include <glint/environment.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -42,10 +43,16 @@ public:
     // What it shows under the map alone.
     Measured underMap(std::size_t row, const View& view, const Environment& map, Transport transport);
 
+    // What a sphere shows of the map, by zone. Pixels with n·v below 0.1 are left out.
+    std::array<Measured, 3> onSphere(std::size_t row, const Environment& map, Transport transport);
+
 private:
+    LinearImage picture(const Vec3& center, const Vec3& direction, float halfWidth, FrameOptions frame,
+                        std::uint32_t samples);
     Measured render(std::size_t row, const View& view, FrameOptions frame, std::uint32_t samples);
 
     DeviceOptions options_;
+    std::size_t rowCount_ = 0;
     std::unique_ptr<testing::LoadedScene> loaded_;
     std::unique_ptr<Renderer> renderer_;
 };

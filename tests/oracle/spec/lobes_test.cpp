@@ -83,11 +83,11 @@ TEST(SpecLobes, QuadraturesAgree) {
 TEST(SpecLobes, AlbedoOfTheRoughestFacets) {
     const MicrofacetAlbedo albedo(Vec2(1.0), Masking::HeightCorrelated);
     for (const double cosine : {0.05, 0.2, 0.5, 0.8, 1.0}) {
-        EXPECT_NEAR(albedo.at(polarDirection(cosine, 0.3)).whole, 1.0 - cosine * std::log1p(1.0 / cosine),
+        EXPECT_NEAR(albedo.at(polarDirection(cosine, 0.3)).whole(), 1.0 - cosine * std::log1p(1.0 / cosine),
                     2e-3)
             << cosine;
     }
-    EXPECT_NEAR(albedo.mean().whole, 1.0 - 2.0 * (2.0 * std::log(2.0) - 0.5) / 3.0, 1e-3);
+    EXPECT_NEAR(albedo.mean().whole(), 1.0 - 2.0 * (2.0 * std::log(2.0) - 0.5) / 3.0, 1e-3);
 }
 
 // From an independent program, four digits after the decimal point: rows of alpha, columns of n·v.
@@ -102,10 +102,10 @@ TEST(SpecLobes, AlbedosOfAnotherProgram) {
     for (std::size_t i = 0; i < 4; ++i) {
         const MicrofacetAlbedo albedo(Vec2(kAlphas[i]), Masking::HeightCorrelated);
         for (std::size_t j = 0; j < 5; ++j) {
-            EXPECT_NEAR(albedo.at(polarDirection(kCosines[j], 0.3)).whole, kAlbedos[i][j], 1.5e-3)
+            EXPECT_NEAR(albedo.at(polarDirection(kCosines[j], 0.3)).whole(), kAlbedos[i][j], 1.5e-3)
                 << kAlphas[i] << ", " << kCosines[j];
         }
-        EXPECT_NEAR(albedo.mean().whole, kMeans[i], 1e-3) << kAlphas[i];
+        EXPECT_NEAR(albedo.mean().whole(), kMeans[i], 1e-3) << kAlphas[i];
     }
 }
 

@@ -50,10 +50,23 @@ Lobe lobe(const char* extension, Json values) {
     return [extension, values](Json& material) { material["extensions"][extension] = values; };
 }
 
+constexpr const char* kSpheres[] = {"white dielectric, roughness 0.25",
+                                    "white metal, roughness 0.75",
+                                    "white, metallic 0.5, roughness 0.5",
+                                    "clearcoat of roughness 0.2 on white",
+                                    "white sheen of roughness 0.3",
+                                    "thin glass, roughness 0",
+                                    "thin glass, roughness 0.2",
+                                    "thin glass, metallic 0.5",
+                                    "volume, roughness 0",
+                                    "volume, roughness 0.2",
+                                    "volume of ior 1.33",
+                                    "diffuse transmission 0.3"};
+
 class List {
 public:
     void add(const char* group, std::string name, Json material, bool white = false, bool quick = false) {
-        rows_.rows.push_back({group, std::move(name), std::move(material), white, quick});
+        rows_.rows.push_back({group, std::move(name), std::move(material), white, quick, false});
     }
     // Returns the texture info of a new texture of one texel.
     Json texture(const Texel& texel) {
@@ -61,6 +74,11 @@ public:
         return {{"index", rows_.texels.size() - 1}};
     }
     Rows take() {
+        for (const char* name : kSpheres) {
+            const auto found = std::find_if(rows_.rows.begin(), rows_.rows.end(),
+                                            [&](const Row& row) { return row.name == name; });
+            found->sphere = true;
+        }
         return std::move(rows_);
     }
 

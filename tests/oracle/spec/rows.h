@@ -16,6 +16,8 @@ struct Row {
     // another matter.
     bool white = false;
     bool quick = false;  // in the short list that every build compares
+    // A closed sphere of the material is compared too, in a white furnace.
+    bool sphere = false;
 };
 
 struct Rows {

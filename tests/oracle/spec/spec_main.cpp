@@ -40,7 +40,7 @@ Rows choose(Rows all, const std::string& pattern) {
     return all;
 }
 
-void compareRow(Comparer& comparer, std::size_t row, const Settings& settings,
+void compareRow(Comparer& comparer, std::size_t row, bool sphere, const Settings& settings,
                 std::vector<Comparison>& table) {
     if (names(settings.lighting, "lights")) {
         table.push_back(comparer.underLights(row));
@@ -48,6 +48,9 @@ void compareRow(Comparer& comparer, std::size_t row, const Settings& settings,
     for (const Transport transport : {Transport::Traced, Transport::Untraced}) {
         if (!names(settings.lighting, transport == Transport::Traced ? "traced" : "untraced")) {
             continue;
+        }
+        if (sphere && names(settings.maps, "white")) {
+            table.push_back(comparer.inFurnaceOnSphere(row, transport));
         }
         for (const MapKind map : {MapKind::Smooth, MapKind::Spot, MapKind::White}) {
             if (names(settings.maps, kMapNames[static_cast<std::size_t>(map)])) {
@@ -71,7 +74,7 @@ int compareAll(const Rows& rows, Settings settings, std::vector<Comparison>& tab
         }
         for (std::size_t row = 0; row < rows.rows.size(); ++row) {
             const std::size_t first = table.size();
-            compareRow(comparer, row, settings, table);
+            compareRow(comparer, row, rows.rows[row].sphere, settings, table);
             for (std::size_t i = first; i < table.size(); ++i) {
                 const std::string objection = objectionTo(table[i]);
                 if (!objection.empty()) {

@@ -7,8 +7,6 @@
 namespace glint::spec {
 namespace {
 
-constexpr const char* kZoneNames[] = {"steep", "middle", "grazing"};
-
 std::string lightOf(const Comparison& row) {
     const std::string lighting = kLightingNames[static_cast<std::size_t>(row.lighting)];
     return row.lighting == Lighting::Lights ? lighting

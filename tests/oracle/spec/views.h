@@ -18,6 +18,7 @@ struct Plane {
 Plane planeOf(std::size_t row);
 
 enum class Zone : std::uint8_t { Steep, Middle, Grazing };  // n·v above 0.7, above 0.3, below
+inline constexpr const char* kZoneNames[] = {"steep", "middle", "grazing"};
 
 struct View {
     Vec3 local{0.0, 0.0, 1.0};  // in the frame of the plane, towards the viewer
