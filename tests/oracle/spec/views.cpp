@@ -33,7 +33,7 @@ Plane planeOf(std::size_t row) {
 std::vector<View> viewsOf(bool many) {
     if (!many) {
         return {{polarDirection(0.9, 0.5), Zone::Steep},
-                {polarDirection(0.5, 1.1), Zone::Middle},
+                {polarDirection(0.5, 2.6), Zone::Middle},
                 {polarDirection(0.2, -0.4), Zone::Grazing}};
     }
     return {{polarDirection(0.97, 0.5), Zone::Steep},    {polarDirection(0.8, 2.9), Zone::Steep},
