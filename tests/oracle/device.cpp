@@ -27,6 +27,7 @@ testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint3
 LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testing::RenderSetup setup) {
     CompileSettings settings;
     settings.effects = {false, options.effects, options.maxRoughness};
+    settings.energyCompensation = options.energyCompensation;
     const testing::LoadedScene loaded(scene, settings, [&](SceneViewData& data) {
         for (LightView& light : data.lights) {
             const bool sun = light.type == LightView::Type::Directional;

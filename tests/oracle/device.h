@@ -21,6 +21,7 @@ struct EffectOptions {
     LightSizes lights;
     std::uint32_t shadowRays = 1;  // a light and sample
     float maxRoughness = 0.0F;     // of surfaces that reflect
+    bool energyCompensation = true;
 };
 
 // Compiles the scene with these effects only, and renders it. If anything failed, the test fails and the

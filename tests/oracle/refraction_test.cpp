@@ -60,8 +60,9 @@ std::vector<PixelTruth> throughGlass(const View& view, const World& world, int g
     return truths;
 }
 
-LinearImage render(const Scene& scene) {
+LinearImage render(const Scene& scene, bool energyCompensation = true) {
     EffectOptions options;
+    options.energyCompensation = energyCompensation;
     options.effects = package::kEffectRefraction;
     return renderEffect(scene, options,
                         setupOf(scene, kRefractionWidth, kRefractionHeight, kRefractionSamples, {}));
@@ -166,7 +167,8 @@ TEST(Refraction, OfARoughSurface) {
                                              black, {3, 2}, random);
             });
         EXPECT_GT(truths.size(), 400U);
-        expectAgrees(render(scene), truths,
+        // The truth follows light that one facet sends, without what others block.
+        expectAgrees(render(scene, false), truths,
                      {"refraction", roughness < 0.5 ? "a pool of roughness 0.3" : "a pool of roughness 0.6",
                       "visible normals", 3, samplesOf(kRefractionSamples), 1.0, 2e-4});
     }

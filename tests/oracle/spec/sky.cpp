@@ -184,7 +184,11 @@ Terms Surface::underSky(const Sky& sky, const Quality& quality) const {
                                (dielectric * material_.diffuseTransmission * albedo.below * layers);
     const Vec3 lobe = levelMean(sky.map, mirror, roughness, sky.levels);
     terms.multiple = (albedo.reflected - albedo.once) * lobe * layers;
-    if (!traced) {
+    if (material_.anisotropy > 0.0) {
+        // Directions of the lobe itself stand in for its integral; later bounces are taken to be diffuse.
+        terms.multiple = (albedo.reflected - albedo.once) * around(normal) * layers;
+        terms.specular = integrateSpecular(sky.map, quality.points);
+    } else if (!traced) {
         terms.specular = albedo.once * lobe * layers;
     } else if (roughness <= sky.mirrorRoughness) {
         terms.specular = albedo.once * sky.map.at(mirror) * layers;
