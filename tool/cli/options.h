@@ -55,8 +55,8 @@ struct PlanArguments {
     std::vector<std::string> hitLobes{"all"};
     std::int64_t maxShaders = 0;
     std::string profile;  // file of hit counts, for --merge profile and auto
-    // Returns everything except what choosePlan() finds out: the hits of a profile, and the alpha policy if it
-    // is `auto`.
+    // Returns everything except what choosePlan() finds out: the hits of a profile, and the alpha policy if
+    // it is `auto`.
     PlanOptions options() const;
 };
 // Returns the options, for commands that must know which of them are given.
