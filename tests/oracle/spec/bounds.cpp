@@ -8,13 +8,7 @@
 namespace glint::spec {
 namespace {
 
-// Glass on planes that are seen at grazing angles shows up to 2.4 % too much where rays are traced; the
-// reason is not known.
-double furnaceBoundOf(const Comparison& c) {
-    const bool glass =
-        c.name.find("glass") != std::string::npos || c.name.find("volume") != std::string::npos;
-    return glass && c.lighting == Lighting::Traced ? 0.03 : 0.01;
-}
+constexpr double kFurnaceBound = 0.01;
 
 bool mentions(const Comparison& c, const char* word) {
     return c.name.find(word) != std::string::npos;
@@ -82,7 +76,7 @@ std::string objectionTo(const Comparison& c) {
         // Without compensation the loss is that of the integral.
         const Vec3 truth = c.compensation && !c.losesByDesign ? Vec3(1.0) : c.zones[i].stated;
         const double ratio = farthestRatio(c.zones[i].device, truth);
-        if (!(std::abs(ratio - 1.0) <= furnaceBoundOf(c) + c.noise())) {
+        if (!(std::abs(ratio - 1.0) <= kFurnaceBound + c.noise())) {
             objection += fmt::format("{}{}: {:.4f} in the furnace, {}", objection.empty() ? "" : "; ", light,
                                      ratio, kZoneNames[i]);
         }

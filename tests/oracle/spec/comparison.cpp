@@ -194,8 +194,9 @@ Choices Comparer::statedChoices() const {
 
 bool Comparer::losesByDesign(const Row& row, Transport transport) const {
     const Material m = readMaterial(row.material, rows_.texels);
-    return transport == Transport::Traced && ((m.transmission > 0.0 && m.roughness > 0.05) ||
-                                              (m.clearcoat > 0.0 && m.clearcoatRoughness > 0.05));
+    const bool glass = m.transmission > 0.0 && m.roughness > 0.05 && !options_.device.compensation;
+    const bool coat = m.clearcoat > 0.0 && m.clearcoatRoughness > 0.05;
+    return transport == Transport::Traced && (glass || coat);
 }
 
 Comparison Comparer::start(std::size_t row) const {

@@ -212,6 +212,17 @@ Terms Surface::underSky(const Sky& sky, const Quality& quality) const {
     if (material_.transmission > 0.0) {
         if (traced) {
             terms.transmitted = integrateTransmitted(sky.map, quality.points);
+            if (bsdf_.compensated()) {
+                // What facets block leaves in the end as the rest does: the lobe keeps its shape, and all
+                // that is not reflected passes.
+                static const Map white(8, 4, [](const Vec3&) { return Vec3(1.0); });
+                const Vec3 once = integrateTransmitted(white, quality.points);
+                const Vec3 all = material_.baseColor * ((1.0 - material_.metallic) * material_.transmission *
+                                                        layers * std::max(albedo.below, 0.0));
+                for (int i = 0; i < 3; ++i) {
+                    terms.transmitted[i] *= once[i] > 0.0 ? all[i] / once[i] : 0.0;
+                }
+            }
         } else {
             const Vec3 through = material_.baseColor * glm::exp(-material_.absorption * material_.thickness);
             const double lost = bsdf_.compensated() ? 0.0 : albedo.lost;
