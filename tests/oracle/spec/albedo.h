@@ -10,7 +10,8 @@
 
 namespace glint::spec {
 
-// Of Trowbridge-Reitz microfacets that reflect once. An albedo with Schlick's Fresnel is f0 (E - y) + f90 y.
+// The albedo of Trowbridge-Reitz microfacets that reflect once. An albedo with Schlick's Fresnel is f0 (E -
+// y) + f90 y.
 class MicrofacetAlbedo {
 public:
     MicrofacetAlbedo(const Vec2& alpha, Masking masking);
@@ -34,7 +35,7 @@ private:
     Value mean_;
 };
 
-// Of the sheen lobe as the text has it. Near grazing it may exceed 1.
+// The albedo of the sheen lobe as the text has it. Near grazing it may exceed 1.
 class SheenAlbedo {
 public:
     explicit SheenAlbedo(double alpha);

@@ -98,7 +98,7 @@ private:
     Vec3 laterFresnel(const Base& base) const;
     Vec3 reflectedAlbedo(const Base& base, const MicrofacetAlbedo::Value& value) const;
     double leftBelow(const MicrofacetAlbedo::Value& value) const;
-    // Of light that reaches the lobes below the dielectric's microfacets and leaves them again.
+    // The share of light that reaches the lobes below the dielectric's microfacets and leaves them again.
     double diffuseShare(const Vec3& l, double facetCosine) const;
     double layersAbove(const Vec3& l) const;
     Vec3 absorbed() const;  // the share that passes the volume

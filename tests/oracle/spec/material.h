@@ -28,7 +28,7 @@ struct Material {
     double roughness = 1.0;
     Vec3 emission{0.0};
     double occlusion = 1.0;
-    // Of the normal texture and of the clearcoat's, in the space of tangent, bitangent and normal.
+    // The normals of the normal texture and of the coat's, in the space of tangent, bitangent and normal.
     Vec3 normal{0.0, 0.0, 1.0};
     Vec3 clearcoatNormal{0.0, 0.0, 1.0};
     // KHR_materials_pbrSpecularGlossiness. Its diffuse colour is `baseColor`, its F0 is `specularColor`.
