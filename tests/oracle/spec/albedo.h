@@ -10,8 +10,8 @@
 
 namespace glint::spec {
 
-// The albedo of Trowbridge-Reitz microfacets that reflect once. An albedo with Schlick's Fresnel is f0 (E -
-// y) + f90 y.
+// The albedo of Trowbridge-Reitz microfacets that reflect once. With Schlick's Fresnel it is f0 (E - y) + f90
+// y.
 class MicrofacetAlbedo {
 public:
     MicrofacetAlbedo(const Vec2& alpha, Masking masking);
