@@ -273,11 +273,15 @@ std::array<Measured, 3> Device::onSphere(std::size_t row, const Environment& map
 }
 
 Measured Device::underLights(std::size_t row, const View& view, const Environment& any) {
-    FrameOptions frame;
-    frame.environment = &any;
-    frame.environmentIntensity = 0.0F;
-    frame.effects = 0;
-    return render(row, view, frame, 1);
+    const auto [found, isNew] = lit_.try_emplace({row, view.local.x, view.local.y});
+    if (isNew) {
+        FrameOptions frame;
+        frame.environment = &any;
+        frame.environmentIntensity = 0.0F;
+        frame.effects = 0;
+        found->second = render(row, view, frame, 1);
+    }
+    return found->second;
 }
 
 Measured Device::underMap(std::size_t row, const View& view, const Environment& map, Transport transport) {

@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace glint::spec {
@@ -38,7 +40,8 @@ public:
     // The image is that of the map's texels. Null if that failed.
     static std::unique_ptr<Environment> makeEnvironment(const Map& map);
 
-    // What a view of a plane shows under the lights alone. One sample, because nothing is random.
+    // What a view of a plane shows under the lights alone. One sample, because nothing is random. The picture
+    // is made once.
     Measured underLights(std::size_t row, const View& view, const Environment& any);
     // What it shows under the map alone.
     Measured underMap(std::size_t row, const View& view, const Environment& map, Transport transport);
@@ -53,6 +56,7 @@ private:
 
     DeviceOptions options_;
     std::size_t rowCount_ = 0;
+    std::map<std::tuple<std::size_t, double, double>, Measured> lit_;  // by row and view
     std::unique_ptr<testing::LoadedScene> loaded_;
     std::unique_ptr<Renderer> renderer_;
 };

@@ -39,7 +39,8 @@ protected:
             ComparisonOptions options;
             options.device.compensation = GetParam();
             options.manyViews = nightly();
-            options.quality = nightly() ? 96 : 48;
+            options.quality = nightly() ? 96 : 32;
+            options.device.samples = nightly() ? 64 : 4;
             made = std::make_unique<Comparer>(*kRows, options);
         }
         return *made;
