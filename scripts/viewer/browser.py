@@ -61,7 +61,7 @@ class Viewer:
 
     def __init__(self, package, work):
         self.stack = contextlib.ExitStack()
-        self.address = self.stack.enter_context(serve({"page": HERE, "viewer": package, "work": work}))
+        self.address = self.stack.enter_context(serve({"page": HERE, "viewer": package, "files": work}))
         profile = tempfile.mkdtemp(prefix="glint-viewer-")
         self.stack.callback(shutil.rmtree, profile, ignore_errors=True)
         options = webdriver.ChromeOptions()
@@ -104,12 +104,12 @@ class Viewer:
         return result["value"]
 
     def use_environment(self, map_name, sheen_albedo_name):
-        self.call("useEnvironment", f"/work/{map_name}", f"/work/{sheen_albedo_name}")
+        self.call("useEnvironment", f"/files/{map_name}", f"/files/{sheen_albedo_name}")
 
     def use_scene(self, name):
         """Loads a scene below the work folder. Returns the names of its materials."""
         self.console()
-        return self.call("useScene", f"/work/{name}")
+        return self.call("useScene", f"/files/{name}")
 
     def render(self, camera, width, height):
         """Returns the radiance (height, width, 3), the regions (height, width) and the cosines of the view."""
@@ -124,4 +124,4 @@ class Viewer:
 
     def to_jpeg(self, name):
         """The bytes of a picture below the work folder as JPEG."""
-        return base64.b64decode(self.call("toJpeg", f"/work/{name}"))
+        return base64.b64decode(self.call("toJpeg", f"/files/{name}"))
