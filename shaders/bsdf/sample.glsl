@@ -43,11 +43,11 @@ LobeChances lobeChances(Bsdf b, Features features) {
         microfacets *= underCoat;
         diffuse *= underCoat;
         passed *= underCoat;
-    }
-    if (hasLobe(features, GLINT_CLEARCOAT) && !facesViewer(b)) {
-        // If the coat's normal turns away from the view, it has no visible normals.
-        diffuse += coat;
-        coat = 0.0;
+        if (!facesViewer(b)) {
+            // If the coat's normal turns away from the view, it has no visible normals.
+            diffuse += coat;
+            coat = 0.0;
+        }
     }
     float total = coat + microfacets + diffuse + passed;
     // A black surface samples its microfacets; the weight of these samples is 0.
