@@ -1,10 +1,12 @@
-# Installs and exports the package Glint: find_package(Glint) gives Glint::runtime, Glint::compiler,
-# Glint::glint and glint_add_materials(), from a prefix or from a build folder.
+# Installs and exports the package Glint: find_package(Glint) gives Glint::runtime, Glint::gltf, Glint::compiler,
+# Glint::scene_view, Glint::measure, Glint::glint and glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_runtime)
 if(GLINT_BUILD_COMPILER)
-  list(APPEND glint_targets glint_compiler glint)
+  # glint_base, glint_image and glint_synthetic are what the others link; they are no interface of their own.
+  list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_synthetic glint_scene_view
+       glint_measure glint)
 endif()
 install(TARGETS ${glint_targets} EXPORT GlintTargets
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
@@ -13,12 +15,14 @@ install(TARGETS ${glint_targets} EXPORT GlintTargets
 install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
-  # The headers that compile.h includes. All others are internal to the compiler.
-  foreach(header base/files.h emit/compile.h gltf/animation.h gltf/import.h gltf/scene.h plan/cost.h plan/effects.h plan/features.h plan/lock_ids.h
-                 plan/material.h plan/merge.h plan/plan.h plan/strategy_choice.h plan/strategy_cost.h spirv/statistics.h)
+  # The headers that those of the libraries include. All others are internal.
+  foreach(header base/files.h emit/compile.h emit/material_layout.h gltf/animation.h gltf/import.h gltf/scene.h gltf/scene_list.h image/error.h plan/cost.h plan/effects.h
+                 plan/expression.h plan/interval.h plan/lock_ids.h plan/material.h plan/material_model.h plan/merge.h plan/plan.h plan/frame_rounds.h plan/strategy_choice.h
+                 plan/strategy_cost.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()
+  install(DIRECTORY tool/scene_view/include/glint tool/measure/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)
 export(EXPORT GlintTargets NAMESPACE Glint:: FILE "${CMAKE_CURRENT_BINARY_DIR}/GlintTargets.cmake")

@@ -73,9 +73,9 @@ Features walkFeatures(GeometryRecord geometry) {
 
 // The index of the surface's own medium.
 vec3 mediumIor(Hit hit, Features features) {
-    float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL(hit).ior : 1.5;
+    float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL_IOR(hit) : 1.5;
     if (hasLobe(features, GLINT_DISPERSION)) {
-        return dispersedIor(ior, GLINT_MATERIAL(hit).dispersion);
+        return dispersedIor(ior, GLINT_MATERIAL_DISPERSION(hit));
     }
     return vec3(ior);
 }
@@ -271,7 +271,7 @@ uint walk(uvec2 pixel, uint target) {
         travelled = record.distance_orDirectionZ;
         if (within) {
             uint medium = walker.media.material[walker.media.count - 1u];
-            walker.weight *= volumeTransmittance(GLINT_FRAME.materials.data[medium].absorption, travelled);
+            walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(GLINT_FRAME.materials.data[medium]), travelled);
         }
         // The back of a single-sided surface is ignored, unless it is the end of a volume.
         bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;

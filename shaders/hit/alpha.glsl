@@ -12,12 +12,12 @@ bool passesAlphaTest(GeometryRecord geometry, uint primitive, vec2 barycentrics)
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     float alpha = material.baseColorFactor.a;
     if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
-        TextureRecord record = material.textures[kTextureBaseColor];
+        TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
         vec2 uv = vec2(0.0);
-        if (inputOfKey(features, GLINT_TEXCOORD_0) && record.texCoord == 0u) {
+        if (inputOfKey(features, GLINT_TEX_COORD_0) && record.texCoord == 0u) {
             uv = weights.x * geometry.texCoords0.data[corner.x] + weights.y * geometry.texCoords0.data[corner.y] +
                  weights.z * geometry.texCoords0.data[corner.z];
-        } else if (inputOfKey(features, GLINT_TEXCOORD_1)) {
+        } else if (inputOfKey(features, GLINT_TEX_COORD_1)) {
             uv = weights.x * geometry.texCoords1.data[corner.x] + weights.y * geometry.texCoords1.data[corner.y] +
                  weights.z * geometry.texCoords1.data[corner.z];
         }

@@ -53,6 +53,17 @@ vec3 transformNormal(vec3 rows[3], vec3 n) {
     return normal;
 }
 
+// Returns a direction on the side of the triangle to which `side` points: Hit::geometricNormal, or its opposite.
+// Normal maps and interpolated normals make a lobe send part of its light to the other side. As with the facets of
+// Schüssler et al., "Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing" (2017), such light is
+// reflected once more and not lost: at the plane of the triangle. The weight of a sample stays that of its own
+// direction, so that the lobe keeps its albedo. All directions leave the plane by at least 1e-3 (about a twentieth of a
+// degree), so that no ray starts into its own surface.
+vec3 onSide(vec3 direction, vec3 side) {
+    float height = dot(direction, side);
+    return normalize(direction + side * (max(abs(height), 1e-3) - height));
+}
+
 // A triangle in its mesh's space, and a point on it.
 struct TrianglePoint {
     vec3 corner;

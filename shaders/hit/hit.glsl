@@ -34,17 +34,6 @@ vec3 rayOrigin(Hit hit, vec3 direction) {
     return origin;
 }
 
-// Returns a direction on the side of the triangle to which `side` points: hit.geometricNormal, or its opposite. Normal
-// maps and interpolated normals make a lobe send part of its light to the other side. As with the facets of
-// Schüssler et al., "Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing" (2017), such light is reflected
-// once more and not lost: at the plane of the triangle. The weight of a sample stays that of its own direction, so that
-// the lobe keeps its albedo. All directions leave the plane by at least 1e-3 (about a twentieth of a degree), so that no
-// ray starts into its own surface.
-vec3 onSide(vec3 direction, vec3 side) {
-    float height = dot(direction, side);
-    return normalize(direction + side * (max(abs(height), 1e-3) - height));
-}
-
 // Returns a point of a triangle in the world.
 vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
     vec3 p0 = geometry.positions.data[geometry.indices.data[3u * primitive]];
@@ -103,14 +92,14 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.texCoords[1] = vec2(0.0);
     hit.uvEdges[0] = vec4(0.0);
     hit.uvEdges[1] = vec4(0.0);
-    if (hasInput(features, GLINT_TEXCOORD_0)) {
+    if (hasInput(features, GLINT_TEX_COORD_0)) {
         vec2 uv0 = geometry.texCoords0.data[corner.x];
         vec2 uv1 = geometry.texCoords0.data[corner.y];
         vec2 uv2 = geometry.texCoords0.data[corner.z];
         hit.texCoords[0] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
         hit.uvEdges[0] = vec4(uv1 - uv0, uv2 - uv0);
     }
-    if (hasInput(features, GLINT_TEXCOORD_1)) {
+    if (hasInput(features, GLINT_TEX_COORD_1)) {
         vec2 uv0 = geometry.texCoords1.data[corner.x];
         vec2 uv1 = geometry.texCoords1.data[corner.y];
         vec2 uv2 = geometry.texCoords1.data[corner.z];

@@ -4,9 +4,9 @@
 #include "hit/texture.glsl"
 
 GLINT_RELAXED vec4 baseColor(Hit hit, Features features) {
-    GLINT_RELAXED vec4 color = GLINT_MATERIAL(hit).baseColorFactor;
+    GLINT_RELAXED vec4 color = GLINT_MATERIAL_BASE_COLOR_FACTOR(hit);
     if (hasInput(features, GLINT_BASE_COLOR_TEXTURE)) {
-        color *= sampleSlot(hit, kTextureBaseColor, features);
+        color *= sampleSlot(hit, kBaseColorTexture, features);
     }
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
         // glTF 2.0, section 3.7.2.1, bounds vertex colours. Values beyond would overflow in 16 bits.
@@ -21,12 +21,12 @@ float facing(Hit hit, Features features) {
 }
 
 vec3 emission(Hit hit, Features features) {
-    vec3 emitted = GLINT_MATERIAL(hit).emissiveFactor;
+    vec3 emitted = GLINT_MATERIAL_EMISSIVE_FACTOR(hit);
     if (hasInput(features, GLINT_EMISSIVE_TEXTURE)) {
-        emitted *= sampleSlot(hit, kTextureEmissive, features).rgb;
+        emitted *= sampleSlot(hit, kEmissiveTexture, features).rgb;
     }
     if (hasInput(features, GLINT_EMISSIVE_STRENGTH)) {
-        emitted *= GLINT_MATERIAL(hit).emissiveStrength;
+        emitted *= GLINT_MATERIAL_EMISSIVE_STRENGTH(hit);
     }
     return emitted;
 }
@@ -42,24 +42,24 @@ struct Base {
 // KHR_materials_ior and KHR_materials_specular. The fields of other lobes are not changed.
 void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
-    base.metallic = GLINT_MATERIAL(hit).metallicFactor;
-    base.roughness = GLINT_MATERIAL(hit).roughnessFactor;
+    base.metallic = GLINT_MATERIAL_METALLIC_FACTOR(hit);
+    base.roughness = GLINT_MATERIAL_ROUGHNESS_FACTOR(hit);
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
-        vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
+        vec4 texel = sampleSlot(hit, kMetallicRoughnessTexture, features);
         base.roughness *= texel.g;
         GLINT_RELAXED float metallic = texel.b;
         base.metallic *= metallic;
     }
-    GLINT_RELAXED vec3 f0 = vec3(hasLobe(features, GLINT_IOR) ? dielectricF0(GLINT_MATERIAL(hit).ior) : 0.04);
+    GLINT_RELAXED vec3 f0 = vec3(hasLobe(features, GLINT_IOR) ? dielectricF0(GLINT_MATERIAL_IOR(hit)) : 0.04);
     GLINT_RELAXED float f90 = 1.0;
     if (hasLobe(features, GLINT_SPECULAR)) {
-        GLINT_RELAXED float specular = GLINT_MATERIAL(hit).specularFactor;
-        vec3 specularColor = GLINT_MATERIAL(hit).specularColorFactor;
+        GLINT_RELAXED float specular = GLINT_MATERIAL_SPECULAR_FACTOR(hit);
+        vec3 specularColor = GLINT_MATERIAL_SPECULAR_COLOR_FACTOR(hit);
         if (hasInput(features, GLINT_SPECULAR_TEXTURE)) {
-            specular *= sampleSlot(hit, kTextureSpecular, features).a;
+            specular *= sampleSlot(hit, kSpecularTexture, features).a;
         }
         if (hasInput(features, GLINT_SPECULAR_COLOR_TEXTURE)) {
-            specularColor *= sampleSlot(hit, kTextureSpecularColor, features).rgb;
+            specularColor *= sampleSlot(hit, kSpecularColorTexture, features).rgb;
         }
         f0 = min(f0 * specularColor, vec3(1.0)) * specular;
         f90 = specular;
@@ -76,10 +76,10 @@ void metallicRoughnessBase(Hit hit, Features features, inout Bsdf bsdf, out Base
 void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Base base) {
     base.color = baseColor(hit, features).rgb;
     base.metallic = 0.0;
-    GLINT_RELAXED vec3 specular = GLINT_MATERIAL(hit).specularColorFactor;
-    float glossiness = GLINT_MATERIAL(hit).glossinessFactor;
+    GLINT_RELAXED vec3 specular = GLINT_MATERIAL_GLOSSY_SPECULAR_FACTOR(hit);
+    float glossiness = GLINT_MATERIAL_GLOSSINESS_FACTOR(hit);
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
-        vec4 texel = sampleSlot(hit, kTextureMetallicRoughness, features);
+        vec4 texel = sampleSlot(hit, kMetallicRoughnessTexture, features);
         GLINT_RELAXED vec3 tint = texel.rgb;
         specular *= tint;
         glossiness *= texel.a;
@@ -95,17 +95,17 @@ void specularGlossinessBase(Hit hit, Features features, inout Bsdf bsdf, out Bas
 // KHR_materials_anisotropy: the alphas along the direction of anisotropy and across it. That direction becomes the
 // frame's x.
 void applyAnisotropy(Hit hit, Features features, inout Surface surface) {
-    vec2 direction = GLINT_MATERIAL(hit).anisotropyDirection;
-    float strength = GLINT_MATERIAL(hit).anisotropyStrength;
+    vec2 direction = GLINT_MATERIAL_ANISOTROPY_DIRECTION(hit);
+    float strength = GLINT_MATERIAL_ANISOTROPY_STRENGTH(hit);
     if (hasInput(features, GLINT_ANISOTROPY_TEXTURE)) {
-        vec4 packedDirection = sampleSlot(hit, kTextureAnisotropy, features);
+        vec4 packedDirection = sampleSlot(hit, kAnisotropyTexture, features);
         vec3 texel = packedDirection.rgb;
         vec2 turned = texel.rg * 2.0 - 1.0;
         direction = vec2(direction.x * turned.x - direction.y * turned.y,
                          direction.y * turned.x + direction.x * turned.y);
         strength *= texel.b;
     }
-    uint slot = hasInput(features, GLINT_ANISOTROPY_TEXTURE) ? kTextureAnisotropy : kTextureNormal;
+    uint slot = hasInput(features, GLINT_ANISOTROPY_TEXTURE) ? kAnisotropyTexture : kNormalTexture;
     vec3 tangent;
     vec3 bitangent;
     tangentFrame(hit, slot, features, tangent, bitangent);
@@ -127,17 +127,17 @@ GLINT_RELAXED vec3 filmF0(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, float 
 // KHR_materials_iridescence: a film on each base. As in the reference renderer, the angle of the view serves for all
 // lights.
 void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) {
-    GLINT_RELAXED float factor = GLINT_MATERIAL(hit).iridescenceFactor;
-    float thickness = GLINT_MATERIAL(hit).iridescenceThicknessMaximum;
+    GLINT_RELAXED float factor = GLINT_MATERIAL_IRIDESCENCE_FACTOR(hit);
+    float thickness = GLINT_MATERIAL_IRIDESCENCE_THICKNESS_MAXIMUM(hit);
     if (hasInput(features, GLINT_IRIDESCENCE_TEXTURE)) {
-        factor *= sampleSlot(hit, kTextureIridescence, features).r;
+        factor *= sampleSlot(hit, kIridescenceTexture, features).r;
     }
     if (hasInput(features, GLINT_IRIDESCENCE_THICKNESS_TEXTURE)) {
-        float thinnest = GLINT_MATERIAL(hit).iridescenceThicknessMinimum;
-        vec4 texel = sampleSlot(hit, kTextureIridescenceThickness, features);
+        float thinnest = GLINT_MATERIAL_IRIDESCENCE_THICKNESS_MINIMUM(hit);
+        vec4 texel = sampleSlot(hit, kIridescenceThicknessTexture, features);
         thickness = mix(thinnest, thickness, texel.g);
     }
-    float filmIor = GLINT_MATERIAL(hit).iridescenceIor;
+    float filmIor = GLINT_MATERIAL_IRIDESCENCE_IOR(hit);
     bsdf.f0 = filmF0(bsdf.f0, bsdf.f90, nDotV, filmIor, thickness, factor);
     if (hasInput(features, GLINT_PARTIAL_METAL)) {
         bsdf.metalF0 = filmF0(bsdf.metalF0, 1.0, nDotV, filmIor, thickness, factor);
@@ -149,30 +149,30 @@ void applyIridescence(Hit hit, Features features, float nDotV, inout Bsdf bsdf) 
 void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
     GLINT_RELAXED float transmission = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        transmission = GLINT_MATERIAL(hit).transmissionFactor;
+        transmission = GLINT_MATERIAL_TRANSMISSION_FACTOR(hit);
         if (hasInput(features, GLINT_TRANSMISSION_TEXTURE)) {
-            transmission *= sampleSlot(hit, kTextureTransmission, features).r;
+            transmission *= sampleSlot(hit, kTransmissionTexture, features).r;
         }
         bsdf.transmitted = base.color * (1.0 - base.metallic) * transmission;
         bsdf.diffuse *= 1.0 - transmission;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        GLINT_RELAXED float share = GLINT_MATERIAL(hit).diffuseTransmissionFactor;
-        GLINT_RELAXED vec3 color = GLINT_MATERIAL(hit).diffuseTransmissionColorFactor;
+        GLINT_RELAXED float share = GLINT_MATERIAL_DIFFUSE_TRANSMISSION_FACTOR(hit);
+        GLINT_RELAXED vec3 color = GLINT_MATERIAL_DIFFUSE_TRANSMISSION_COLOR_FACTOR(hit);
         if (hasInput(features, GLINT_DIFFUSE_TRANSMISSION_TEXTURE)) {
-            share *= sampleSlot(hit, kTextureDiffuseTransmission, features).a;
+            share *= sampleSlot(hit, kDiffuseTransmissionTexture, features).a;
         }
         if (hasInput(features, GLINT_DIFFUSE_TRANSMISSION_COLOR_TEXTURE)) {
-            color *= sampleSlot(hit, kTextureDiffuseTransmissionColor, features).rgb;
+            color *= sampleSlot(hit, kDiffuseTransmissionColorTexture, features).rgb;
         }
         bsdf.diffuseTransmitted = color * (share * (1.0 - transmission) * (1.0 - base.metallic));
         bsdf.diffuse *= 1.0 - share;
     }
     if (hasLobe(features, GLINT_VOLUME)) {
-        float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL(hit).ior : 1.5;
+        float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL_IOR(hit) : 1.5;
         vec3 iors = vec3(ior);
         if (hasLobe(features, GLINT_DISPERSION)) {
-            iors = dispersedIor(ior, GLINT_MATERIAL(hit).dispersion);
+            iors = dispersedIor(ior, GLINT_MATERIAL_DISPERSION(hit));
         }
         bool inside = hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace;
         bsdf.eta = inside ? vec3(1.0) / iors : iors;
@@ -183,38 +183,38 @@ void applyTransmission(Hit hit, Features features, Base base, inout Bsdf bsdf) {
         }
     }
     if (hasLobe(features, GLINT_ATTENUATION)) {
-        float thickness = GLINT_MATERIAL(hit).thicknessFactor * hit.scale;
+        float thickness = GLINT_MATERIAL_THICKNESS_FACTOR(hit) * hit.scale;
         if (hasInput(features, GLINT_THICKNESS_TEXTURE)) {
-            vec4 texel = sampleSlot(hit, kTextureThickness, features);
+            vec4 texel = sampleSlot(hit, kThicknessTexture, features);
             thickness *= texel.g;
         }
-        GLINT_RELAXED vec3 transmittance = volumeTransmittance(GLINT_MATERIAL(hit).absorption, thickness);
+        GLINT_RELAXED vec3 transmittance = volumeTransmittance(GLINT_MATERIAL_ABSORPTION(hit), thickness);
         bsdf.transmitted *= transmittance;
         bsdf.diffuseTransmitted *= transmittance;
     }
 }
 
 void applySheen(Hit hit, Features features, inout Bsdf bsdf) {
-    float roughness = GLINT_MATERIAL(hit).sheenRoughnessFactor;
-    bsdf.sheenColor = GLINT_MATERIAL(hit).sheenColorFactor;
+    float roughness = GLINT_MATERIAL_SHEEN_ROUGHNESS_FACTOR(hit);
+    bsdf.sheenColor = GLINT_MATERIAL_SHEEN_COLOR_FACTOR(hit);
     if (hasInput(features, GLINT_SHEEN_COLOR_TEXTURE)) {
-        bsdf.sheenColor *= sampleSlot(hit, kTextureSheenColor, features).rgb;
+        bsdf.sheenColor *= sampleSlot(hit, kSheenColorTexture, features).rgb;
     }
     if (hasInput(features, GLINT_SHEEN_ROUGHNESS_TEXTURE)) {
-        vec4 texel = sampleSlot(hit, kTextureSheenRoughness, features);
+        vec4 texel = sampleSlot(hit, kSheenRoughnessTexture, features);
         roughness *= texel.a;
     }
     bsdf.sheenAlpha = max(roughness * roughness, kMinSheenAlpha);
 }
 
 void applyClearcoat(Hit hit, Features features, inout Surface surface) {
-    GLINT_RELAXED float factor = GLINT_MATERIAL(hit).clearcoatFactor;
-    float roughness = GLINT_MATERIAL(hit).clearcoatRoughnessFactor;
+    GLINT_RELAXED float factor = GLINT_MATERIAL_CLEARCOAT_FACTOR(hit);
+    float roughness = GLINT_MATERIAL_CLEARCOAT_ROUGHNESS_FACTOR(hit);
     if (hasInput(features, GLINT_CLEARCOAT_TEXTURE)) {
-        factor *= sampleSlot(hit, kTextureClearcoat, features).r;
+        factor *= sampleSlot(hit, kClearcoatTexture, features).r;
     }
     if (hasInput(features, GLINT_CLEARCOAT_ROUGHNESS_TEXTURE)) {
-        vec4 texel = sampleSlot(hit, kTextureClearcoatRoughness, features);
+        vec4 texel = sampleSlot(hit, kClearcoatRoughnessTexture, features);
         roughness *= texel.g;
     }
     surface.bsdf.clearcoat = factor;
@@ -223,7 +223,7 @@ void applyClearcoat(Hit hit, Features features, inout Surface surface) {
     // The base's normal texture does not affect the coat. Without a normal texture of its own, the coat has the mesh's
     // normal.
     if (hasInput(features, GLINT_CLEARCOAT_NORMAL_TEXTURE)) {
-        vec3 normal = mappedNormal(hit, kTextureClearcoatNormal, GLINT_MATERIAL(hit).clearcoatNormalScale, features);
+        vec3 normal = mappedNormal(hit, kClearcoatNormalTexture, GLINT_MATERIAL_CLEARCOAT_NORMAL_SCALE(hit), features);
         surface.bsdf.clearcoatNormal = directionOr(toSurface(surface, normal * facing(hit, features)),
                                                    vec3(0.0, 0.0, 1.0));
     } else if (hasInput(features, GLINT_NORMAL_TEXTURE) && !hasInput(features, GLINT_CLEARCOAT_SHARES_NORMAL)) {
@@ -237,7 +237,7 @@ Surface evaluateSurface(Hit hit, Features features) {
     Surface surface;
     surface.normal = hit.normal;
     if (hasInput(features, GLINT_NORMAL_TEXTURE)) {
-        surface.normal = mappedNormal(hit, kTextureNormal, GLINT_MATERIAL(hit).normalScale, features);
+        surface.normal = mappedNormal(hit, kNormalTexture, GLINT_MATERIAL_NORMAL_SCALE(hit), features);
     }
     surface.normal *= facing(hit, features);
     buildBasis(surface.normal, surface.tangent, surface.bitangent);
@@ -278,8 +278,8 @@ Surface evaluateSurface(Hit hit, Features features) {
     surface.emission = emission(hit, features) * (1.0 - coatReflectance(surface, features));
     surface.occlusion = 1.0;
     if (hasInput(features, GLINT_OCCLUSION_TEXTURE)) {
-        GLINT_RELAXED float texel = sampleSlot(hit, kTextureOcclusion, features).r;
-        surface.occlusion = 1.0 + GLINT_MATERIAL(hit).occlusionStrength * (texel - 1.0);
+        GLINT_RELAXED float texel = sampleSlot(hit, kOcclusionTexture, features).r;
+        surface.occlusion = 1.0 + GLINT_MATERIAL_OCCLUSION_STRENGTH(hit) * (texel - 1.0);
     }
     return surface;
 }

@@ -8,14 +8,14 @@
 
 // Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
-    return hasInput(features, GLINT_TEXCOORD_1) &&
-           (!hasInput(features, GLINT_TEXCOORD_0) || GLINT_MATERIAL(hit).textures[slot].texCoord == 1u);
+    return hasInput(features, GLINT_TEX_COORD_1) &&
+           (!hasInput(features, GLINT_TEX_COORD_0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
 }
 
 // Returns the value of one texture slot of the hit's material. Texture and coordinates are read in 32 bits, whatever
 // the precision of the result.
 GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
-    TextureRecord record = GLINT_MATERIAL(hit).textures[slot];
+    TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
     bool second = readsSecondSet(hit, slot, features);
     vec2 uv = second ? hit.texCoords[1] : hit.texCoords[0];
     vec4 uvEdges = second ? hit.uvEdges[1] : hit.uvEdges[0];

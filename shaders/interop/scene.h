@@ -13,28 +13,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec
 
 GLINT_INTEROP_BEGIN
 
-// The texture slots of a material, in the order of MaterialRecord::textures.
-GLINT_CONSTANT(kTextureBaseColor, 0u);
-GLINT_CONSTANT(kTextureMetallicRoughness, 1u);
-GLINT_CONSTANT(kTextureNormal, 2u);
-GLINT_CONSTANT(kTextureOcclusion, 3u);
-GLINT_CONSTANT(kTextureEmissive, 4u);
-GLINT_CONSTANT(kTextureClearcoat, 5u);
-GLINT_CONSTANT(kTextureClearcoatRoughness, 6u);
-GLINT_CONSTANT(kTextureClearcoatNormal, 7u);
-GLINT_CONSTANT(kTextureSheenColor, 8u);
-GLINT_CONSTANT(kTextureSheenRoughness, 9u);
-GLINT_CONSTANT(kTextureAnisotropy, 10u);
-GLINT_CONSTANT(kTextureSpecular, 11u);
-GLINT_CONSTANT(kTextureSpecularColor, 12u);
-GLINT_CONSTANT(kTextureIridescence, 13u);
-GLINT_CONSTANT(kTextureIridescenceThickness, 14u);
-GLINT_CONSTANT(kTextureTransmission, 15u);
-GLINT_CONSTANT(kTextureThickness, 16u);
-GLINT_CONSTANT(kTextureDiffuseTransmission, 17u);
-GLINT_CONSTANT(kTextureDiffuseTransmissionColor, 18u);
-GLINT_CONSTANT(kTextureSlotCount, 19u);
-
 // GeometryRecord::flags
 GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: the candidate must be tested
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
@@ -69,7 +47,7 @@ struct InstanceRecord {
     uint flags;             // kInstance*
 };
 
-// One texture of a material. uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1))), as in KHR_texture_transform.
+// One texture of a material, at the end of its record. uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1))), as in KHR_texture_transform.
 struct TextureRecord {
     uint textureIndex;  // index into the bindless images
     uint samplerIndex;  // index into the bindless samplers
@@ -81,46 +59,13 @@ struct TextureRecord {
     float anisotropy;  // maximum of the sampler's filter; 1 for none
 };
 
-// One layout serves every permutation. Values that a key lacks are never read.
-struct MaterialRecord {
-    vec4 baseColorFactor;  // linear
-    vec3 emissiveFactor;   // linear
-    float emissiveStrength;
-    float metallicFactor;
-    float roughnessFactor;
-    float normalScale;
-    float occlusionStrength;
-    float alphaCutoff;
-    float glossinessFactor;      // KHR_materials_pbrSpecularGlossiness; its specularFactor is specularColorFactor
-    vec3 specularColorFactor;    // KHR_materials_specular
-    float specularFactor;
-    float ior;                   // KHR_materials_ior
-    float clearcoatFactor;       // KHR_materials_clearcoat
-    float clearcoatRoughnessFactor;
-    float clearcoatNormalScale;
-    vec3 sheenColorFactor;       // KHR_materials_sheen
-    float sheenRoughnessFactor;
-    vec2 anisotropyDirection;    // KHR_materials_anisotropy: cosine and sine of the rotation
-    float anisotropyStrength;
-    float iridescenceFactor;     // KHR_materials_iridescence
-    float iridescenceIor;
-    float iridescenceThicknessMinimum;  // nanometres
-    float iridescenceThicknessMaximum;
-    float transmissionFactor;    // KHR_materials_transmission
-    float diffuseTransmissionFactor;  // KHR_materials_diffuse_transmission
-    vec3 diffuseTransmissionColorFactor;
-    float thicknessFactor;       // KHR_materials_volume, metres in object space
-    vec3 absorption;             // per metre: -ln(attenuationColor) / attenuationDistance, at most kMaxAbsorption
-    float dispersion;            // KHR_materials_dispersion: 20 / Abbe number
-    TextureRecord textures[kTextureSlotCount];
-};
-
 GLINT_INTEROP_END
 
 #ifndef __cplusplus
+// MaterialRecord and MaterialArray: a package has the values that its scenes need.
+#include "generated/material_record.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer GeometryArray { GeometryRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer InstanceArray { InstanceRecord data[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MaterialArray { MaterialRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightArray { LightRecord data[]; };
 #endif
 #endif

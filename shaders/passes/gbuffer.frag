@@ -19,7 +19,7 @@ void main() {
         MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
         float alpha = material.baseColorFactor.a * vertexAlpha;
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
-            TextureRecord record = material.textures[kTextureBaseColor];
+            TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
             // All instances of a draw have one material: the indices are uniform.
 #if GLINT_TEXTURE_LOD_CONES
             alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),

@@ -26,7 +26,7 @@ void main() {
     texCoord = vec2(0.0);
     vertexAlpha = 1.0;
     if ((geometry.flags & kGeometryMasked) != 0u) {
-        TextureRecord record = GLINT_FRAME.materials.data[geometry.materialIndex].textures[kTextureBaseColor];
+        TextureRecord record = GLINT_TEXTURE(GLINT_FRAME.materials.data[geometry.materialIndex], kBaseColorTexture);
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
             vec2 uv = record.texCoord == 0u ? geometry.texCoords0.data[index] : geometry.texCoords1.data[index];
             texCoord = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));

@@ -101,8 +101,8 @@ TEST_F(PlantedFaults, ShowAsErrorsOrAsTime) {
     // their lobe.
     plant(path("level"), "lighting.comp", "textureLod(GLINT_SAMPLER(record), uv, 0.0)",
           "textureLod(GLINT_SAMPLER(record), uv, 6.0)");
-    plant(path("lobe"), "lighting.comp", "GLINT_MATERIAL(hit).clearcoatFactor",
-          "0.0 * GLINT_MATERIAL(hit).clearcoatFactor");
+    plant(path("lobe"), "lighting.comp", "factor = GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)",
+          "factor = 0.0 * GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)");
     plant(path("sampling"), "lighting.comp", "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {",
           "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {\n    u.y *= 0.25;");
     // This work changes no picture, but no compiler can leave it out.

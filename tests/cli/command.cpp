@@ -1,6 +1,6 @@
 #include "cli/command.h"
 
-#include "cli/diagnostic_table.h"
+#include "cli/options/diagnostic_table.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Compares the table of diagnostics with the sources that make them, and with its document.
-#include "cli/diagnostic_table.h"
+#include "cli/options/diagnostic_table.h"
 
 #include <gtest/gtest.h>
 

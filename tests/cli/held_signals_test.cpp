@@ -1,4 +1,4 @@
-#include "cli/held_signals.h"
+#include "cli/compile/held_signals.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,5 @@
 // Tests the output about pipelines and memory, as text and JSON.
-#include "cli/pipeline_report.h"
-
-#include "cli/memory_table.h"
+#include "cli/render/device_report.h"
 
 #include <gtest/gtest.h>
 

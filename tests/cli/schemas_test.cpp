@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
+#include "materials/declaration_files.h"
 
 #include <filesystem>
 #include <regex>
@@ -194,7 +195,18 @@ Json exampleIn(const std::string& document, const std::string& heading) {
     return Json::parse(text.substr(begin, text.find("\n```", begin) - begin), nullptr, false);
 }
 
+TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
+    ASSERT_FALSE(declarationFiles().empty());
+    for (const BuiltinFile& file : declarationFiles()) {
+        SCOPED_TRACE(file.name);
+        expectFits("material_feature", Json::parse(file.text));
+    }
+    EXPECT_FALSE(
+        fits("material_feature", Json{{"name", "wet"}, {"stage", "layer"}, {"neutrl", Json::array()}}));
+}
+
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
+    expectFits("material_feature", exampleIn("material_features.md", "## An example"));
     expectFits("compile", exampleIn("cli.md", "## glint compile"));
     expectFits("lint", exampleIn("lint.md", "## JSON"));
     const Json diagnostic = exampleIn("cli.md", "## What is reported");

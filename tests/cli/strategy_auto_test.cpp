@@ -132,7 +132,8 @@ TEST_F(StrategyAuto, WithoutRaysStrategiesAreAlike) {
 TEST_F(StrategyAuto, DeviceFilesFitTheirSchema) {
     expectFits("device", plantedDevice("uber"));
     for (const char* const kind : {"cpu", "gpu"}) {
-        const std::string file = std::string(GLINT_SOURCE_DIR "/scripts/strategy_costs_") + kind + ".json";
+        const std::string file =
+            std::string(GLINT_SOURCE_DIR "/benchmarks/data/strategy_costs_") + kind + ".json";
         if (std::filesystem::exists(file)) {
             expectFits("device", Json::parse(readText(file)));
         }

@@ -1,11 +1,11 @@
 // Tests glint render --strategy auto, and the device file as the program writes and reads it.
-#include "bench/strategy_fit.h"
-#include "cli/calibration_points.h"
-#include "cli/device_file.h"
+#include "cli/bench/text.h"
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 
+#include <glint/measure/device_file.h>
+#include <glint/measure/strategy_fit.h>
 #include <glint/package_modules.h>
 
 #include <algorithm>
@@ -74,16 +74,16 @@ TEST_F(StrategyRender, FilesSayWhyWhereNothingCanBeChosen) {
 
 TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
     writeText(path("planted.json"), plantedDevice("uber").dump());
-    const Result<DeviceFile> planted = readDeviceFile(path("planted.json"));
+    const Result<measure::DeviceFile> planted = measure::readDeviceFile(path("planted.json"));
     ASSERT_TRUE(planted) << planted.error().message;
     // These are the points that such a device would give.
     Json points = Json::array();
     for (const std::uint32_t cases : {1U, 8U, 64U}) {
         for (const double coherence : {0.1, 0.9}) {
             for (const double rays : {1e5, 4e6}) {
-                bench::CalibrationPoint point{cases, "cheap", coherence > 0.5 ? "coherent" : "incoherent",
-                                              rays,  0.8,     coherence,
-                                              {},    {}};
+                measure::CalibrationPoint point{cases, "cheap", coherence > 0.5 ? "coherent" : "incoherent",
+                                                rays,  0.8,     coherence,
+                                                {},    {}};
                 Json work = Json::array();
                 for (std::uint32_t i = 0; i < cases; ++i) {
                     point.work.push_back({1.0 / cases, 500.0, 2.0});
@@ -91,9 +91,9 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                 }
                 Json times = Json::array();
                 const double first =
-                    estimatedMs(bench::roundOf(point), planted->costs.strategies.front(), 32.0);
+                    estimatedMs(measure::roundOf(point), planted->costs.strategies.front(), 32.0);
                 for (const StrategyCosts& costs : planted->costs.strategies) {
-                    const double ms = estimatedMs(bench::roundOf(point), costs, 32.0);
+                    const double ms = estimatedMs(measure::roundOf(point), costs, 32.0);
                     times.push_back({{"strategy", costs.strategy},
                                      // The times are like those of a device whose clock changes from round to
                                      // round.
@@ -125,23 +125,23 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                           {"tracers", {"ray-pipeline"}}}},
                         {"points", points}};
     writeText(path("calibration.json"), measured.dump());
-    Result<CalibrationPoints> read = readCalibrationPoints(path("calibration.json"));
+    Result<measure::CalibrationPoints> read = measure::readCalibrationPoints(path("calibration.json"));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->device.tracer, "ray-pipeline");
     EXPECT_EQ(read->device.subgroupSize, 32.0);
     std::vector<Diagnostic> notes;
-    const Result<DeviceFile> fitted = fitDevice(read->device, read->points, notes);
+    const Result<measure::DeviceFile> fitted = measure::fitDevice(read->device, read->points, notes);
     ASSERT_TRUE(fitted) << fitted.error().message;
     EXPECT_TRUE(notes.empty());
     const std::string text = toText(*fitted);
     expectFits("device", Json::parse(text));
     writeText(path("device.json"), text);
-    const Result<DeviceFile> again = readDeviceFile(path("device.json"));
+    const Result<measure::DeviceFile> again = measure::readDeviceFile(path("device.json"));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(toText(*again), text);
     EXPECT_NE(describe(*again).find("within 5 % at 100.0 %"), std::string::npos) << describe(*again);
 
-    const Result<DeviceFile> none = fitDevice(read->device, {}, notes);
+    const Result<measure::DeviceFile> none = measure::fitDevice(read->device, {}, notes);
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().id, "calibration-points");
 }

@@ -4,7 +4,7 @@
 #include "cache/module_cache.h"
 #include "cache/packing.h"
 #include "cache/store.h"
-#include "cli/compile_summary.h"
+#include "cli/compile/summary.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch_file.h"
 #include "support/temporary_folder.h"

@@ -4,10 +4,11 @@
 #include "fuzz/scratch_file.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
-#include "motion/deform.h"
-#include "motion/pose.h"
 #include "plan/plan.h"
+#include "scene/deformed.h"
 #include "support/temporary_folder.h"
+
+#include <glint/scene_view/pose.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -85,18 +86,19 @@ void checkMotion(Scene scene) {
         all.push_back(all.size());
     }
     for (const double time : {0.0, 0.4, 1e6}) {
-        applyPose(poseAt(scene, all, time), scene);
+        scene_view::applyPose(scene_view::poseAt(scene, all, time), scene);
         for (const Node& node : scene.nodes) {
             if (!isDeformed(scene, node)) {
                 continue;
             }
             const std::vector<Matrix4> joints =
-                node.skin < 0 ? std::vector<Matrix4>()
-                              : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+                node.skin < 0
+                    ? std::vector<Matrix4>()
+                    : scene_view::jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
             for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                require(
-                    deformedPositions(primitive, node.weights, joints).size() == primitive.positions.size(),
-                    "every vertex has a place");
+                require(scene_view::deformedPositions(primitive, node.weights, joints).size() ==
+                            primitive.positions.size(),
+                        "every vertex has a place");
             }
         }
     }

@@ -3,6 +3,14 @@
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
+# expect_output(TEXT): the last program must have printed it.
+macro(expect_output text)
+  string(FIND "${output}" "${text}" found)
+  if(found EQUAL -1)
+    message(FATAL_ERROR "not \"${text}\" but\n${output}")
+  endif()
+endmacro()
+
 set(prefix "${WORK}/prefix")
 set(build "${WORK}/build")
 file(REMOVE_RECURSE "${WORK}")
@@ -16,6 +24,12 @@ run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" "-DCMAKE_P
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
+run("${build}/uses_gltf" "${WORK}/scenes/cubes.gltf")
+expect_output("4 meshes, 4 materials")
+run("${build}/uses_scene_view" "${WORK}/scenes/cubes.gltf")
+expect_output("4 instances, 48 triangles, 1 images")
+run("${build}/uses_measure")
+expect_output(" settings, ")
 run("${build}/tables/uses_tables")
 
 # The first build made the lock, so the second has no reason to run the tool.

@@ -1,6 +1,6 @@
 #include "compute_device.h"
 
-#include "vulkan_error.h"
+#include "context/vulkan_error.h"
 
 #include <algorithm>
 #include <vector>

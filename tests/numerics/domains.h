@@ -8,6 +8,7 @@ namespace glint::numerics {
 
 // domains_geometry.cpp
 void fillDirection(InputSource& in);
+void fillDirectionAndSide(InputSource& in);
 void fillTransform(InputSource& in);
 void fillBinnedDirection(InputSource& in);
 void fillScreenRay(InputSource& in);
@@ -46,8 +47,11 @@ void fillDispersion(InputSource& in);
 void fillClearcoat(InputSource& in);
 void fillCosineAlpha(InputSource& in);
 void fillAlpha(InputSource& in);
+void fillViewAlphas(InputSource& in);
+void fillAlphas(InputSource& in);
 void fillCosineSheenAlpha(InputSource& in);
 void fillBsdf(InputSource& in);
+void fillBsdfReflection(InputSource& in);
 void fillBsdfWithoutSheen(InputSource& in);
 void fillBsdfSample(InputSource& in);
 

@@ -1,5 +1,5 @@
 #include "domains.h"
-#include "plan/features.h"
+#include "plan/material_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,6 +193,18 @@ void fillAlpha(InputSource& in) {
     in.put(in.alpha());
 }
 
+// Writes the alphas of an anisotropic lobe, the larger one first.
+void fillAlphas(InputSource& in) {
+    const double across = in.alpha();
+    in.put(in.chance(0.2) ? across : std::max(in.alpha(), across));
+    in.put(across);
+}
+
+void fillViewAlphas(InputSource& in) {
+    in.put(in.upper());
+    fillAlphas(in);
+}
+
 void fillCosineSheenAlpha(InputSource& in) {
     in.put(in.cosine());
     in.put(sheenAlpha(in));
@@ -276,9 +288,18 @@ void fillBsdf(InputSource& in) {
     putMaterialViewLight(in, 0);
 }
 
+// The same, with the light above the surface.
+void fillBsdfReflection(InputSource& in) {
+    const GivenMaterial material = putMaterial(in);
+    const Vector view = in.upper();
+    in.put(view);
+    in.put(in.chance(0.3) ? in.upper()
+                          : in.mirrored(view, in.chance(0.5) ? material.alphaX : material.alphaY));
+    putMetal(in, material);
+}
+
 void fillBsdfWithoutSheen(InputSource& in) {
-    constexpr std::uint32_t kSheen = 1U << static_cast<unsigned>(Feature::Sheen);
-    putMaterialViewLight(in, kSheen);
+    putMaterialViewLight(in, static_cast<std::uint32_t>(builtinMaterialModel().mask("sheen")));
 }
 
 void fillBsdfSample(InputSource& in) {

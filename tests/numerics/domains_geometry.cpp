@@ -36,6 +36,21 @@ void fillDirection(InputSource& in) {
     in.put(in.direction());
 }
 
+// Writes a direction and a normal. Half of the directions are near the plane of the normal, on both sides.
+void fillDirectionAndSide(InputSource& in) {
+    const Vector side = in.direction();
+    if (in.chance(0.5)) {
+        in.put(in.direction());
+    } else {
+        const double height = in.chance(0.1) ? 0.0 : in.pick({-1.0, 1.0}) * in.logUniform(1e-9, 1e-2);
+        const double turn = in.uniform(0.0, 2.0 * std::numbers::pi);
+        const double flat = std::sqrt(1.0 - height * height);
+        const Vector along = Plane(side).at(flat * std::cos(turn), flat * std::sin(turn));
+        in.put({along.x + height * side.x, along.y + height * side.y, along.z + height * side.z});
+    }
+    in.put(side);
+}
+
 void fillTransform(InputSource& in) {
     for (int k = 0; k < 15; ++k) {
         in.put(in.coordinate());

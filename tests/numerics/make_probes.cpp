@@ -4,7 +4,7 @@
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
 #include "emit/flatten.h"
-#include "plan/features.h"
+#include "plan/material_model.h"
 #include "translate.h"
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ std::string constantsOf(std::string_view header) {
 class Sources {
 public:
     explicit Sources(std::vector<fs::path> folders) : folders_(std::move(folders)) {
-        texts_["generated/features.glsl"] = glint::featureDefines();
+        texts_["generated/features.glsl"] = glint::builtinMaterialModel().featureDefines();
         // A scene chooses these values; here, the code that compiles the text defines them.
         texts_["generated/scene.glsl"] =
             "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";

@@ -1,9 +1,9 @@
 #include "probe_device.h"
 
 #include "compute_device.h"
-#include "shader_modules.h"
+#include "context/vulkan_error.h"
+#include "package/shader_modules.h"
 #include "spirv/compiler.h"
-#include "vulkan_error.h"
 
 #include <bit>
 #include <cstring>

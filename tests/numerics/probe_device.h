@@ -1,11 +1,11 @@
 // Runs probes on the Vulkan device.
 #pragma once
 
-#include "commands.h"
+#include "context/commands.h"
+#include "context/resources.h"
+#include "context/timer.h"
 #include "evaluate.h"
 #include "probe_kernel.h"
-#include "resources.h"
-#include "timer.h"
 
 #include <glint/context.h>
 

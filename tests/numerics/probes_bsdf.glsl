@@ -182,6 +182,18 @@ PROBE(GgxMeanAlbedo) {
     o[1] = lossBias.y;
 }
 
+PROBE(AnisotropicGgxAlbedo) {
+    vec2 lossBias = anisotropicGgxAlbedo(VEC3(0), VEC2(3));
+    o[0] = lossBias.x;
+    o[1] = lossBias.y;
+}
+
+PROBE(AnisotropicGgxMeanAlbedo) {
+    vec2 lossBias = anisotropicGgxMeanAlbedo(VEC2(0));
+    o[0] = lossBias.x;
+    o[1] = lossBias.y;
+}
+
 PROBE(SheenAlbedo) {
     o[0] = sheenAlbedo(i[0], i[1]);
 }
@@ -215,6 +227,15 @@ Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 al
     b.metalF0 = VEC3(34);                                                                                   \
     b.metallic = i[37];                                                                                     \
     prepareBsdf(b, GIVEN_FEATURES, VEC3(28))
+
+// The facet's normal and the reflectance of both bases.
+PROBE(FacetBetween) {
+    GIVEN_BSDF(b);
+    Facet facet = facetBetween(b, GIVEN_FEATURES, VEC3(31));
+    vec3 f = facet.fresnel;
+    WRITE3(0, facet.h);
+    WRITE3(3, f);
+}
 
 PROBE(EvaluateBsdf) {
     GIVEN_BSDF(b);

@@ -30,6 +30,11 @@ PROBE(DirectionOr) {
     WRITE3(0, v);
 }
 
+PROBE(OnSide) {
+    vec3 v = onSide(VEC3(0), VEC3(3));
+    WRITE3(0, v);
+}
+
 // The scale is the sum of the absolute terms.
 PROBE(TransformPoint) {
     vec4 rows[3];

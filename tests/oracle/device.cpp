@@ -28,7 +28,7 @@ LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testi
     CompileSettings settings;
     settings.effects = {false, options.effects, options.maxRoughness};
     settings.energyCompensation = options.energyCompensation;
-    const testing::LoadedScene loaded(scene, settings, [&](SceneViewData& data) {
+    const testing::LoadedScene loaded(scene, settings, [&](scene_view::SceneViewData& data) {
         for (LightView& light : data.lights) {
             const bool sun = light.type == LightView::Type::Directional;
             light.size = static_cast<float>(sun ? 0.5 * options.lights.sunDiameter : options.lights.radius);

@@ -27,7 +27,7 @@ Vec3 Reference::surface(const Ray& ray, const Hit& hit, double mirrorRoughness) 
             result += reflected;
         }
     }
-    if (material.roughnessFactor <= mirrorRoughness) {
+    if (material["roughnessFactor"] <= mirrorRoughness) {
         Vec3 direction;
         const Vec3 weight = shading.mirrored(direction);
         result += weight * radiance({hit.position, direction}, -1.0);

@@ -1,6 +1,7 @@
 #include "oracle/shading.h"
 
 #include "numerics/shaders_double.h"
+#include "oracle/material_vectors.h"
 
 #include <algorithm>
 
@@ -17,19 +18,19 @@ struct Base {
 };
 
 Base baseOf(const Material& material, const Vec3& color) {
-    const double ior = material.ior.ior;
-    const double metallic = material.metallicFactor;
-    const double specular = material.specular.factor;
+    const double ior = material["ior"];
+    const double metallic = material["metallicFactor"];
+    const double specular = material["specularFactor"];
     const Vec3 dielectric =
-        glm::min(squared((ior - 1.0) / (ior + 1.0)) * toVec(material.specular.colorFactor), Vec3(1.0)) *
+        glm::min(squared((ior - 1.0) / (ior + 1.0)) * toVec(material["specularColorFactor"]), Vec3(1.0)) *
         specular;
     return {color * (1.0 - metallic), dielectric, specular, color, metallic};
 }
 
 glsl::Features featuresOf(const Material& material) {
     glsl::uint lobes = 0;
-    lobes |= material.clearcoat.factor > 0.0F ? GLINT_CLEARCOAT : 0U;
-    lobes |= toVec(material.sheen.colorFactor) != Vec3(0.0) ? GLINT_SHEEN : 0U;
+    lobes |= material["clearcoatFactor"] > 0.0F ? GLINT_CLEARCOAT : 0U;
+    lobes |= toVec(material["sheenColorFactor"]) != Vec3(0.0) ? GLINT_SHEEN : 0U;
     return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, lobes, 0U};
 }
 
@@ -41,13 +42,13 @@ glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view)
     bsdf.f90 = base.f90;
     bsdf.metalF0 = base.metalF0;
     bsdf.metallic = base.metallic;
-    bsdf.alpha = glm::dvec2(std::max(squared(material.roughnessFactor), glsl::kMinAlpha));
+    bsdf.alpha = glm::dvec2(std::max(squared(material["roughnessFactor"]), glsl::kMinAlpha));
     bsdf.eta = Vec3(1.0);
-    bsdf.clearcoat = material.clearcoat.factor;
-    bsdf.clearcoatAlpha = std::max(squared(material.clearcoat.roughnessFactor), glsl::kMinAlpha);
+    bsdf.clearcoat = material["clearcoatFactor"];
+    bsdf.clearcoatAlpha = std::max(squared(material["clearcoatRoughnessFactor"]), glsl::kMinAlpha);
     bsdf.clearcoatNormal = {0.0, 0.0, 1.0};
-    bsdf.sheenColor = toVec(material.sheen.colorFactor);
-    bsdf.sheenAlpha = std::max(squared(material.sheen.roughnessFactor), glsl::kMinSheenAlpha);
+    bsdf.sheenColor = toVec(material["sheenColorFactor"]);
+    bsdf.sheenAlpha = std::max(squared(material["sheenRoughnessFactor"]), glsl::kMinSheenAlpha);
     glsl::prepareBsdf(bsdf, featuresOf(material), view);
     return bsdf;
 }
@@ -62,14 +63,15 @@ Shading::Shading(const Material& material, const Hit& hit, const Vec3& incoming)
       view_(glm::transpose(frame_) * -incoming) {}
 
 Vec3 Shading::baseColor() const {
-    const auto& factor = material_.baseColorFactor;
+    const auto& factor = material_["baseColorFactor"];
     return Vec3(factor[0], factor[1], factor[2]) * color_;
 }
 
 Vec3 Shading::emission() const {
     // KHR_materials_clearcoat: the coat transmits the part of the emission that it does not reflect.
-    const double coat = material_.clearcoat.factor * reflectedByCoat();
-    return toVec(material_.emissiveFactor) * static_cast<double>(material_.emissiveStrength) * (1.0 - coat);
+    const double coat = material_["clearcoatFactor"] * reflectedByCoat();
+    return toVec(material_["emissiveFactor"]) * static_cast<double>(material_["emissiveStrength"]) *
+           (1.0 - coat);
 }
 
 Vec3 Shading::scattered(const Vec3& toLight) const {

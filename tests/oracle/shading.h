@@ -14,7 +14,7 @@ public:
     Shading(const Material& material, const Hit& hit, const Vec3& incoming);
 
     bool unlit() const {
-        return material_.unlit;
+        return material_.isUnlit();
     }
     // COLOR_0 is a factor.
     Vec3 baseColor() const;

@@ -1,4 +1,4 @@
-#include "bench/page.h"
+#include "measure/page.h"
 
 #include "page/sample_report.h"
 
@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string htmlOf(const SamplePage& page) {
-    return makePage(page.report, page.images);
+    return measure::makePage(page.report, page.images);
 }
 
 std::size_t countOf(const std::string& text, const std::string& part) {
@@ -37,7 +37,7 @@ TEST(Page, HoldsTheReportAndTheImages) {
     const Json images = dataOf(html, "image-data");
     ASSERT_EQ(images.size(), sample.images.size());
     EXPECT_GT(sample.images.size(), 100U);
-    for (const PageImage& image : sample.images) {
+    for (const measure::PageImage& image : sample.images) {
         EXPECT_EQ(images.at(image.name).get<std::string>().rfind("data:image/png;base64,iVBORw0KGgo", 0), 0U)
             << image.name;
     }
@@ -52,8 +52,8 @@ TEST(Page, EncodesEveryLengthOfImage) {
                                                          {"fooba", "Zm9vYmE="},
                                                          {"foobar", "Zm9vYmFy"}};
     for (const auto& [bytes, expected] : cases) {  // RFC 4648, section 10
-        const PageImage image{"a", Bytes(bytes.begin(), bytes.end())};
-        const std::string html = makePage(samplePage().report, std::span(&image, 1));
+        const measure::PageImage image{"a", Bytes(bytes.begin(), bytes.end())};
+        const std::string html = measure::makePage(samplePage().report, std::span(&image, 1));
         EXPECT_EQ(dataOf(html, "image-data").at("a"), "data:image/png;base64," + expected);
     }
 }

@@ -2,7 +2,7 @@
 // a machine seldom gives.
 #pragma once
 
-#include "bench/page.h"
+#include "measure/page.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,7 @@ namespace glint::testing {
 // Moving the Json can't throw here. NOLINTNEXTLINE(bugprone-exception-escape)
 struct SamplePage {
     nlohmann::ordered_json report;
-    std::vector<PageImage> images;
+    std::vector<measure::PageImage> images;
 };
 
 // Returns about 60 points: singles, pairs, a search, other packages; ties, skipped values, an infinite PSNR,

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
                                                         {"hostile.html", glint::testing::hostilePage()},
                                                         {"sparse.html", glint::testing::sparsePage()}};
     for (const auto& [name, page] : pages) {
-        std::ofstream(folder / name, std::ios::binary) << glint::makePage(page.report, page.images);
+        std::ofstream(folder / name, std::ios::binary) << glint::measure::makePage(page.report, page.images);
     }
     std::ofstream report(folder / "sample.json", std::ios::binary);
     report << pages[0].second.report.dump(1);

@@ -42,8 +42,8 @@ double mean(const LinearImage& image) {
 Scene roomWithoutSharpHighlights() {
     Scene scene = roomOfMaterials();
     for (Material& material : scene.materials) {
-        material.roughnessFactor = std::max(material.roughnessFactor, 0.25F);
-        material.clearcoat.roughnessFactor = 0.4F;
+        material["roughnessFactor"] = std::max<float>(material["roughnessFactor"], 0.25F);
+        material["clearcoatRoughnessFactor"] = 0.4F;
     }
     return scene;
 }

@@ -26,13 +26,15 @@ Scene sceneWith(const Properties& has) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material plaster;
-    plaster.metallicFactor = 0.0F;
-    plaster.unlit = !has.lit;
+    plaster["metallicFactor"] = 0.0F;
     Material mirror = mirrorMaterial();
-    mirror.unlit = !has.lit;
+    if (!has.lit) {
+        plaster.give("KHR_materials_unlit");
+        mirror.give("KHR_materials_unlit");
+    }
     Material glass = plaster;
-    glass.transmission.given = true;
-    glass.transmission.factor = 0.75F;
+    glass.give("KHR_materials_transmission");
+    glass["transmissionFactor"] = 0.75F;
     const auto place = [&](const Material& material, float x) {
         addInstance(
             scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -1, -1}, {1, 0, 0}, {0, 2, 0})));

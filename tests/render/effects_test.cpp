@@ -44,16 +44,16 @@ RendererOptions optionsOf(package::Strategy strategy, package::Tracer tracer) {
 Scene roomBehindGlass() {
     Scene scene = roomOfMaterials();
     Material pane;
-    pane.metallicFactor = 0.0F;
-    pane.roughnessFactor = 0.1F;
-    pane.transmission.factor = 0.8F;
+    pane["metallicFactor"] = 0.0F;
+    pane["roughnessFactor"] = 0.1F;
+    pane["transmissionFactor"] = 0.8F;
     pane.doubleSided = true;
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
                                                {0, 1, 0})));
-    pane.transmission.factor = 1.0F;
-    pane.volume.thicknessFactor = 0.2F;
-    pane.volume.attenuationDistance = 0.5F;
-    pane.volume.attenuationColor = {0.9F, 0.5F, 0.4F};
+    pane["transmissionFactor"] = 1.0F;
+    pane["thicknessFactor"] = 0.2F;
+    pane["attenuationDistance"] = 0.5F;
+    pane["attenuationColor"] = {0.9F, 0.5F, 0.4F};
     const int thick = addMaterial(scene, pane);
     addInstance(scene, addMesh(scene, makeQuad(thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0})));
     addInstance(scene, addMesh(scene, makeQuad(thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0})));
@@ -154,7 +154,7 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material white;
-    white.metallicFactor = 0.0F;
+    white["metallicFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, white), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
     RenderSetup setup = squareSetup(scene);
@@ -176,13 +176,14 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
 // Returns glass that reflects nothing, so that a path does not depend on chance.
 Material clearGlass(float ior) {
     Material glass;
-    glass.metallicFactor = 0.0F;
-    glass.roughnessFactor = 0.0F;
-    glass.transmission.factor = 1.0F;
-    glass.volume.thicknessFactor = 1.0F;
-    glass.ior = {true, ior};
-    glass.specular.given = true;
-    glass.specular.factor = 0.0F;
+    glass["metallicFactor"] = 0.0F;
+    glass["roughnessFactor"] = 0.0F;
+    glass["transmissionFactor"] = 1.0F;
+    glass["thicknessFactor"] = 1.0F;
+    glass.give("KHR_materials_ior");
+    glass["ior"] = ior;
+    glass.give("KHR_materials_specular");
+    glass["specularFactor"] = 0.0F;
     return glass;
 }
 
@@ -214,7 +215,7 @@ Scene squaresBehind() {
                       {across, down, (i + i / 16) % 2 != 0 ? std::uint8_t{255} : std::uint8_t{0}, 255});
     }
     Material squares = unlitMaterial({1, 1, 1});
-    squares.texture(TextureSlot::BaseColor).texture = addTexture(scene, 16, 16, std::move(texels));
+    squares.texture("baseColorTexture").texture = addTexture(scene, 16, 16, std::move(texels));
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, squares), {-8, -8, -6}, {16, 0, 0}, {0, 16, 0})));
     return scene;
@@ -271,8 +272,8 @@ TEST(Gates, FaintSamplesAreSkipped) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material glossy;
-    glossy.metallicFactor = 0.0F;
-    glossy.roughnessFactor = 0.0F;
+    glossy["metallicFactor"] = 0.0F;
+    glossy["roughnessFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, glossy), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
     RenderSetup setup = squareSetup(scene);
@@ -295,7 +296,7 @@ TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material wall;
-    wall.metallicFactor = 0.0F;
+    wall["metallicFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, wall), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
     Light light;

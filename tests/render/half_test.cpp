@@ -77,9 +77,9 @@ std::vector<Material> extremeMaterials() {
         for (const float metallic : {0.0F, 1.0F}) {
             for (const float colour : {0.0F, 1e-7F, 1.0F}) {
                 Material material;
-                material.roughnessFactor = roughness;
-                material.metallicFactor = metallic;
-                material.baseColorFactor = {colour, 1.0F, colour, 1.0F};
+                material["roughnessFactor"] = roughness;
+                material["metallicFactor"] = metallic;
+                material["baseColorFactor"] = {colour, 1.0F, colour, 1.0F};
                 list.push_back(material);
             }
         }
@@ -89,26 +89,35 @@ std::vector<Material> extremeMaterials() {
         Material& material = list[i];
         switch (i % 6) {
             case 0:
-                material.clearcoat = {true, 1.0F, 0.0F, 1.0F};
+                material.give("KHR_materials_clearcoat");
+                material["clearcoatFactor"] = 1.0F;
+                material["clearcoatRoughnessFactor"] = 0.0F;
+                material["clearcoatNormalScale"] = 1.0F;
                 break;
             case 1:
-                material.sheen = {true, {1.0F, 1.0F, 1.0F}, i % 4 == 1 ? 0.0F : 1.0F};
+                material.give("KHR_materials_sheen");
+                material["sheenColorFactor"] = {1.0F, 1.0F, 1.0F};
+                material["sheenRoughnessFactor"] = i % 4 == 1 ? 0.0F : 1.0F;
                 break;
             case 2:
-                material.specular = {true, 1.0F, {1e9F, 1.0F, 0.0F}};
+                material.give("KHR_materials_specular");
+                material["specularFactor"] = 1.0F;
+                material["specularColorFactor"] = {1e9F, 1.0F, 0.0F};
                 break;
             case 3:
-                material.emissiveFactor = {1.0F, 1.0F, 1e-8F};
-                material.emissiveStrength = 1e6F;
-                material.hasEmissiveStrength = true;
+                material["emissiveFactor"] = {1.0F, 1.0F, 1e-8F};
+                material["emissiveStrength"] = 1e6F;
+                material.give("KHR_materials_emissive_strength");
                 break;
             case 4:
-                material.ior = {true, i % 4 == 0 ? 0.0F : 1.0000001F};
-                material.transmission = {true, 1.0F};
+                material.give("KHR_materials_ior");
+                material["ior"] = i % 4 == 0 ? 0.0F : 1.0000001F;
+                material.give("KHR_materials_transmission");
+                material["transmissionFactor"] = 1.0F;
                 break;
             default:
-                material.iridescence.given = true;
-                material.iridescence.factor = 1.0F;
+                material.give("KHR_materials_iridescence");
+                material["iridescenceFactor"] = 1.0F;
                 break;
         }
     }
@@ -171,7 +180,7 @@ TEST(Half, NeedsTheFeature) {
     EXPECT_EQ(package->precision(), package::ShadingPrecision::Half);
     const Result<std::unique_ptr<Context>> context = Context::createHeadless({});
     ASSERT_TRUE(context) << toString(context.error());
-    const auto uploaded = GpuScene::upload(**context, *package, makeSceneView(scene).view());
+    const auto uploaded = GpuScene::upload(**context, *package, scene_view::makeSceneView(scene).view());
     ASSERT_FALSE(uploaded);
     EXPECT_EQ(uploaded.error().id, "half-precision");
     EXPECT_NE(uploaded.error().hint.find("--precision 32"), std::string::npos);

@@ -10,17 +10,17 @@ namespace {
 
 Material glossyMaterial(Float3 color, float roughness) {
     Material material;
-    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = roughness;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = roughness;
     return material;
 }
 
 Material coatedMaterial(Float3 color) {
     Material material = glossyMaterial(color, 0.6F);
-    material.clearcoat.given = true;
-    material.clearcoat.factor = 1.0F;
-    material.clearcoat.roughnessFactor = 0.1F;
+    material.give("KHR_materials_clearcoat");
+    material["clearcoatFactor"] = 1.0F;
+    material["clearcoatRoughnessFactor"] = 0.1F;
     return material;
 }
 
@@ -34,7 +34,7 @@ Material fenceMaterial(Scene& scene) {
         const bool solid = (i / 8 + i) % 2 == 0;
         texels.insert(texels.end(), {255, 255, 255, solid ? std::uint8_t{255} : std::uint8_t{0}});
     }
-    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 8, 8, std::move(texels));
+    material.texture("baseColorTexture").texture = addTexture(scene, 8, 8, std::move(texels));
     return material;
 }
 

@@ -94,10 +94,10 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material lamp;
-    lamp.baseColorFactor = {0, 0, 0, 1};
-    lamp.emissiveFactor = {1.0F, 0.5F, 0.25F};
-    lamp.emissiveStrength = 1e5F;
-    lamp.hasEmissiveStrength = true;
+    lamp["baseColorFactor"] = {0, 0, 0, 1};
+    lamp["emissiveFactor"] = {1.0F, 0.5F, 0.25F};
+    lamp["emissiveStrength"] = 1e5F;
+    lamp.give("KHR_materials_emissive_strength");
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, lamp), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     RenderSetup setup = squareSetup(scene);
@@ -123,9 +123,9 @@ Scene litScene(Primitive quad, const Matrix4& world) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material material;
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = 0.6F;
-    material.baseColorFactor = {0.8F, 0.5F, 0.2F, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.6F;
+    material["baseColorFactor"] = {0.8F, 0.5F, 0.2F, 1.0F};
     quad.material = addMaterial(scene, material);
     addInstance(scene, addMesh(scene, std::move(quad)), world);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {0, -1, -1}, {1, 0, 0},
@@ -284,7 +284,7 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
         // level.
         const int texture = addTexture(scene, 1, 1, {0x00, 0x80, 0x00, 0x80, 0xFF, 0xFF, 0xFF, 0xFF});
         scene.images.back().format = PixelFormat::Rgba16;
-        scene.materials[0].texture(TextureSlot::Normal).texture = texture;
+        scene.materials[0].texture("normalTexture").texture = texture;
         FrameCounters counters;
         const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
         ASSERT_TRUE(allFinite(image));
@@ -309,9 +309,9 @@ Scene checkeredScene(bool masked) {
     }
     if (masked) {
         material.alphaMode = AlphaMode::Mask;
-        material.alphaCutoff = 0.6F;
+        material["alphaCutoff"] = 0.6F;
     }
-    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 64, 64, texels);
+    material.texture("baseColorTexture").texture = addTexture(scene, 64, 64, texels);
     scene.samplers.back().mipmapped = true;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));

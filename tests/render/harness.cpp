@@ -1,9 +1,10 @@
 #include "render/harness.h"
 
-#include "cli/camera.h"
-#include "cli/scene_view.h"
-#include "cli/temporary_folder.h"
 #include "image/compare.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <cmath>
 
@@ -36,7 +37,7 @@ LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan)
     : LoadedScene(scene, CompileSettings{.plan = plan}) {}
 
 LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
-                         const std::function<void(SceneViewData&)>& change) {
+                         const std::function<void(scene_view::SceneViewData&)>& change) {
     const Status loaded = load(scene, settings, change);
     if (!loaded) {
         ADD_FAILURE() << toString(loaded.error());
@@ -44,33 +45,26 @@ LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
 }
 
 Status LoadedScene::load(const Scene& scene, const CompileSettings& settings,
-                         const std::function<void(SceneViewData&)>& change) {
+                         const std::function<void(scene_view::SceneViewData&)>& change) {
     Result<CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {
         return compiled.error();
     }
     compiled_ = std::move(*compiled);
-    const Result<TemporaryFolder> folder = TemporaryFolder::create();
-    if (!folder) {
-        return folder.error();
-    }
-    const std::filesystem::path path = folder->path() / "package";
-    if (Status written = writePackage(compiled_, path); !written) {
-        return written;
-    }
-    Result<Package> package = Package::load(path);
+    Result<Package> package = scene_view::loadPackage(compiled_);
     if (!package) {
         return package.error();
     }
     package_ = std::make_unique<Package>(std::move(*package));
 
-    SceneViewData data = makeSceneView(scene);
+    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     if (scene.lights.empty()) {
-        data.lights.push_back(sunLight());
+        data.lights.push_back(scene_view::sunLight());
     }
     if (change) {
         change(data);
     }
+    scene_view::useLayoutOf(*package_, scene, data);
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), *package_, data.view());
     if (!uploaded) {
         return uploaded.error();
@@ -118,10 +112,11 @@ RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t 
     RenderSetup setup;
     setup.width = width;
     setup.height = height;
-    const SceneViewData data = makeSceneView(scene);
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     const double aspect = static_cast<double>(width) / height;
-    const Result<CameraChoice> camera = chooseCamera(scene, data, "", aspect);
-    setup.frame.camera = camera ? camera->view : framingCamera(worldBounds(data), aspect);
+    const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(scene, data, "", aspect);
+    setup.frame.camera =
+        camera ? camera->view : scene_view::framingCamera(scene_view::worldBounds(data), aspect);
     return setup;
 }
 

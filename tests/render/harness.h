@@ -1,12 +1,12 @@
 // Renders scenes in process, always with the validation layers.
 #pragma once
 
-#include "cli/scene_view.h"
 #include "emit/compile.h"
 #include "gltf/scene.h"
 
 #include <glint/context.h>
 #include <glint/renderer.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ public:
     LoadedScene(const Scene& scene, const PlanOptions& plan);
     // `change`, if there is one, is called with the data before they are uploaded.
     LoadedScene(const Scene& scene, const CompileSettings& settings,
-                const std::function<void(SceneViewData&)>& change = {});
+                const std::function<void(scene_view::SceneViewData&)>& change = {});
     ~LoadedScene();
 
     bool ok() const {
@@ -62,7 +62,7 @@ public:
 
 private:
     Status load(const Scene& scene, const CompileSettings& settings,
-                const std::function<void(SceneViewData&)>& change);
+                const std::function<void(scene_view::SceneViewData&)>& change);
 
     CompiledPackage compiled_;
     std::unique_ptr<Package> package_;

@@ -23,7 +23,7 @@ constexpr std::array<double, 2> kTexels{1024.0, 512.0};
 Scene squareScene(const std::vector<double>& scales) {
     Scene scene = emptyScene();
     Material material;
-    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
+    material.texture("baseColorTexture").texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
     const Primitive quad = makeQuad(addMaterial(scene, material), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     const int mesh = addMesh(scene, quad);
     for (const double scale : scales) {

@@ -1,13 +1,13 @@
 #include "render/hit_kernel.h"
 
 #include "base/files.h"
-#include "context_state.h"
+#include "context/context_state.h"
+#include "context/vulkan_error.h"
 #include "emit/flatten.h"
 #include "emit/sources.h"
-#include "gpu_scene_state.h"
-#include "shader_modules.h"
+#include "package/shader_modules.h"
+#include "scene/gpu_scene_state.h"
 #include "spirv/compiler.h"
-#include "vulkan_error.h"
 
 #include <cstring>
 

@@ -1,10 +1,10 @@
 // Runs a compute shader of the tests over a loaded scene. It may include what the product's passes include.
 #pragma once
 
-#include "commands.h"
+#include "context/commands.h"
+#include "context/resources.h"
 #include "interop/frame.h"
 #include "render/harness.h"
-#include "resources.h"
 
 #include <cstdint>
 #include <memory>

@@ -16,8 +16,9 @@ std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
     // Queries name triangles by the numbers that they have in the scene.
-    const LoadedScene loaded(scene, settings,
-                             [](SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
+    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {
+        data.traversalOrder = TraversalOrder::Input;
+    });
     if (!loaded.ok()) {
         return {};
     }

@@ -1,7 +1,9 @@
 // Compares positions, normals and attributes of given hits with a computation in double precision.
-#include "cli/scene_view.h"
+#include "base/vectors.h"
 #include "render/hit_query.h"
 #include "render/scene_builder.h"
+
+#include <glint/scene_view/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -15,24 +17,6 @@ namespace {
 
 using namespace glint;
 using namespace glint::testing;
-
-using Double3 = std::array<double, 3>;
-
-Double3 toDouble(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-
-Double3 subtract(const Double3& a, const Double3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Double3 directionOf(const Double3& v) {
     const double length = std::sqrt(dot(v, v));
@@ -85,7 +69,7 @@ constexpr std::array<Float4, 3> kColors{
 Scene triangleScene(const std::vector<Matrix4>& placements) {
     Scene scene = emptyScene();
     Material material;
-    material.texture(TextureSlot::BaseColor).texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
+    material.texture("baseColorTexture").texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
     Primitive triangle;
     triangle.pointer = "/meshes/0/primitives/0";
     triangle.material = addMaterial(scene, material);
@@ -125,7 +109,7 @@ constexpr std::array<Double3, 3> kStretched{{{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0
 constexpr double kNormalError = 4e-6;
 
 void expectSameDirection(const Float3& got, const Double3& expected, const std::string& where) {
-    EXPECT_NEAR(dot(toDouble(got), toDouble(got)), 1.0, 1e-6) << where;
+    EXPECT_NEAR(dot(toDouble3(got), toDouble3(got)), 1.0, 1e-6) << where;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(got[axis], expected[axis], kNormalError) << where << ", axis " << axis;
     }
@@ -139,7 +123,7 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
         }
     }
     const Scene scene = triangleScene(placements);
-    const SceneViewData data = makeSceneView(scene);
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     std::vector<Query> queries;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
         for (const Float2 barycentrics : {Float2{0.0F, 0.0F}, Float2{0.25F, 0.5F}, Float2{0.01F, 0.98F}}) {
@@ -149,15 +133,15 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
     }
     const std::vector<Values> values = ask(scene, queries);
     ASSERT_EQ(values.size(), queries.size());
-    const Double3 winding = cross(subtract(toDouble(kPositions[1]), toDouble(kPositions[0])),
-                                  subtract(toDouble(kPositions[2]), toDouble(kPositions[0])));
+    const Double3 winding = cross(difference(toDouble3(kPositions[1]), toDouble3(kPositions[0])),
+                                  difference(toDouble3(kPositions[2]), toDouble3(kPositions[0])));
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const Query& query = queries[i];
         const std::string where =
             "placement " + std::to_string(query.geometry) + ", query " + std::to_string(i);
         const auto& rows = data.instances[query.geometry].objectToWorld;
         const Double3 front = transformNormal(rows, winding);
-        const double facing = -dot(front, toDouble(query.direction));
+        const double facing = -dot(front, toDouble3(query.direction));
         ASSERT_GT(std::abs(facing), 1e-3) << where << ": rounding decides the side";
         EXPECT_EQ(values[i].frontFace, facing >= 0.0 ? 1.0F : 0.0F) << where;
         const double side = facing >= 0.0 ? 1.0 : -1.0;
@@ -165,8 +149,8 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
                             where);
         expectSameDirection(values[i].normal, transformNormal(rows, blend(kNormals, query.barycentrics)),
                             where);
-        const Double3 off = subtract(toDouble(values[i].position),
-                                     transformPoint(rows, blend(kPositions, query.barycentrics)));
+        const Double3 off = difference(toDouble3(values[i].position),
+                                       transformPoint(rows, blend(kPositions, query.barycentrics)));
         EXPECT_LE(std::abs(dot(off, front)), double{values[i].clearance}) << where;
         EXPECT_GT(values[i].clearance, 0.0F) << where;
     }
@@ -181,7 +165,7 @@ TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(values[k].texCoord, kTexCoords[k]) << "vertex " << k;
         EXPECT_EQ(values[k].color, (Float3{kColors[k][0], kColors[k][1], kColors[k][2]})) << "vertex " << k;
-        expectSameDirection(values[k].normal, directionOf(toDouble(kNormals[k])),
+        expectSameDirection(values[k].normal, directionOf(toDouble3(kNormals[k])),
                             "vertex " + std::to_string(k));
     }
 }
@@ -235,10 +219,10 @@ TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
     ASSERT_EQ(values.size(), 4U);
     for (std::size_t i = 0; i < values.size(); ++i) {
         for (const Float3& vector : {values[i].geometricNormal, values[i].normal}) {
-            EXPECT_NEAR(dot(toDouble(vector), toDouble(vector)), 1.0, 1e-6) << "triangle " << i;
+            EXPECT_NEAR(dot(toDouble3(vector), toDouble3(vector)), 1.0, 1e-6) << "triangle " << i;
         }
         EXPECT_TRUE(std::isfinite(values[i].clearance) && hasFiniteGradients(values[i])) << "triangle " << i;
-        EXPECT_TRUE(std::isfinite(dot(toDouble(values[i].position), {1, 1, 1}))) << "triangle " << i;
+        EXPECT_TRUE(std::isfinite(dot(toDouble3(values[i].position), {1, 1, 1}))) << "triangle " << i;
     }
     EXPECT_NEAR(values[0].normal[2], 0.64F, 1e-6F) << "without a side, it faces the viewer";
 }

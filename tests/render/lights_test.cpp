@@ -30,8 +30,8 @@ TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material material;
-    material.metallicFactor = 0.0F;
-    material.baseColorFactor = {0.5F, 0.5F, 0.5F, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     addDirectionalLight(scene, {0, 0, -1}, 2.0F);
@@ -58,8 +58,8 @@ float litWall(const Light& light,
     Scene scene = emptyScene();
     addCamera(scene);
     Material material;
-    material.metallicFactor = 0.0F;
-    material.baseColorFactor = {0.5F, 0.5F, 0.5F, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     scene.lights.push_back(light);
@@ -152,7 +152,7 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material white;
-    white.metallicFactor = 0.0F;
+    white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
     // The left half of the view shows the wall behind the camera in a mirror. The right half shows the same
     // wall in front, mirrored about the mirror's plane, so that both see it from the same distance and angle.
@@ -198,13 +198,13 @@ Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material white;
-    white.metallicFactor = 0.0F;
+    white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
     Material plate = unlitMaterial(kRed);
     plate.doubleSided = true;
     if (plateMaterialKind == 1) {
         plate.alphaMode = AlphaMode::Mask;
-        plate.baseColorFactor[3] = 0.0F;  // cut out entirely
+        plate["baseColorFactor"][3] = 0.0F;  // cut out entirely
     }
     const int plateMaterial = addMaterial(scene, plate);
     if (!shadeInMirror) {

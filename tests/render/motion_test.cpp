@@ -1,16 +1,17 @@
 // Tests scenes that move: each pose must give the picture of the same scene uploaded in that pose.
-#include "cli/camera.h"
-#include "cli/scene_view.h"
 #include "gltf/animatable.h"
 #include "gltf/animated_values.h"
 #include "gltf/transform.h"
-#include "gpu_scene_state.h"
-#include "leaf_order.h"
-#include "motion/pose.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
+#include "scene/gpu_scene_state.h"
+#include "scene/leaf_order.h"
 #include "support/halved_tree.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <array>
 #include <cmath>
@@ -25,11 +26,12 @@ constexpr std::uint32_t kHeight = 36;
 // An uploaded scene that moves.
 struct Moving {
     explicit Moving(Scene posed, bool moves = true) : scene(std::move(posed)), package(scene, PlanOptions{}) {
-        data = makeSceneView(scene);
+        data = scene_view::makeSceneView(scene);
         data.moves = moves;
         if (!package.ok()) {
             return;
         }
+        scene_view::useLayoutOf(package.package(), scene, data);
         Result<std::unique_ptr<GpuScene>> uploaded =
             GpuScene::upload(sharedContext(), package.package(), data.view());
         EXPECT_TRUE(uploaded.ok()) << (uploaded ? "" : toString(uploaded.error()));
@@ -42,7 +44,7 @@ struct Moving {
 
     // Moves the uploaded scene to the current pose of `scene`.
     MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule) {
-        poseSceneView(scene, data);
+        scene_view::poseSceneView(scene, data);
         MotionView motion = data.motion();
         motion.builds = builds;
         const Status updated = gpuScene->updateAndWait(motion);
@@ -63,7 +65,7 @@ struct Moving {
         }
         FrameOptions frame;
         const Result<CameraView> camera =
-            sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
+            scene_view::sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
         frame.camera = *camera;
         Result<LinearImage> image = (*renderer)->render(frame, 2);
         EXPECT_TRUE(image.ok()) << (image ? "" : toString(image.error()));
@@ -73,7 +75,7 @@ struct Moving {
 
     Scene scene;
     LoadedScene package;
-    SceneViewData data;
+    scene_view::SceneViewData data;
     std::unique_ptr<GpuScene> gpuScene;
 };
 
@@ -254,8 +256,10 @@ TEST(Motion, OneJointIsATransform) {
             const float length = std::sqrt(1.0F + lean * lean);
             strip.normals[i] = {0.0F, lean / length, 1.0F / length};
         }
-        scene.materials.back().roughnessFactor = 0.2F;
-        scene.materials.back().anisotropy = {true, 0.8F, 0.0F};
+        scene.materials.back()["roughnessFactor"] = 0.2F;
+        scene.materials.back().give("KHR_materials_anisotropy");
+        scene.materials.back()["anisotropyStrength"] = 0.8F;
+        scene.materials.back()["anisotropyRotation"] = 0.0F;
         Matrix4 place = placed(0.2, -0.9, -2.5, 0.4);
         for (std::size_t row = 0; row < 3; ++row) {
             place[row] *= stretch;
@@ -323,14 +327,17 @@ Scene paintedScene() {
     Scene scene = rigidScene();
     const int painted = scene.meshes[1].primitives[0].material;
     Material& material = scene.materials[static_cast<std::size_t>(painted)];
-    material.clearcoat = {true, 0.0F, 0.1F, 1.0F};
+    material.give("KHR_materials_clearcoat");
+    material["clearcoatFactor"] = 0.0F;
+    material["clearcoatRoughnessFactor"] = 0.1F;
+    material["clearcoatNormalScale"] = 1.0F;
     AnimatedMaterial& animated = scene.animatedMaterials.emplace_back();
     animated.material = painted;
     animated.rest = material;
     Animation& animation = scene.animations.emplace_back();
     const auto drive = [&](const char* name, std::size_t width, std::vector<float> values) {
         animation.channels.push_back({0, AnimationPath::Material, static_cast<int>(animation.samplers.size()),
-                                      *findMaterialProperty(name)});
+                                      *findMaterialProperty(builtinMaterialModel(), name)});
         animation.samplers.push_back({Interpolation::Linear, {0.0F, 1.0F}, width, std::move(values)});
     };
     drive("extensions/KHR_materials_clearcoat/clearcoatFactor", 1, {0, 1});
@@ -344,7 +351,7 @@ Scene paintedScene() {
 Scene plainScene(Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     const int painted = scene.animatedMaterials[0].material;
-    scene.materials[static_cast<std::size_t>(painted)] = poseAt(scene, kFirst, time).materials[0];
+    scene.materials[static_cast<std::size_t>(painted)] = scene_view::poseAt(scene, kFirst, time).materials[0];
     scene.animatedMaterials.clear();
     scene.animations.clear();
     return scene;
@@ -395,7 +402,7 @@ TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
     // A node that is never shown is not uploaded.
     scene.nodes[1].shown = false;
     scene.nodes[1].canShow = false;
-    EXPECT_EQ(makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
+    EXPECT_EQ(scene_view::makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
 }
 
 // Placements of one node are drawn like nodes at the same places, with fewer calls. One of them is mirrored.

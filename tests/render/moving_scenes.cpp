@@ -1,8 +1,9 @@
 #include "render/moving_scenes.h"
 
-#include "motion/deform.h"
-#include "motion/pose.h"
 #include "render/scene_builder.h"
+#include "scene/deformed.h"
+
+#include <glint/scene_view/pose.h>
 
 #include <cmath>
 #include <cstddef>
@@ -14,9 +15,9 @@ namespace {
 
 Material coloured(Float3 color) {
     Material material;
-    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = 0.5F;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.5F;
     return material;
 }
 
@@ -97,8 +98,8 @@ Scene bakedScene(const Scene& scene) {
     Node& node = baked.nodes[1];
     Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
     const std::vector<Matrix4> joints =
-        node.skin >= 0 ? jointMatrices(scene, scene.skins[0]) : std::vector<Matrix4>();
-    const auto positions = deformedPositions(primitive, node.weights, joints);
+        node.skin >= 0 ? scene_view::jointMatrices(scene, scene.skins[0]) : std::vector<Matrix4>();
+    const auto positions = scene_view::deformedPositions(primitive, node.weights, joints);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         primitive.positions[i] = {static_cast<float>(positions[i][0]), static_cast<float>(positions[i][1]),
                                   static_cast<float>(positions[i][2])};

@@ -1,10 +1,10 @@
 // The data that an OrderKernel reads and writes on the device.
 #pragma once
 
-#include "context_state.h"
+#include "context/context_state.h"
+#include "context/resources.h"
 #include "interop/frame.h"
 #include "render/order_kernel.h"
-#include "resources.h"
 
 #include <cstdint>
 #include <memory>

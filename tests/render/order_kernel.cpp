@@ -1,12 +1,12 @@
 #include "render/order_kernel.h"
 
-#include "context_state.h"
+#include "context/context_state.h"
+#include "context/vulkan_error.h"
 #include "emit/compile_modules.h"
 #include "emit/modules.h"
-#include "shader_modules.h"
+#include "package/shader_modules.h"
+#include "renderer/tile_sort.h"
 #include "spirv/compiler.h"
-#include "tile_sort.h"
-#include "vulkan_error.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // Runs the ordering passes of a package over given hits: the product's modules, for any number of cases.
 #pragma once
 
-#include "commands.h"
+#include "context/commands.h"
+#include "context/timer.h"
 #include "emit/compile.h"
 #include "interop/frame.h"
-#include "timer.h"
 
 #include <glint/context.h>
 

@@ -1,9 +1,9 @@
 // The runs and timings of an OrderKernel.
-#include "context_state.h"
-#include "pass_dependencies.h"
+#include "context/context_state.h"
 #include "render/order_buffers.h"
 #include "render/order_kernel.h"
-#include "tile_sort.h"
+#include "renderer/pass_dependencies.h"
+#include "renderer/tile_sort.h"
 
 #include <algorithm>
 #include <utility>

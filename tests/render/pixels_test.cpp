@@ -1,6 +1,6 @@
 // Tests pictures whose pixels can be computed by hand: orientation, colour, reflection, facing, samples. Each
 // test holds for both strategies.
-#include "context_state.h"
+#include "context/context_state.h"
 #include "render/pixel_test.h"
 
 #include <cmath>
@@ -38,7 +38,7 @@ TEST_P(Pixels, TextureStandsUpright) {
     addCamera(scene);
     Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
     // The first row is red and green, the second blue and white.
-    material.texture(TextureSlot::BaseColor).texture =
+    material.texture("baseColorTexture").texture =
         addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
@@ -54,7 +54,7 @@ TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
-    TextureInfo& info = material.texture(TextureSlot::BaseColor);
+    TextureInfo& info = material.texture("baseColorTexture");
     info.texture = addTexture(scene, 2, 1, {128, 128, 128, 255, 0, 0, 0, 255});
     // The offset is half of the image, so the black texel comes first.
     info.transform.offset = {0.5F, 0.0F};
@@ -176,7 +176,7 @@ TEST_P(Pixels, SplittingAMeshChangesNothing) {
     Scene scene = emptyScene();
     addCamera(scene);
     Material textured = unlitMaterial({1.0F, 1.0F, 1.0F});
-    textured.texture(TextureSlot::BaseColor).texture =
+    textured.texture("baseColorTexture").texture =
         addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
     const int picture = addMaterial(scene, textured);
     Mesh mesh;

@@ -1,12 +1,12 @@
 // Tests ray tracing pipelines: every strategy gives the same picture with every tracer, and so does a device
 // without ray queries.
-#include "cli/scene_view.h"
-#include "context_state.h"
-#include "gpu_scene_state.h"
+#include "context/context_state.h"
 #include "render/hall.h"
 #include "render/pixel_test.h"
+#include "scene/gpu_scene_state.h"
 
 #include <glint/package_modules.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <optional>
 #include <string>
@@ -238,7 +238,7 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = hallSetup(scene);
     const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);
-    const SceneViewData view = makeSceneView(scene);
+    const scene_view::SceneViewData view = scene_view::makeSceneView(scene);
     auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
     ASSERT_TRUE(uploaded) << toString(uploaded.error());
     for (const Way& way : allWays()) {

@@ -11,15 +11,15 @@ namespace {
 
 Material painted(Float3 color, float roughness) {
     Material material;
-    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = roughness;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = roughness;
     return material;
 }
 
 Material metal(Float3 color, float roughness) {
     Material material = painted(color, roughness);
-    material.metallicFactor = 1.0F;
+    material["metallicFactor"] = 1.0F;
     return material;
 }
 
@@ -68,25 +68,25 @@ Scene roomOfMaterials() {
     addWall(scene, metal({0.9F, 0.9F, 0.9F}, 0.25F), {-5, -1, 0}, {10, 0, 0}, {0, 0, -5});
 
     Material textured = painted({1, 1, 1}, 0.8F);
-    textured.texture(TextureSlot::BaseColor).texture = checkers(scene, 8, 255);
+    textured.texture("baseColorTexture").texture = checkers(scene, 8, 255);
     addStrip(scene, textured, 0);
     Material coated = painted({0.7F, 0.05F, 0.05F}, 0.6F);
-    coated.clearcoat.factor = 1.0F;
-    coated.clearcoat.roughnessFactor = 0.1F;
+    coated["clearcoatFactor"] = 1.0F;
+    coated["clearcoatRoughnessFactor"] = 0.1F;
     addStrip(scene, coated, 1);
     Material cloth = painted({0.2F, 0.2F, 0.5F}, 0.9F);
-    cloth.sheen.colorFactor = {0.8F, 0.6F, 0.4F};
-    cloth.sheen.roughnessFactor = 0.4F;
+    cloth["sheenColorFactor"] = {0.8F, 0.6F, 0.4F};
+    cloth["sheenRoughnessFactor"] = 0.4F;
     addStrip(scene, cloth, 2);
     addStrip(scene, unlitMaterial({0.1F, 0.8F, 0.3F}), 3);
     Material brushed = metal({0.9F, 0.7F, 0.4F}, 0.4F);
-    brushed.anisotropy.strength = 0.8F;
+    brushed["anisotropyStrength"] = 0.8F;
     addStrip(scene, brushed, 4);
     Material film = metal({0.5F, 0.5F, 0.5F}, 0.3F);
-    film.iridescence.factor = 1.0F;
+    film["iridescenceFactor"] = 1.0F;
     addStrip(scene, film, 5);
     Material lamp = painted({0, 0, 0}, 1.0F);
-    lamp.emissiveFactor = {2.0F, 1.5F, 0.5F};
+    lamp["emissiveFactor"] = {2.0F, 1.5F, 0.5F};
     addStrip(scene, lamp, 6);
     addStrip(scene, mirrorMaterial(), 7);
 
@@ -104,14 +104,14 @@ Scene roomWithFence() {
     Material fence = painted({0.9F, 0.8F, 0.3F}, 0.4F);
     fence.alphaMode = AlphaMode::Mask;
     fence.doubleSided = true;
-    fence.texture(TextureSlot::BaseColor).texture = checkers(scene, 8, 0);
+    fence.texture("baseColorTexture").texture = checkers(scene, 8, 0);
     addWall(scene, fence, {-1.5F, -1, -2}, {1.6F, 0, 0.4F}, {0, 1.8F, 0});
     const int post = addMesh(scene, makeQuad(addMaterial(scene, metal({0.9F, 0.4F, 0.3F}, 0.3F)),
                                              {0.6F, -1, -2.5F}, {0.8F, 0, 0.3F}, {0, 1.5F, 0}));
     addInstance(scene, post);
     addInstance(scene, post, scaling(-1, 1, 1.2));
     Material glass = painted({0.9F, 1.0F, 0.95F}, 0.1F);
-    glass.transmission.factor = 0.8F;
+    glass["transmissionFactor"] = 0.8F;
     glass.doubleSided = true;
     addWall(scene, glass, {1.2F, -1, -1.5F}, {0.8F, 0, -1.2F}, {0, 1.8F, 0});
     addLamp(scene, {0.2F, 1.5F, -1.0F}, {1, 1, 1}, 6.0F);

@@ -32,14 +32,14 @@ int addMaterial(Scene& scene, const Material& material) {
 
 Material unlitMaterial(Float3 color) {
     Material material;
-    material.unlit = true;
-    material.baseColorFactor = {color[0], color[1], color[2], 1.0F};
+    material.give("KHR_materials_unlit");
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
     return material;
 }
 
 Material mirrorMaterial() {
     Material material;
-    material.roughnessFactor = 0.0F;
+    material["roughnessFactor"] = 0.0F;
     return material;
 }
 

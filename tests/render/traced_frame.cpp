@@ -1,8 +1,8 @@
 #include "render/traced_frame.h"
 
-#include "commands.h"
-#include "renderer_state.h"
-#include "resources.h"
+#include "context/commands.h"
+#include "context/resources.h"
+#include "renderer/renderer_state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Tests the order of triangles and instances in acceleration structures: pictures do not depend on it, and
 // the device uses it.
-#include "context_state.h"
-#include "leaf_order.h"
+#include "context/context_state.h"
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
+#include "scene/leaf_order.h"
 #include "support/halved_tree.h"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ Scene stripes(bool shuffled) {
         addTexture(scene, 2, 2, {255, 90, 90, 255, 90, 255, 90, 0, 90, 90, 255, 0, 255, 255, 90, 255});
     Material masked = mirrorMaterial();
     masked.alphaMode = AlphaMode::Mask;
-    masked.texture(TextureSlot::BaseColor).texture = texture;
+    masked.texture("baseColorTexture").texture = texture;
     const int mask = addMaterial(scene, masked);
     Mesh& mesh = scene.meshes.emplace_back();
     mesh.primitives = {hills(mirror, 0), hills(mask, 1)};
@@ -96,7 +96,8 @@ LinearImage render(const Scene& scene, TraversalOrder order) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
-    const LoadedScene loaded(scene, settings, [&](SceneViewData& data) { data.traversalOrder = order; });
+    const LoadedScene loaded(scene, settings,
+                             [&](scene_view::SceneViewData& data) { data.traversalOrder = order; });
     if (!loaded.ok()) {
         return {};
     }
@@ -122,8 +123,9 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     addCamera(scene);
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    const LoadedScene loaded(scene, settings,
-                             [](SceneViewData& data) { data.traversalOrder = TraversalOrder::Halving; });
+    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {
+        data.traversalOrder = TraversalOrder::Halving;
+    });
     ASSERT_TRUE(loaded.ok());
     const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "hit_numbers.comp");
     ASSERT_TRUE(kernel.ok()) << toString(kernel.error());

@@ -2,7 +2,7 @@
 // shows without a device how good an order is.
 #pragma once
 
-#include "leaf_order.h"
+#include "scene/leaf_order.h"
 
 #include <cstdint>
 #include <span>

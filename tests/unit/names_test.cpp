@@ -26,7 +26,15 @@ std::string definedType(std::string_view line) {
     return {};
 }
 
-// Returns where the headers below `folder` define each type.
+// Returns the namespace that a line opens, or an empty text.
+std::string openedNamespace(std::string_view line) {
+    constexpr std::string_view kKeyword = "namespace ";
+    return line.starts_with(kKeyword) && line.ends_with(" {")
+               ? std::string(line.substr(kKeyword.size(), line.size() - kKeyword.size() - 2))
+               : std::string();
+}
+
+// Returns where the headers below `folder` define each type of each namespace.
 std::map<std::string, std::string> typesBelow(const fs::path& folder) {
     std::map<std::string, std::string> types;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -34,9 +42,13 @@ std::map<std::string, std::string> typesBelow(const fs::path& folder) {
             continue;
         }
         std::ifstream file(entry.path());
+        std::string scope;
         for (std::string line; std::getline(file, line);) {
+            if (const std::string opened = openedNamespace(line); !opened.empty()) {
+                scope = opened;
+            }
             if (const std::string name = definedType(line); !name.empty()) {
-                const auto [other, isNew] = types.emplace(name, entry.path().string());
+                const auto [other, isNew] = types.emplace(scope + "::" + name, entry.path().string());
                 EXPECT_TRUE(isNew) << name << " stands in " << entry.path() << " and " << other->second;
             }
         }
@@ -47,8 +59,8 @@ std::map<std::string, std::string> typesBelow(const fs::path& folder) {
 TEST(Names, ToolAndRuntimeShareNoType) {
     const std::map<std::string, std::string> runtime = typesBelow(GLINT_SOURCE_DIR "/runtime");
     const std::map<std::string, std::string> tool = typesBelow(GLINT_SOURCE_DIR "/tool");
-    ASSERT_TRUE(runtime.contains("DeviceImage"));
-    ASSERT_TRUE(tool.contains("Scene"));
+    ASSERT_TRUE(runtime.contains("glint::DeviceImage"));
+    ASSERT_TRUE(tool.contains("glint::Scene"));
     for (const auto& [name, path] : tool) {
         const auto same = runtime.find(name);
         EXPECT_TRUE(same == runtime.end()) << name << " stands in " << path << " and " << same->second;

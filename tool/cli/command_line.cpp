@@ -1,10 +1,9 @@
 #include "cli/command_line.h"
 
 #include "cli/commands.h"
-#include "cli/diagnostics_options.h"
-#include "cli/help_formatter.h"
-#include "cli/settings_file.h"
-#include "cli/slips.h"
+#include "cli/options/diagnostics_options.h"
+#include "cli/options/settings_option.h"
+#include "cli/options/usage.h"
 #include "gltf/basisu.h"
 
 #include <CLI/CLI.hpp>
@@ -38,8 +37,9 @@ void describe(CLI::App& app) {
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"
         "Results go to stdout, diagnostics and progress to stderr.\n"
-        "Environment: NO_COLOR turns colour off; TMPDIR names the folder of temporary files,\nGLINT_CACHE "
-        "the one that keeps compiled shaders (see glint compile --help).\n"
+        "Environment: NO_COLOR turns colour off; GLINT_CACHE names the folder that keeps\ncompiled shaders "
+        "(see "
+        "glint compile --help).\n"
         "Run glint COMMAND --help for the options of a command.");
     app.get_formatter()->label("SUBCOMMAND", "COMMAND");
     app.get_formatter()->label("REQUIRED", "(required)");

@@ -1,7 +1,7 @@
 // The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
 #pragma once
 
-#include "cli/options.h"
+#include "cli/options/options.h"
 
 #include <CLI/CLI.hpp>
 

@@ -5,22 +5,22 @@
 #include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile_arguments.h"
-#include "cli/compile_cache.h"
-#include "cli/compile_outputs.h"
-#include "cli/compile_plan.h"
-#include "cli/compile_strategy.h"
-#include "cli/compile_summary.h"
-#include "cli/depfile.h"
-#include "cli/lock_option.h"
-#include "cli/module_report.h"
-#include "cli/ninja_file.h"
-#include "cli/plan_choice.h"
-#include "cli/read_scenes.h"
+#include "cli/compile/arguments.h"
+#include "cli/compile/cache.h"
+#include "cli/compile/depfile.h"
+#include "cli/compile/ninja_plan.h"
+#include "cli/compile/outputs.h"
+#include "cli/compile/summary.h"
+#include "cli/options/lock_option.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/effects.h"
 #include "emit/embed_source.h"
 #include "emit/json.h"
+#include "gltf/import.h"
+
+#include <glint/measure/profile.h>
+#include <glint/measure/strategy_advice.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -156,6 +156,75 @@ CompileSummary summaryOf(const Outcome& outcome) {
     return {toJson(outcome), fieldsOf(outcome), droppedText(outcome.plan), modules};
 }
 
+// Reads each file with `options`. A variant is used in the scenes that have it. Has the errors of
+// importScene(); "variant-unknown" only if no scene has the variant.
+Result<std::vector<Scene>> readScenes(std::span<const std::string> files, const ImportOptions& options) {
+    std::vector<Scene> scenes;
+    bool hasVariant = options.variant.empty();
+    std::optional<Diagnostic> missing;
+    for (const std::string& file : files) {
+        Result<Scene> scene = importScene(file, options);
+        if (!scene && scene.error().id == "variant-unknown") {
+            missing = missing ? missing : scene.error();
+            ImportOptions defaults = options;
+            defaults.variant.clear();
+            scene = importScene(file, defaults);
+        } else {
+            hasVariant = true;
+        }
+        if (!scene) {
+            return scene.error();
+        }
+        scenes.push_back(std::move(*scene));
+    }
+    if (!hasVariant) {
+        return *missing;
+    }
+    return scenes;
+}
+
+// Returns the warnings of all scenes.
+std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes) {
+    std::vector<Diagnostic> warnings;
+    for (const Scene& scene : scenes) {
+        warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
+    }
+    return warnings;
+}
+
+// Replaces "auto" among the strategies by the one that should be fastest for a frame of 1920 x 1080 of each
+// scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the choice is
+// hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
+// adviseStrategy(). `known` is the plan with these options, or null if it has not been made.
+Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const Plan* known,
+                        CompileArguments& arguments) {
+    std::vector<std::string>& names = arguments.tracing.strategies;
+    const auto automatic = std::ranges::find(names, measure::kAutoStrategy);
+    if (automatic == names.end()) {
+        return okStatus();
+    }
+    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.calibration, false);
+    if (!costs) {
+        return costs.error();
+    }
+    FrameShape shape;
+    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects;
+    shape.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);
+    const Plan made = known != nullptr ? Plan() : makePlan(scenes.materials(), scenes.primitives(), plan);
+    Result<StrategyAdvice> advice = measure::adviseStrategy(
+        *costs, measure::roundsOf(scenes, known != nullptr ? *known : made, plan, shape),
+        measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
+    if (!advice) {
+        return advice.error();
+    }
+    *automatic = advice->choice.strategy;
+    if (measure::strategyNamed(advice->choice.strategy) == package::kStrategyHitShaders) {
+        names.emplace_back(package::nameOf(package::kStrategyUber));
+    }
+    arguments.tracing.advice = std::move(*advice);
+    return okStatus();
+}
+
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
 int planOnly(const Console& console, const CompileArguments& arguments, std::span<const Scene> scenes,
              const PlanOptions& options, const LockChoice& lock, std::span<const std::string> dependencies,
@@ -248,7 +317,7 @@ int compile(const Console& console, const CompileArguments& given) {
         return fail(console, scenes.error());
     }
     const SceneList list(*scenes);
-    Result<PlanChoice> plan = choosePlan(arguments.plan, list);
+    Result<measure::PlanChoice> plan = measure::choosePlan(arguments.plan, list);
     if (!plan) {
         return fail(console, plan.error());
     }
@@ -261,7 +330,9 @@ int compile(const Console& console, const CompileArguments& given) {
     }
     report(lock->warnings);
     report(lock->notes);
-    if (Status settled = settleStrategies(list, plan->options, arguments); !settled) {
+    if (Status settled =
+            settleStrategies(list, plan->options, lock->plan ? &*lock->plan : nullptr, arguments);
+        !settled) {
         return fail(console, settled.error());
     }
     if (const std::optional<StrategyAdvice>& advice = arguments.tracing.advice) {
@@ -272,7 +343,8 @@ int compile(const Console& console, const CompileArguments& given) {
         return kExitFailed;
     }
     if (arguments.dryRun) {
-        const Plan made = makePlan(list.materials(), list.primitives(), plan->options);
+        const Plan made =
+            lock->plan ? *lock->plan : makePlan(list.materials(), list.primitives(), plan->options);
         return dryRun(console, Outcome{arguments, list, made}, plan->options, start);
     }
     // The files of scenes come first, each in the state in which it was read.

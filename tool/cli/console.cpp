@@ -118,12 +118,6 @@ void Console::report(const Diagnostic& diagnostic) const {
     state_->reported.push_back(std::move(judged));
 }
 
-void Console::report(std::span<const Diagnostic> diagnostics) const {
-    for (const Diagnostic& diagnostic : diagnostics) {
-        report(diagnostic);
-    }
-}
-
 bool Console::refused() const {
     return state_->refused;
 }

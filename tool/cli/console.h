@@ -1,6 +1,7 @@
 // The output of the command: results go to stdout, diagnostics and progress to stderr.
 #pragma once
 
+#include <glint/measure/observer.h>
 #include <glint/result.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -36,10 +36,10 @@ struct ConsoleOptions {
 };
 
 // Its functions are const because they change nothing that affects a command's decisions.
-class Console {
+class Console : public measure::Observer {
 public:
     explicit Console(ConsoleOptions options = {});
-    ~Console();
+    ~Console() override;
     Console(const Console&) = delete;
     Console& operator=(const Console&) = delete;
 
@@ -51,15 +51,15 @@ public:
     void print(std::string_view text) const;
     // Stores a result as an object. finish() writes it together with the diagnostics.
     void result(const nlohmann::ordered_json& object) const;
-    void report(const Diagnostic& diagnostic) const;
-    void report(std::span<const Diagnostic> diagnostics) const;
+    using Observer::report;
+    void report(const Diagnostic& diagnostic) const override;
     // Returns whether a warning was reported that counts as an error.
     bool refused() const;
     // Shows the current activity in a line that the next message replaces; with --verbose the line stays.
     // Silent unless stderr is a terminal, or with --verbose. An empty text clears the line.
-    void progress(std::string_view text) const;
+    void progress(std::string_view text) const override;
     // Reports what was read, decided or made; only with --verbose.
-    void detail(std::string_view text) const;
+    void detail(std::string_view text) const override;
     // Writes the JSON and all buffered text. Error "output" if stdout can't take it, for instance on a full
     // disk.
     Status finish() const;

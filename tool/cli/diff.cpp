@@ -1,14 +1,260 @@
 // glint diff: shows the differences between two packages.
+#include "inspect/diff.h"
+
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/diff_compare.h"
-#include "cli/diff_report.h"
+#include "cli/report.h"
+#include "cli/table.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
 
 namespace glint {
 
 namespace {
+
+struct DiffSides {
+    std::string nameBefore;  // folders, as given
+    std::string nameAfter;
+    const inspect::DiffPackage& before;
+    const inspect::DiffPackage& after;
+};
+
+using Rows = std::vector<std::vector<std::string>>;
+
+// A scene may have a hundred thousand materials, and nobody reads more than a page of them.
+constexpr std::size_t kMaxMaterials = 40;
+
+std::string_view nameOf(inspect::ShaderChangeKind kind) {
+    constexpr std::string_view kNames[] = {"added", "removed", "moved", "renamed",
+                                           "keys",  "merged",  "split", "regrouped"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string_view changeOf(bool before, bool after) {
+    return before && after ? "changed" : after ? "added" : "removed";
+}
+
+// Names the ordering, or the tracer, of a module that exists several times.
+std::string orderingLabel(const package::ModuleKey& key) {
+    const bool ordered = package::findRole(key.role)->repeated == package::Repeated::ByOrdering;
+    return ordered ? std::string(package::nameOf(static_cast<package::Ordering>(key.index))) : std::string();
+}
+
+std::string tracerLabel(const package::ModuleKey& key) {
+    return key.tracer != 0 ? std::string(package::nameOf(static_cast<package::Tracer>(key.tracer)))
+                           : std::string();
+}
+
+// "1 Pbr"; empty beyond the end of the list.
+std::string shaderAt(const std::vector<int>& ids, std::size_t place, const inspect::DiffPackage& package,
+                     Detail detail) {
+    return place < ids.size() ? shaderTitle(static_cast<std::uint64_t>(ids[place]),
+                                            package.cases.at(ids[place]).name, detail)
+                              : std::string();
+}
+
+// Returns "+1: normals" for one key, "+3" for several.
+std::string keyCount(char sign, const std::vector<std::vector<std::string>>& keys) {
+    if (keys.empty()) {
+        return {};
+    }
+    const std::string one =
+        keys.front().empty() ? std::string("no features") : fmt::format("{}", fmt::join(keys.front(), " "));
+    return keys.size() == 1 ? fmt::format("{}1: {}", sign, one) : fmt::format("{}{}", sign, keys.size());
+}
+
+std::string keyChanges(const inspect::ShaderChange& change) {
+    const std::string added = keyCount('+', change.keysAdded);
+    const std::string removed = keyCount('-', change.keysRemoved);
+    return added + (added.empty() || removed.empty() ? "" : ", ") + removed;
+}
+
+std::string moduleName(const inspect::ModuleChange& change) {
+    std::string name(package::roleName(change.key.role));
+    const auto id = [](const std::optional<int>& value) {
+        return value ? fmt::format("{}", *value) : std::string("-");
+    };
+    if (change.idBefore || change.idAfter) {
+        const bool moved = change.idBefore && change.idAfter && change.idBefore != change.idAfter;
+        name += moved ? fmt::format(" {} -> {}", id(change.idBefore), id(change.idAfter))
+                      : fmt::format(" {}", id(change.idBefore ? change.idBefore : change.idAfter));
+    }
+    for (const std::string& word : {orderingLabel(change.key), tracerLabel(change.key)}) {
+        name += word.empty() ? std::string() : fmt::format(" {}", word);
+    }
+    return name;
+}
+
+// Returns "12 -> 14", or "12" if the value is the same.
+std::string step(std::uint64_t before, std::uint64_t after) {
+    return before == after ? fmt::format("{}", before) : fmt::format("{} -> {}", before, after);
+}
+
+std::string settingTable(const inspect::PackageDiff& diff, const DiffSides& sides) {
+    Rows rows{{"setting", sides.nameBefore, sides.nameAfter}};
+    for (const inspect::SettingChange& change : diff.settings) {
+        rows.push_back({change.name, change.before, change.after});
+    }
+    return rows.size() > 1 ? formatTable(rows) + "\n" : std::string();
+}
+
+std::string shaderTable(const inspect::PackageDiff& diff, const DiffSides& sides, Detail detail) {
+    Rows rows{{"shaders", "before", "after", "keys"}};
+    for (const inspect::ShaderChange& change : diff.shaders) {
+        const std::size_t count = std::max(change.before.size(), change.after.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            rows.push_back({i == 0 ? std::string(nameOf(change.kind)) : "",
+                            shaderAt(change.before, i, sides.before, detail),
+                            shaderAt(change.after, i, sides.after, detail),
+                            i == 0 ? keyChanges(change) : ""});
+        }
+    }
+    // Not as a table of numbers, though cells begin with IDs.
+    return rows.size() > 1 ? formatFields(rows, detail) + "\n" : std::string();
+}
+
+std::string moduleTable(const inspect::PackageDiff& diff) {
+    Rows rows{{"code", "module", "bytes", "instructions", "fetches"}};
+    for (const inspect::ModuleChange& change : diff.modules) {
+        const SpirvStatistics before =
+            change.before != nullptr ? change.before->statistics : SpirvStatistics{};
+        const SpirvStatistics after = change.after != nullptr ? change.after->statistics : SpirvStatistics{};
+        rows.push_back({std::string(changeOf(change.before != nullptr, change.after != nullptr)),
+                        moduleName(change), step(before.bytes, after.bytes),
+                        step(before.instructions, after.instructions),
+                        step(before.textureFetches, after.textureFetches)});
+    }
+    return rows.size() > 1 ? formatTable(rows) + "\n" : std::string();
+}
+
+std::string materialName(const inspect::DiffMaterial& material) {
+    std::string name = material.scene.empty() ? "" : material.scene + ": ";
+    name += material.name.empty() ? "(no name)" : material.name;
+    return name + (material.sameNamed > 0 ? fmt::format(" #{}", material.sameNamed + 1) : std::string());
+}
+
+std::string materialTable(const inspect::PackageDiff& diff) {
+    Rows rows{{"materials", "name", "shaders"}};
+    const auto ids = [](const std::vector<int>& list) {
+        return list.empty() ? std::string("-") : fmt::format("{}", fmt::join(list, ", "));
+    };
+    const std::size_t shown = std::min(diff.materials.size(), kMaxMaterials);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const inspect::MaterialChange& change = diff.materials[i];
+        rows.push_back({std::string(changeOf(!change.before.empty(), !change.after.empty())),
+                        materialName(change.material),
+                        fmt::format("{} -> {}", ids(change.before), ids(change.after))});
+    }
+    if (rows.size() == 1) {
+        return {};
+    }
+    const std::size_t more = diff.materials.size() - shown;
+    return formatFields(rows) + (more > 0 ? fmt::format("and {} more, which --json lists\n", more) : "") +
+           "\n";
+}
+
+std::string totalTable(const inspect::PackageDiff& diff) {
+    Rows rows{{"total", "before", "after", "change"}};
+    for (const inspect::TotalChange& change : diff.totals) {
+        const bool grows = change.after > change.before;
+        rows.push_back({change.name, fmt::format("{}", change.before), fmt::format("{}", change.after),
+                        fmt::format("{}{}", grows ? "+" : "-",
+                                    grows ? change.after - change.before : change.before - change.after)});
+    }
+    return rows.size() > 1 ? formatTable(rows) + "\n" : std::string();
+}
+
+Json idsToJson(const std::vector<int>& ids, const inspect::DiffPackage& package) {
+    Json list = Json::array();
+    for (const int id : ids) {
+        const inspect::DiffCase& shader = package.cases.at(id);
+        list.push_back(Json{{"id", id}, {"name", shader.name}, {"keys", shader.keys.size()}});
+    }
+    return list;
+}
+
+Json moduleToJson(const inspect::DiffModule* module, std::optional<int> shaderId) {
+    if (module == nullptr) {
+        return nullptr;
+    }
+    return {{"shaderId", shaderId ? Json(*shaderId) : Json(nullptr)},
+            {"file", module->file},
+            {"bytes", module->statistics.bytes},
+            {"instructions", module->statistics.instructions},
+            {"textureFetches", module->statistics.textureFetches},
+            {"rayQueries", module->statistics.rayQueries},
+            {"branches", module->statistics.branches}};
+}
+
+Json modulesToJson(const inspect::PackageDiff& diff) {
+    Json list = Json::array();
+    for (const inspect::ModuleChange& change : diff.modules) {
+        list.push_back(Json{{"change", changeOf(change.before != nullptr, change.after != nullptr)},
+                            {"role", std::string(package::roleName(change.key.role))},
+                            {"ordering", textOrNull(orderingLabel(change.key))},
+                            {"tracer", textOrNull(tracerLabel(change.key))},
+                            {"before", moduleToJson(change.before, change.idBefore)},
+                            {"after", moduleToJson(change.after, change.idAfter)}});
+    }
+    return list;
+}
+
+Json materialsToJson(const inspect::PackageDiff& diff) {
+    Json list = Json::array();
+    for (const inspect::MaterialChange& change : diff.materials) {
+        list.push_back(Json{{"change", changeOf(!change.before.empty(), !change.after.empty())},
+                            {"scene", textOrNull(change.material.scene)},
+                            {"name", change.material.name},
+                            {"sameNamed", change.material.sameNamed},
+                            {"before", change.before},
+                            {"after", change.after}});
+    }
+    return list;
+}
+
+std::string diffText(const inspect::PackageDiff& diff, const DiffSides& sides, Detail detail) {
+    std::string text = settingTable(diff, sides) + shaderTable(diff, sides, detail) + moduleTable(diff) +
+                       materialTable(diff) + totalTable(diff);
+    if (diff.tablesDiffer) {
+        text += "tables.bin differs\n";
+    }
+    return text + fmt::format("the same: {} shaders, {} modules, {} materials\n", diff.sameShaders,
+                              diff.sameModules, diff.sameMaterials);
+}
+
+Json diffJson(const inspect::PackageDiff& diff, const DiffSides& sides) {
+    Json settings = Json::array();
+    for (const inspect::SettingChange& change : diff.settings) {
+        settings.push_back(Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
+    }
+    Json shaders = Json::array();
+    for (const inspect::ShaderChange& change : diff.shaders) {
+        shaders.push_back(Json{{"change", nameOf(change.kind)},
+                               {"before", idsToJson(change.before, sides.before)},
+                               {"after", idsToJson(change.after, sides.after)},
+                               {"keysAdded", change.keysAdded},
+                               {"keysRemoved", change.keysRemoved}});
+    }
+    Json totals = Json::array();
+    for (const inspect::TotalChange& change : diff.totals) {
+        totals.push_back(Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
+    }
+    return {
+        {"a", sides.nameBefore},
+        {"b", sides.nameAfter},
+        {"differ", !diff.isEmpty()},
+        {"settings", settings},
+        {"shaders", shaders},
+        {"modules", modulesToJson(diff)},
+        {"materials", materialsToJson(diff)},
+        {"totals", totals},
+        {"tablesDiffer", diff.tablesDiffer},
+        {"same",
+         {{"shaders", diff.sameShaders}, {"modules", diff.sameModules}, {"materials", diff.sameMaterials}}}};
+}
 
 struct DiffArguments {
     std::string before;
@@ -17,17 +263,17 @@ struct DiffArguments {
 };
 
 int diff(const Console& console, const DiffArguments& arguments) {
-    const Result<DiffPackage> before = readDiffPackage(arguments.before);
+    const Result<inspect::DiffPackage> before = inspect::readDiffPackage(arguments.before);
     if (!before) {
         console.report(before.error());
         return kExitFailed;
     }
-    const Result<DiffPackage> after = readDiffPackage(arguments.after);
+    const Result<inspect::DiffPackage> after = inspect::readDiffPackage(arguments.after);
     if (!after) {
         console.report(after.error());
         return kExitFailed;
     }
-    const PackageDiff difference = comparePackages(*before, *after);
+    const inspect::PackageDiff difference = inspect::comparePackages(*before, *after);
     const DiffSides sides{arguments.before, arguments.after, *before, *after};
     if (console.isJson()) {
         console.result(diffJson(difference, sides));

@@ -2,17 +2,18 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/effect_options.h"
-#include "cli/explain_motion.h"
-#include "cli/explain_plan.h"
-#include "cli/explain_strategies.h"
-#include "cli/lock_option.h"
-#include "cli/plan_choice.h"
+#include "cli/explain/motion_text.h"
+#include "cli/explain/plan_text.h"
+#include "cli/options/effect_options.h"
+#include "cli/options/lock_option.h"
+#include "cli/options/tracing_options.h"
 #include "cli/report.h"
-#include "cli/strategy_advice.h"
 #include "cli/table.h"
 #include "emit/json.h"
 #include "gltf/import.h"
+
+#include <glint/measure/profile.h>
+#include <glint/measure/strategy_advice.h>
 
 #include <fmt/format.h>
 
@@ -30,10 +31,10 @@ namespace {
 struct ExplainArguments {
     std::string scene;
     std::string material;
-    ReadingArguments reading;
+    measure::ReadingSettings reading;
     std::string calibration;
     bool wholePlan = false;
-    PlanArguments plan;
+    measure::PlanSettings plan;
     LockArguments lock;
 };
 
@@ -229,11 +230,13 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
 }
 
 // Advises for a frame of the usual size, with the effects that the scene calls for.
-Result<StrategyAdvice> advise(const KnownCosts& costs, const Planned& planned, const EffectPlan& effects) {
+Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
+                              const EffectPlan& effects) {
     FrameShape shape;
     shape.effects = effects.effects;
-    return adviseStrategy(costs, roundsOf(planned.scenes, planned.plan, planned.options, shape),
-                          runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
+    return measure::adviseStrategy(
+        costs, measure::roundsOf(planned.scenes, planned.plan, planned.options, shape),
+        measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
@@ -246,7 +249,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const Result<KnownCosts> costs = knownCosts(arguments.calibration, false);
+    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.calibration, false);
     if (!costs) {
         console.report(costs.error());
         return kExitFailed;
@@ -257,7 +260,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(materials.error());
         return kExitFailed;
     }
-    Result<PlanChoice> choice = choosePlan(arguments.plan, scenes);
+    Result<measure::PlanChoice> choice = measure::choosePlan(arguments.plan, scenes);
     if (!choice) {
         console.report(choice.error());
         return kExitFailed;
@@ -272,7 +275,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     console.report(lock->warnings);
     console.report(lock->notes);
     Planned planned{scenes, std::move(choice->options), {}};
-    planned.plan = makePlan(scenes.materials(), scenes.primitives(), planned.options);
+    planned.plan =
+        lock->plan ? *lock->plan : makePlan(scenes.materials(), scenes.primitives(), planned.options);
     if (const std::optional<std::string> excess = describeExcess(planned.plan, planned.options)) {
         console.report(makeWarning("max-shaders", scene->path, *excess));
     }

@@ -1,20 +1,255 @@
 // glint inspect: shows the contents of a package.
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/inspect_package.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "emit/json.h"
+#include "inspect/package.h"
 
+#include <fmt/format.h>
+
+#include <bit>
 #include <memory>
 
 namespace glint {
 
 namespace {
 
+Json describe(const inspect::InspectedPackage& inspected, const inspect::InspectedModule& module) {
+    const package::RoleInfo& info = *package::findRole(module.entry->role);
+    const bool isCase = info.repeated == package::Repeated::ByCase;
+    return {{"role", std::string(info.name)},
+            {"shaderId", isCase ? Json(module.entry->index) : Json(nullptr)},
+            {"tracer", textOrNull(tracerName(module.key()))},
+            {"ordering", textOrNull(orderingName(module.key()))},
+            {"file", inspected.file(module)}};
+}
+
+Json modulesToJson(const inspect::InspectedPackage& inspected) {
+    Json list = Json::array();
+    for (const inspect::InspectedModule& module : inspected.modules) {
+        Json entry = describe(inspected, module);
+        entry.update(statisticsToJson(module.statistics));
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
+    Json stages = Json::object();
+    for (const inspect::InspectedModule* module : inspected.modulesOf(shaderId)) {
+        Json entry{{"file", inspected.file(*module)}};
+        entry.update(statisticsToJson(module->statistics));
+        stages[std::string(stageName(module->key()))] = std::move(entry);
+    }
+    return stages;
+}
+
+Json shadersToJson(const inspect::InspectedPackage& inspected) {
+    Json list = Json::array();
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : inspected.package.cases()) {
+        Json materials = Json::array();
+        const auto found = inspected.materials.find(id);
+        if (found != inspected.materials.end()) {
+            for (const inspect::MaterialPlace& material : found->second) {
+                materials.push_back(Json{{"scene", material.first},
+                                         {"index", material.second},
+                                         {"name", inspected.materialName(material)}});
+            }
+        }
+        list.push_back(Json{{"id", id},
+                            {"name", std::string(inspected.package.string(shader.name))},
+                            {"always", featuresToJson(shader.always)},
+                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"keys", shader.keyCount},
+                            {"materials", materials},
+                            {"stages", stagesOf(inspected, id)}});
+        ++id;
+    }
+    return list;
+}
+
+Json scenesToJson(const inspect::InspectedPackage& inspected) {
+    Json list = Json::array();
+    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
+        const PackageScene scene = inspected.package.scene(i);
+        list.push_back(Json{{"name", std::string(scene.name)},
+                            {"variant", textOrNull(inspected.variantOf(i))},
+                            {"materials", scene.materials.size()},
+                            {"primitives", scene.primitives.size()},
+                            {"textures", scene.textures.size()},
+                            {"samplers", scene.samplers.size()}});
+    }
+    return list;
+}
+
+std::string skyOf(const Package& package) {
+    return package.environmentMap() ? "map" : "gradient";
+}
+
+std::string sceneTable(const inspect::InspectedPackage& inspected) {
+    std::vector<std::vector<std::string>> rows{
+        {"scene", "variant", "materials", "primitives", "textures", "samplers"}};
+    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
+        const PackageScene scene = inspected.package.scene(i);
+        const std::string variant = inspected.variantOf(i);
+        rows.push_back({std::string(scene.name), variant.empty() ? "-" : variant,
+                        fmt::format("{}", scene.materials.size()), fmt::format("{}", scene.primitives.size()),
+                        fmt::format("{}", scene.textures.size()), fmt::format("{}", scene.samplers.size())});
+    }
+    return formatTable(rows);
+}
+
+// Returns the first few names, and how many more there are.
+std::string materialsText(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
+    constexpr std::size_t kShown = 3;
+    const auto found = inspected.materials.find(shaderId);
+    if (found == inspected.materials.end()) {
+        return "-";
+    }
+    std::vector<std::string> names;
+    for (const inspect::MaterialPlace& material : found->second) {
+        if (names.size() < kShown) {
+            names.push_back(inspected.materialName(material));
+        }
+    }
+    const std::size_t more = found->second.size() - names.size();
+    return join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
+}
+
+// Features that a shader has; their names where there is room for them.
+std::string featuresText(FeatureMask mask, Detail detail) {
+    return detail == Detail::Whole ? featureList(mask) : fmt::format("{}", std::popcount(mask));
+}
+
+std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detail) {
+    std::vector<std::vector<std::string>> rows{{"shader", "keys", "always", "sometimes", "materials"}};
+    std::uint32_t id = 0;
+    for (const package::CaseEntry& shader : inspected.package.cases()) {
+        rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
+                        fmt::format("{}", shader.keyCount), featuresText(shader.always, detail),
+                        featuresText(shader.sometimes, detail), materialsText(inspected, id)});
+        ++id;
+    }
+    return formatTable(rows, detail);
+}
+
+// Returns the shader's ID or the ordering, if a role has several modules.
+std::string whichText(const inspect::InspectedModule& module) {
+    const bool isCase = package::findRole(module.entry->role)->repeated == package::Repeated::ByCase;
+    const std::string ordering = orderingName(module.key());
+    return isCase ? fmt::format(" {}", module.entry->index) : ordering.empty() ? "" : " " + ordering;
+}
+
+std::string titleOf(const inspect::InspectedModule& module) {
+    return std::string(package::roleName(module.entry->role)) + whichText(module);
+}
+
+std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detail) {
+    std::vector<std::vector<std::string>> rows{
+        {"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
+    for (const inspect::InspectedModule& module : inspected.modules) {
+        const std::string tracer = tracerName(module.key());
+        const SpirvStatistics& it = module.statistics;
+        rows.push_back({titleOf(module), tracer.empty() ? "-" : tracer, inspected.file(module),
+                        fmt::format("{}", it.bytes), fmt::format("{}", it.instructions),
+                        fmt::format("{}", it.textureFetches), fmt::format("{}", it.rayQueries),
+                        fmt::format("{}", it.branches)});
+    }
+    return formatTable(rows, detail);
+}
+
+std::string hitLobesText(const inspect::Manifest& manifest) {
+    return manifest.hitLobes.size() == builtinMaterialModel().names(kLobeMask).size()
+               ? "all"
+               : join(manifest.hitLobes);
+}
+
+Json toJson(const inspect::InspectedPackage& inspected) {
+    const Package& package = inspected.package;
+    const inspect::Manifest& manifest = inspected.manifest;
+    return {{"package", inspected.folder},
+            {"version", package::kVersion},
+            {"tool", manifest.toolVersion},
+            {"strategies", strategyNames(package.shape().strategies)},
+            {"tracers", tracerNames(package.shape().tracers)},
+            {"merge", manifest.merge},
+            {"alpha", package.alphaTested() ? "tested" : "opaque"},
+            {"scenes", scenesToJson(inspected)},
+            {"settings",
+             {{"hitLobes", manifest.hitLobes},
+              {"energyCompensation", manifest.energyCompensation},
+              {"textureLod", manifest.textureLod},
+              {"precision", package::bitsOf(package.precision())},
+              {"shadows", std::string(package::nameOf(package.shape().shadows))},
+              {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+              {"positionFetch", package.positionFetch()},
+              {"sky", skyOf(package)}}},
+            {"counts",
+             {{"cases", inspected.caseCount()},
+              {"buckets", package.bucketCount()},
+              {"bytesPerMaterial", package.scene(0).materials.recordBytes},
+              {"modules", package.modules().size()},
+              {"uniqueSpirv", inspected.uniqueFiles()}}},
+            {"spirvBytes", inspected.spirvBytes()},
+            {"shaders", shadersToJson(inspected)},
+            {"modules", modulesToJson(inspected)}};
+}
+
+std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
+    const Package& package = inspected.package;
+    const inspect::Manifest& manifest = inspected.manifest;
+    const std::string summary = formatFields(
+        {{"package", inspected.folder},
+         {"made by", fmt::format("glint {}, format {}", manifest.toolVersion, package::kVersion)},
+         {"strategies", join(strategyNames(package.shape().strategies))},
+         {"tracers", join(tracerNames(package.shape().tracers))},
+         {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
+         {"hit record", std::string(package::nameOf(package.hitRecord()))},
+         {"position fetch", package.positionFetch() ? "yes" : "no"},
+         {"sky", skyOf(package)},
+         {"merge", manifest.merge},
+         {"alpha", package.alphaTested() ? "tested" : "opaque"},
+         {"hit lobes", hitLobesText(manifest)},
+         {"energy compensation", manifest.energyCompensation ? "on" : "off"},
+         {"texture LOD", manifest.textureLod},
+         {"precision", fmt::format("{}", package::bitsOf(package.precision()))},
+         {"bytes a material", fmt::format("{}", inspected.package.scene(0).materials.recordBytes)},
+         {"cases", fmt::format("{}", inspected.caseCount())},
+         {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),
+                                inspected.uniqueFiles(), formatBytes(inspected.spirvBytes()))}});
+    return summary + "\n" + sceneTable(inspected) + "\n" + shaderTable(inspected, detail) + "\n" +
+           moduleTable(inspected, detail);
+}
+
+Json toJson(const inspect::InspectedPackage& inspected, const std::vector<inspect::Disassembly>& list) {
+    Json modules = Json::array();
+    for (const inspect::Disassembly& entry : list) {
+        Json module = describe(inspected, *entry.module);
+        module["text"] = entry.text;
+        modules.push_back(std::move(module));
+    }
+    return {{"package", inspected.folder}, {"disassembly", modules}};
+}
+
+std::string toText(const inspect::InspectedPackage& inspected,
+                   const std::vector<inspect::Disassembly>& list) {
+    std::string text;
+    for (const inspect::Disassembly& entry : list) {
+        const std::string tracer = tracerName(entry.module->key());
+        text += fmt::format("{}; {}: {}{}\n{}", text.empty() ? "" : "\n", inspected.file(*entry.module),
+                            titleOf(*entry.module), tracer.empty() ? "" : ", " + tracer, entry.text);
+    }
+    return text;
+}
+
 struct InspectArguments {
     std::string folder;
     std::string disassemble;  // empty: an overview instead
 };
 
-int tell(const Console& console, const InspectedPackage& inspected) {
+int tell(const Console& console, const inspect::InspectedPackage& inspected) {
     if (console.isJson()) {
         console.result(toJson(inspected));
     } else {
@@ -23,7 +258,8 @@ int tell(const Console& console, const InspectedPackage& inspected) {
     return kExitDone;
 }
 
-int tell(const Console& console, const InspectedPackage& inspected, const std::vector<Disassembly>& list) {
+int tell(const Console& console, const inspect::InspectedPackage& inspected,
+         const std::vector<inspect::Disassembly>& list) {
     if (console.isJson()) {
         console.result(toJson(inspected, list));
     } else {
@@ -32,24 +268,26 @@ int tell(const Console& console, const InspectedPackage& inspected, const std::v
     return kExitDone;
 }
 
-int inspect(const Console& console, const InspectArguments& arguments) {
+int show(const Console& console, const InspectArguments& arguments) {
     console.progress("reading " + arguments.folder);
     const Result<Package> package = Package::load(arguments.folder);
     if (!package) {
         return fail(console, package.error());
     }
-    const Result<Manifest> manifest = readManifest(arguments.folder);
+    const Result<inspect::Manifest> manifest = inspect::readManifest(arguments.folder);
     if (!manifest) {
         return fail(console, manifest.error());
     }
-    const Result<InspectedPackage> inspected = inspectPackage(*package, *manifest, arguments.folder);
+    const Result<inspect::InspectedPackage> inspected =
+        inspect::inspectPackage(*package, *manifest, arguments.folder);
     if (!inspected) {
         return fail(console, inspected.error());
     }
     if (arguments.disassemble.empty()) {
         return tell(console, *inspected);
     }
-    const Result<std::vector<Disassembly>> list = disassembleModules(*inspected, arguments.disassemble);
+    const Result<std::vector<inspect::Disassembly>> list =
+        inspect::disassembleModules(*inspected, arguments.disassemble);
     return list ? tell(console, *inspected, *list) : fail(console, list.error());
 }
 
@@ -64,7 +302,7 @@ void addInspect(CLI::App& app, Action& chosen) {
             "shader by ID or name, of a role, or of a file (default:\n"
             "off)");
     command.callback([arguments, &chosen] {
-        chosen = [arguments](const Console& console) { return inspect(console, *arguments); };
+        chosen = [arguments](const Console& console) { return show(console, *arguments); };
     });
 }
 

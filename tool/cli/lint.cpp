@@ -1,15 +1,14 @@
 // glint lint: finds shapes of SPIR-V that are slow, and checks budgets.
-#include "spirv/lint.h"
+#include "inspect/lint.h"
 
-#include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/lint_report.h"
+#include "cli/report.h"
+#include "cli/table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,11 +17,165 @@ namespace glint {
 
 namespace {
 
+std::size_t countIn(const std::vector<LintFinding>& findings, Severity severity) {
+    return static_cast<std::size_t>(std::ranges::count(findings, severity, &LintFinding::severity));
+}
+
+Json findingsToJson(const std::vector<LintFinding>& findings, const std::string& where) {
+    Json list = Json::array();
+    for (const LintFinding& finding : findings) {
+        Diagnostic diagnostic = inspect::toDiagnostic(finding, where);
+        diagnostic.message = finding.message;
+        Json json = toJson(diagnostic);
+        json["function"] = textOrNull(finding.place.function);
+        json["source"] = textOrNull(finding.place.source);
+        json["resultId"] = finding.place.id == 0 ? Json(nullptr) : Json(finding.place.id);
+        json["word"] = finding.place.offset == 0 ? Json(nullptr) : Json(finding.place.offset);
+        list.push_back(std::move(json));
+    }
+    return list;
+}
+
+Json toJson(const inspect::MaliocReport& report) {
+    return {{"core", textOrNull(report.core)},
+            {"longestCycles", orNull(report.longestCycles)},
+            {"boundPipelines", report.boundPipelines},
+            {"cycles", report.cycles},
+            {"workRegisters", orNull(report.workRegisters)},
+            {"occupancy", orNull(report.occupancy)},
+            {"spills", orNull(report.spills)},
+            {"spillBytes", orNull(report.spillBytes)}};
+}
+
+Json toJson(const SpirvStatistics& statistics) {
+    return {{"bytes", statistics.bytes},
+            {"instructions", statistics.instructions},
+            {"textureFetches", statistics.textureFetches},
+            {"rayQueries", statistics.rayQueries},
+            {"traces", statistics.traces},
+            {"functions", statistics.functions},
+            {"branches", statistics.branches}};
+}
+
+Json toJson(const inspect::LintedModule& module) {
+    return {{"file", module.file.path.string()},
+            {"name", textOrNull(module.file.name)},
+            {"stages", module.lint ? Json(module.lint->stages) : Json::array()},
+            {"statistics", module.lint ? toJson(module.lint->statistics) : Json(nullptr)},
+            {"malioc", module.malioc ? toJson(*module.malioc) : Json(nullptr)},
+            {"findings", findingsToJson(module.findings, module.file.path.string())}};
+}
+
+std::vector<std::string> countsOf(const inspect::LintedModule& module) {
+    if (!module.lint) {
+        return {"-", "-", "-", "-", "-", "-"};
+    }
+    const SpirvStatistics& it = module.lint->statistics;
+    return {join(module.lint->stages),
+            fmt::format("{}", it.instructions),
+            fmt::format("{}", it.textureFetches),
+            fmt::format("{}", it.rayQueries),
+            fmt::format("{}", it.traces),
+            fmt::format("{}", it.functions)};
+}
+
+std::vector<std::string> cyclesOf(const inspect::LintedModule& module) {
+    if (!module.malioc) {
+        return {"-", "-", "-", "-"};
+    }
+    const inspect::MaliocReport& it = *module.malioc;
+    const std::string spills = it.spillBytes ? fmt::format("{}", *it.spillBytes)
+                               : it.spills   ? (*it.spills ? "yes" : "no")
+                                             : "-";
+    return {it.longestCycles ? fmt::format("{:.2f}", *it.longestCycles) : "-", join(it.boundPipelines),
+            it.workRegisters ? fmt::format("{}", *it.workRegisters) : "-", spills};
+}
+
+// Returns "-" for 0, so that other numbers stand out.
+std::string nonZero(std::size_t count) {
+    return count == 0 ? "-" : fmt::format("{}", count);
+}
+
+std::string plural(std::size_t count, const char* noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string summaryOf(const inspect::LintReport& report) {
+    return fmt::format("\n{}: {}, {}, {}\n", plural(report.modules.size(), "module"),
+                       plural(report.count(Severity::Error), "error"),
+                       plural(report.count(Severity::Warning), "warning"),
+                       plural(report.count(Severity::Note), "note")) +
+           (report.malioc ? "" : "malioc not found: no cycle estimates\n");
+}
+
+// Names of modules are shown with Detail::Whole only, because their files are named after them.
+std::string toText(const inspect::LintReport& report, Detail detail) {
+    const auto isNamed = [](const inspect::LintedModule& module) { return !module.file.name.empty(); };
+    const auto isEstimated = [](const inspect::LintedModule& module) { return module.malioc.has_value(); };
+    // Files are named after their shaders, so the short table has their names alone.
+    const bool hasNames = detail == Detail::Whole && std::ranges::any_of(report.modules, isNamed);
+    const bool hasCycles = std::ranges::any_of(report.modules, isEstimated);
+    std::vector<std::vector<std::string>> rows{
+        {"file", "instructions", "fetches", "queries", "traces", "errors", "warnings"}};
+    if (detail == Detail::Whole) {
+        rows[0] = {"file",   "stage",     "instructions", "fetches", "queries",
+                   "traces", "functions", "errors",       "warnings"};
+    }
+    if (hasNames) {
+        rows[0].insert(rows[0].begin(), "module");
+    }
+    if (hasCycles) {
+        rows[0].insert(rows[0].end(), {"cycles", "bound by", "registers", "spilled"});
+    }
+    for (const inspect::LintedModule& module : report.modules) {
+        std::vector<std::string> row;
+        if (hasNames) {
+            row.push_back(module.file.name);
+        }
+        // All files of a package are in its folder, so the file's name is enough.
+        row.push_back(isNamed(module) ? module.file.path.filename().string() : module.file.path.string());
+        std::vector<std::string> counts = countsOf(module);
+        if (detail == Detail::Short) {
+            // The file's name says the stage as well.
+            counts.erase(counts.begin());
+            counts.pop_back();
+        }
+        std::ranges::move(counts, std::back_inserter(row));
+        row.push_back(nonZero(countIn(module.findings, Severity::Error)));
+        row.push_back(nonZero(countIn(module.findings, Severity::Warning)));
+        if (hasCycles) {
+            std::ranges::move(cyclesOf(module), std::back_inserter(row));
+        }
+        rows.push_back(std::move(row));
+    }
+    return formatTable(rows, detail) + summaryOf(report);
+}
+
+// Returns the JSON that docs/lint.md describes.
+Json toJson(const inspect::LintReport& report) {
+    Json modules = Json::array();
+    for (const inspect::LintedModule& module : report.modules) {
+        modules.push_back(toJson(module));
+    }
+    Json findings = Json::array();
+    for (const inspect::LintedFolder& folder : report.folders) {
+        for (Json& finding : findingsToJson(folder.findings, folder.path)) {
+            findings.push_back(std::move(finding));
+        }
+    }
+    return {{"modules", std::move(modules)},
+            {"findings", std::move(findings)},
+            {"errors", report.count(Severity::Error)},
+            {"warnings", report.count(Severity::Warning)},
+            {"notes", report.count(Severity::Note)},
+            {"malioc", report.malioc ? Json(report.malioc->string()) : Json(nullptr)}};
+}
+
 struct Budget {
     std::int64_t limit = 0;
     CLI::Option* option = nullptr;  // owned by its command
-    bool given() const {
-        return option->count() > 0;
+    std::optional<std::int64_t> value() const {
+        return option->count() > 0 ? std::optional(limit) : std::nullopt;
     }
 };
 
@@ -33,92 +186,11 @@ struct LintArguments {
     Budget rayQueries;
     std::string malioc;
     std::string core;
+
+    inspect::LintBudgets budgets() const {
+        return {instructions.value(), textureFetches.value(), rayQueries.value()};
+    }
 };
-
-Result<SpirvLint> lintFile(const std::filesystem::path& path) {
-    const Result<Bytes> bytes = readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (bytes->size() % sizeof(std::uint32_t) != 0) {
-        return makeError("spirv-format", path.string(),
-                         fmt::format("has {} bytes, which is no multiple of 4", bytes->size()),
-                         "expected a SPIR-V module; this one may be cut short");
-    }
-    std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
-    if (!words.empty()) {
-        std::memcpy(words.data(), bytes->data(), bytes->size());
-    }
-    return lintSpirv(words);
-}
-
-void checkBudget(const Budget& budget, std::uint32_t count, const char* rule, const char* what,
-                 std::vector<LintFinding>& findings) {
-    if (budget.given() && count > budget.limit) {
-        findings.push_back({Severity::Error,
-                            rule,
-                            {},
-                            fmt::format("has {} {}; the budget is {}", count, what, budget.limit),
-                            "drop features or accuracy, or raise the budget"});
-    }
-}
-
-void checkBudgets(const LintArguments& arguments, LintedModule& module) {
-    const SpirvStatistics& it = module.lint->statistics;
-    checkBudget(arguments.instructions, it.instructions, "budget-instructions", "instructions",
-                module.findings);
-    checkBudget(arguments.textureFetches, it.textureFetches, "budget-texture-fetches", "texture fetches",
-                module.findings);
-    checkBudget(arguments.rayQueries, it.rayQueries, "budget-ray-queries", "ray queries", module.findings);
-}
-
-// Makes a finding of an error, with `severity` instead of the error's own.
-LintFinding toFinding(const Diagnostic& error, Severity severity) {
-    return {severity, error.id, {}, error.message, error.hint};
-}
-
-bool isStage(const LintedModule& module, const char* stage) {
-    return module.lint && std::ranges::find(module.lint->stages, stage) != module.lint->stages.end();
-}
-
-LintedModule lintModule(const LintArguments& arguments, const LintReport& report, const LintFile& file) {
-    LintedModule module;
-    module.file = file;
-    Result<SpirvLint> lint = lintFile(file.path);
-    if (!lint) {
-        module.findings.push_back(toFinding(lint.error(), Severity::Error));
-        return module;
-    }
-    module.lint = std::move(*lint);
-    module.findings = module.lint->findings;
-    checkBudgets(arguments, module);
-    if (report.malioc && isStage(module, "GLCompute")) {
-        Result<MaliocReport> estimate = runMalioc(*report.malioc, arguments.core, file.path);
-        if (estimate) {
-            module.malioc = std::move(*estimate);
-        } else {
-            module.findings.push_back(toFinding(estimate.error(), Severity::Warning));
-        }
-    }
-    return module;
-}
-
-// Judges a folder's modules together: a pipeline with many closest-hit shaders.
-std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules) {
-    // Mobile linkers inline the hit shaders of a pipeline up to about this number.
-    constexpr std::ptrdiff_t kMaxClosestHits = 10;
-    const auto closestHits = std::ranges::count_if(
-        modules, [](const LintedModule& module) { return isStage(module, "ClosestHitKHR"); });
-    if (closestHits <= kMaxClosestHits) {
-        return {};
-    }
-    return {{Severity::Warning,
-             "ray-pipeline-shaders",
-             {},
-             fmt::format("has {} closest-hit shaders; mobile drivers inline up to {}", closestHits,
-                         kMaxClosestHits),
-             "merge cases (--merge family or all), or use ray queries"}};
-}
 
 // Removes the findings that -W drops, and turns those into errors that it and --werror name.
 void judge(const DiagnosticPolicy& policy, std::vector<LintFinding>& findings) {
@@ -132,31 +204,32 @@ void judge(const DiagnosticPolicy& policy, std::vector<LintFinding>& findings) {
 void reportFindings(const Console& console, const std::vector<LintFinding>& findings,
                     const std::string& where) {
     for (const LintFinding& finding : findings) {
-        console.report(toDiagnostic(finding, where));
+        console.report(inspect::toDiagnostic(finding, where));
     }
 }
 
 // Lints the files that `path` stands for, and adds the results to `report`.
 Status lintPath(const Console& console, const LintArguments& arguments, const std::string& path,
-                LintReport& report) {
-    const Result<LintFiles> files = findLintFiles(path);
+                inspect::LintReport& report) {
+    const Result<inspect::LintFiles> files = inspect::findLintFiles(path);
     if (!files) {
         return files.error();
     }
     const std::size_t begin = report.modules.size();
-    for (const LintFile& file : files->files) {
+    for (const inspect::LintFile& file : files->files) {
         console.progress(fmt::format("lint {}", file.path.string()));
-        report.modules.push_back(lintModule(arguments, report, file));
+        report.modules.push_back(
+            inspect::lintModule(file, arguments.budgets(), report.malioc, arguments.core));
     }
     if (files->isFolder) {
-        report.folders.push_back({path, judgeTogether(std::span(report.modules).subspan(begin))});
+        report.folders.push_back({path, inspect::judgeTogether(std::span(report.modules).subspan(begin))});
     }
     return okStatus();
 }
 
 int lint(const Console& console, const LintArguments& arguments) {
-    LintReport report;
-    report.malioc = findProgram(arguments.malioc.empty() ? "malioc" : arguments.malioc);
+    inspect::LintReport report;
+    report.malioc = inspect::findProgram(arguments.malioc.empty() ? "malioc" : arguments.malioc);
     if (!report.malioc && !arguments.malioc.empty()) {
         console.report(makeError("malioc", arguments.malioc, "is not a program that can be run"));
         return kExitFailed;
@@ -167,11 +240,11 @@ int lint(const Console& console, const LintArguments& arguments) {
             return kExitFailed;
         }
     }
-    for (LintedModule& module : report.modules) {
+    for (inspect::LintedModule& module : report.modules) {
         judge(console.policy(), module.findings);
         reportFindings(console, module.findings, module.file.path.string());
     }
-    for (LintedFolder& folder : report.folders) {
+    for (inspect::LintedFolder& folder : report.folders) {
         judge(console.policy(), folder.findings);
         reportFindings(console, folder.findings, folder.path);
     }

@@ -1,27 +1,26 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
-#include "cli/camera.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/coverage.h"
-#include "cli/pipeline_cache.h"
-#include "cli/plan_choice.h"
-#include "cli/render_arguments.h"
-#include "cli/render_frames.h"
-#include "cli/render_input.h"
-#include "cli/render_profile.h"
-#include "cli/render_report.h"
-#include "cli/render_setup.h"
-#include "cli/scene_view.h"
-#include "cli/strategy_advice.h"
-#include "cli/validation_messages.h"
+#include "cli/render/arguments.h"
+#include "cli/render/frames.h"
+#include "cli/render/pipeline_cache.h"
+#include "cli/render/report.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
-#include "motion/pose.h"
 
 #include <glint/context.h>
+#include <glint/measure/observer.h>
+#include <glint/measure/profile.h>
+#include <glint/measure/render_settings.h>
+#include <glint/measure/strategy_advice.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/environment.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <fmt/format.h>
 
@@ -35,19 +34,19 @@ namespace glint {
 
 namespace {
 
-// Returns the package that was given, after checking it, or compiles one now. Fills in the report's members
-// about it.
+// Returns the package `given` by --package, after checking it, or compiles one now. Fills in the report's
+// members about it.
 Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
                               const PlanOptions& plan, std::uint32_t tracers, const Scene& scene,
-                              RenderReport& report) {
-    if (!arguments.package.empty()) {
-        Result<Package> package = Package::load(arguments.package);
+                              std::optional<Result<Package>> given, RenderReport& report) {
+    if (given) {
+        Result<Package>& package = *given;
         if (!package) {
-            return package;
+            return std::move(package);
         }
-        const PackageDemand demand{strategyOf(arguments), tracerOf(arguments),
-                                   !arguments.environment.file.empty()};
-        Status checked = checkPackage(*package, arguments.package, demand, scene);
+        const scene_view::PackageDemand demand{measure::strategyOf(arguments), measure::tracerOf(arguments),
+                                               !arguments.environment.file.empty()};
+        Status checked = scene_view::checkPackage(*package, arguments.package, demand, scene);
         const bool isLit =
             arguments.addsSun(scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
                 return light.shines() || light.canShine;
@@ -60,27 +59,27 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const Clock::time_point start = Clock::now();
-    const CompileSettings settings = compileSettings(arguments, plan, tracers, scene);
+    const CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
     console.report(effectWarnings(SceneList({&scene, 1}), settings));
-    Result<Package> package = compileTemporary(scene, settings);
+    Result<Package> package = scene_view::compileAndLoad(scene, settings);
     report.compileMs = millisecondsSince(start);
     report.merge = std::string(toString(plan.merge));
     return package;
 }
 
-Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments) {
+// `given` is the package of --package, if there is one. Its errors are reported when it is used.
+Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
+                                             const std::optional<Result<Package>>& given) {
     HeadlessOptions options;
     options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = arguments.device;
     options.positionFetch = arguments.tracing.positionFetch;
     options.shaderFloat16 = arguments.accuracy.halves();
     options.pipelineStatistics = arguments.pipelineStatistics;
-    // This only looks at the package in a folder, if there is one. Its errors are reported when it is used.
-    if (!arguments.package.empty()) {
-        if (const Result<Package> package = Package::load(arguments.package)) {
-            options.positionFetch = package->positionFetch();
-            options.shaderFloat16 = package->precision() == package::ShadingPrecision::Half;
-        }
+    if (given && *given) {
+        const Package& package = **given;
+        options.positionFetch = package.positionFetch();
+        options.shaderFloat16 = package.precision() == package::ShadingPrecision::Half;
     }
     return Context::createHeadless(options);
 }
@@ -95,7 +94,7 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
     }
     console.progress("filtering " + file);
     std::vector<Diagnostic> notes;
-    Result<std::unique_ptr<Environment>> environment = loadEnvironment(context, file, notes);
+    Result<std::unique_ptr<Environment>> environment = scene_view::loadEnvironment(context, file, notes);
     console.report(notes);
     if (environment) {
         report.environment = {file, (*environment)->statistics()};
@@ -114,12 +113,17 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 
 // Replaces --strategy auto by the strategy that is expected to be fastest.
 Status settleStrategy(const Console& console, const PlanOptions& plan, const Context& context,
-                      const Scene& scene, RenderArguments& arguments, RenderReport& report) {
-    if (arguments.tracing.strategies.front() != kAutoStrategy) {
+                      const Scene& scene, const std::optional<Result<Package>>& given,
+                      RenderArguments& arguments, RenderReport& report) {
+    if (arguments.tracing.strategies.front() != measure::kAutoStrategy) {
         return okStatus();
     }
+    if (given && !*given) {
+        return given->error();
+    }
     std::vector<Diagnostic> warnings;
-    Result<StrategyAdvice> advice = adviseRender(arguments, plan, context, scene, warnings);
+    Result<StrategyAdvice> advice =
+        measure::adviseRender(arguments, plan, context, scene, given ? &**given : nullptr, warnings);
     console.report(warnings);
     if (!advice) {
         return advice.error();
@@ -130,6 +134,34 @@ Status settleStrategy(const Console& console, const PlanOptions& plan, const Con
     arguments.tracing.strategies = {advice->choice.strategy};
     arguments.tracing.advice = std::move(*advice);
     return okStatus();
+}
+
+std::array<std::uint8_t, 3> colorOf(PixelPath path) {
+    switch (path) {
+        case PixelPath::Screen:
+            return {230, 159, 0};
+        case PixelPath::Hit:
+            return {0, 114, 178};
+        case PixelPath::Miss:
+            return {86, 180, 233};
+        case PixelPath::NoRay:
+            return {90, 90, 90};
+        case PixelPath::NoSurface:
+            break;
+    }
+    return {0, 0, 0};
+}
+
+// The colours are those of Okabe and Ito, "Color Universal Design" (2008). Colour-blind people can tell them
+// apart, and they differ in lightness. Orange: found in screen space. Blue: a ray that hit. Light blue: a ray
+// that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
+DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width, std::uint32_t height) {
+    DisplayImage image{width, height, {}};
+    image.pixels.reserve(paths.size());
+    for (const PixelPath path : paths) {
+        image.pixels.push_back(colorOf(path));
+    }
+    return image;
 }
 
 // Writes everything that comes after the pictures.
@@ -145,47 +177,55 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
 
 // Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
 // moment, and does not move.
-Result<CameraChoice> chooseView(const std::optional<Movement>& movement, const RenderArguments& arguments,
-                                Scene& scene, SceneViewData& data, double aspect) {
+Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movement,
+                                            const RenderArguments& arguments, Scene& scene,
+                                            scene_view::SceneViewData& data, double aspect) {
     if (!movement) {
-        return chooseCamera(scene, data, arguments.camera, aspect);
+        return scene_view::chooseCamera(scene, data, arguments.camera, aspect);
     }
-    Bounds bounds = Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
-    if (framesEverything(scene, arguments.camera)) {
+    scene_view::Bounds bounds = scene_view::Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
+    if (scene_view::framesEverything(scene, arguments.camera)) {
         // This many moments show well enough how far the scene moves.
         constexpr std::size_t kMostMoments = 64;
         const std::size_t step = (movement->moments.size() + kMostMoments - 1) / kMostMoments;
         for (std::size_t i = 0; i < movement->moments.size(); i += step) {
-            applyPose(poseAt(scene, movement->animations, movement->moments[i].seconds), scene);
-            poseSceneView(scene, data);
-            bounds = united(bounds, posedBounds(scene, data));
+            scene_view::applyPose(
+                scene_view::poseAt(scene, movement->animations, movement->moments[i].seconds), scene);
+            scene_view::poseSceneView(scene, data);
+            bounds = scene_view::united(bounds, scene_view::posedBounds(scene, data));
         }
     }
-    applyPose(poseAt(scene, movement->animations, movement->moments.front().seconds), scene);
-    Result<CameraChoice> camera = chooseCameraAround(scene, bounds, arguments.camera, aspect);
+    scene_view::applyPose(scene_view::poseAt(scene, movement->animations, movement->moments.front().seconds),
+                          scene);
+    Result<scene_view::CameraChoice> camera =
+        scene_view::chooseCameraAround(scene, bounds, arguments.camera, aspect);
     // The package must not depend on which frames are rendered.
-    applyPose(restPose(scene), scene);
+    scene_view::applyPose(scene_view::restPose(scene), scene);
     return camera;
 }
 
 // Does all the work between reading the scene and writing the files.
-Status render(const Console& console, const RenderArguments& given, Scene& scene, const SceneList& scenes,
+Status render(const Console& console, const RenderArguments& asked, Scene& scene, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
-    RenderArguments arguments = given;
+    RenderArguments arguments = asked;
     const Result<std::optional<Movement>> movement = chooseMovement(arguments.motion, scene);
     if (!movement) {
         return movement.error();
     }
-    SceneViewData data = sceneView(arguments, scene);
+    scene_view::SceneViewData data = measure::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
-    const Result<CameraChoice> camera = chooseView(*movement, arguments, scene, data, aspect);
+    const Result<scene_view::CameraChoice> camera = chooseView(*movement, arguments, scene, data, aspect);
     if (!camera) {
         return camera.error();
     }
     report.camera = camera->name;
+    std::optional<Result<Package>> given;
+    if (!arguments.package.empty()) {
+        given = Package::load(arguments.package);
+    }
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const Clock::time_point begin = Clock::now();
-    const Result<std::unique_ptr<Context>> context = makeContext(arguments);
+    const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
     if (!context) {
         return context.error();
     }
@@ -193,7 +233,8 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
     report.start.deviceMs = millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
-    if (Status settled = settleStrategy(console, plan, **context, scene, arguments, report); !settled) {
+    if (Status settled = settleStrategy(console, plan, **context, scene, given, arguments, report);
+        !settled) {
         return settled;
     }
     const Result<std::unique_ptr<Environment>> environment =
@@ -202,19 +243,20 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
         return environment.error();
     }
     console.progress("compiling " + arguments.scene);
-    const Result<Package> package =
-        obtainPackage(console, arguments, plan, (*context)->handles().tracers, scene, report);
+    const Result<Package> package = obtainPackage(console, arguments, plan, (*context)->handles().tracers,
+                                                  scene, std::move(given), report);
     if (!package) {
         return package.error();
     }
-    data.packageScene = sceneIn(*package, scene).value_or(0);
+    data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
+    scene_view::useLayoutOf(*package, scene, data);
     report.alpha = package->alphaTested() ? "tested" : "opaque";
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
         report.caseNames.emplace_back(package->string(entry.name));
     }
     console.progress("rendering " + arguments.scene);
-    RendererOptions options = rendererOptions(arguments);
+    RendererOptions options = measure::rendererOptions(arguments);
     options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
     if (arguments.pipelineStatistics && !options.pipelineStatistics) {
         console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
@@ -224,7 +266,7 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
     const FrameSetup setup{arguments, options, environment->get(), *movement, camera->view, aspect};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
-        if (Status valid = checkValidation(console, **context); !valid) {
+        if (Status valid = measure::checkValidation(console, **context); !valid) {
             return valid.error();
         }
         if (report.counters.nonFinite > 0 && !std::exchange(warned, true)) {
@@ -252,7 +294,7 @@ Status render(const Console& console, const RenderArguments& given, Scene& scene
         return done;
     }
     std::vector<Diagnostic> warnings;
-    done = writeProfile(arguments.profileOutput, scenes, plan, report.hits, warnings);
+    done = measure::writeProfile(arguments.profileOutput, scenes, plan, report.hits, warnings);
     console.report(warnings);
     return done;
 }
@@ -264,7 +306,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     report.strategy = arguments.tracing.strategies.front();
     report.samples = static_cast<std::uint32_t>(arguments.samples);
     report.seed = static_cast<std::uint32_t>(arguments.seed);
-    parseSize(arguments.size, report.width, report.height);
+    measure::parseSize(arguments.size, report.width, report.height);
 
     const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
     Status status =
@@ -290,11 +332,11 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.report(scene->warnings);
     const SceneList scenes({&*scene, 1});
-    PlanArguments planned = arguments.plan;
+    measure::PlanSettings planned = arguments.plan;
     if (!arguments.package.empty()) {
         planned.alpha = "opaque";  // The package has decided, so nothing is chosen here.
     }
-    const Result<PlanChoice> plan = choosePlan(planned, scenes);
+    const Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
     if (!plan) {
         console.report(plan.error());
         return kExitFailed;

@@ -1,16 +1,13 @@
 #include "cli/report.h"
 
 #include "cli/table.h"
+#include "emit/json.h"
 
 #include <fmt/format.h>
 
 #include <system_error>
 
 namespace glint {
-
-std::string toText(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 namespace {
 
@@ -42,14 +39,10 @@ Json toJson(std::span<const Diagnostic> diagnostics) {
 
 Json featuresToJson(FeatureMask mask) {
     Json list = Json::array();
-    for (const std::string_view name : featureNames(mask)) {
+    for (const std::string_view name : builtinMaterialModel().names(mask)) {
         list.push_back(std::string(name));
     }
     return list;
-}
-
-Json textOrNull(const std::string& text) {
-    return text.empty() ? Json(nullptr) : Json(text);
 }
 
 Json materialsToJson(const SceneList& scenes, std::span<const int> materials) {
@@ -74,7 +67,7 @@ Json droppedToJson(const SceneList& scenes, const Plan& plan) {
 
 std::string featureList(FeatureMask mask) {
     std::vector<std::string> names;
-    for (const std::string_view name : featureNames(mask)) {
+    for (const std::string_view name : builtinMaterialModel().names(mask)) {
         names.emplace_back(name);
     }
     return join(names);
@@ -102,6 +95,40 @@ Status checkOutputFile(const std::filesystem::path& file) {
         return makeError("output-folder", file.string(), "is a folder", "name a file within it");
     }
     return okStatus();
+}
+
+Json statisticsToJson(const SpirvStatistics& statistics) {
+    return {{"bytes", statistics.bytes},
+            {"instructions", statistics.instructions},
+            {"textureFetches", statistics.textureFetches},
+            {"rayQueries", statistics.rayQueries},
+            {"branches", statistics.branches}};
+}
+
+Json stagesToJson(const CompiledPackage* package, int shaderId) {
+    Json stages = Json::object();
+    if (package == nullptr) {
+        return stages;
+    }
+    for (const CompiledModule& module : package->modules) {
+        const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
+        if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
+            Json entry{{"file", module.file}};
+            entry.update(statisticsToJson(module.statistics));
+            stages[std::string(stageName(module.key))] = std::move(entry);
+        }
+    }
+    return stages;
+}
+
+std::string tracerName(const package::ModuleKey& key) {
+    return key.tracer == 0 ? std::string()
+                           : std::string(package::nameOf(static_cast<package::Tracer>(key.tracer)));
+}
+
+std::string orderingName(const package::ModuleKey& key) {
+    const bool ordered = package::findRole(key.role)->repeated == package::Repeated::ByOrdering;
+    return ordered ? std::string(package::nameOf(static_cast<package::Ordering>(key.index))) : std::string();
 }
 
 }  // namespace glint

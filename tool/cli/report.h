@@ -1,38 +1,25 @@
 // Output that several commands share, as JSON and as text.
 #pragma once
 
+#include "base/json.h"
 #include "cli/console.h"
+#include "emit/compile.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
+#include <glint/package_modules.h>
 #include <glint/result.h>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace glint {
 
-// Keys keep the order in which they are added.
-using Json = nlohmann::ordered_json;
-
-// Text that is not UTF-8 is replaced, so that the output is always valid JSON.
-std::string toText(const Json& json);
-
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
 Json featuresToJson(FeatureMask mask);
-// Returns the value, or null if there is none.
-template <typename T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-// Returns the text, or null if it is empty.
-Json textOrNull(const std::string& text);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
 Json materialsToJson(const SceneList& scenes, std::span<const int> materials);
 // Returns [{"feature", "reason", "materials"}].
@@ -46,5 +33,16 @@ std::string droppedText(const Plan& plan);
 // Returns the error "output-folder" unless `file` could be created: its folder must exist, and it must not be
 // a folder itself.
 Status checkOutputFile(const std::filesystem::path& file);
+
+// bytes, instructions, textureFetches, rayQueries, branches
+Json statisticsToJson(const SpirvStatistics& statistics);
+
+// Returns the case's own modules by stage, as in the manifest. Empty without a package, and for strategies
+// that have none.
+Json stagesToJson(const CompiledPackage* package, int shaderId);
+
+// These name which of the modules of its role it is; empty if there is only one.
+std::string tracerName(const package::ModuleKey& key);    // "ray-query"
+std::string orderingName(const package::ModuleKey& key);  // "wave-ballot"
 
 }  // namespace glint

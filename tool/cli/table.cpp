@@ -66,7 +66,7 @@ struct Column {
     bool numeric = true;
 };
 
-std::vector<Column> measure(const Rows& rows, bool alignNumbers) {
+std::vector<Column> columnsOf(const Rows& rows, bool alignNumbers) {
     std::vector<Column> columns;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         columns.resize(std::max(columns.size(), rows[r].size()));
@@ -139,7 +139,7 @@ std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
 }  // namespace
 
 std::string formatTable(const Rows& rows, Detail detail) {
-    std::vector<Column> columns = measure(rows, true);
+    std::vector<Column> columns = columnsOf(rows, true);
     if (detail == Detail::Short) {
         // Cells rarely need more characters than this to be told apart. Before they get shorter, the table
         // becomes wider.
@@ -158,7 +158,7 @@ std::string formatTable(const Rows& rows, Detail detail) {
 std::string formatFields(const Rows& rows, Detail detail) {
     // A value wraps no narrower than this, however wide the labels are.
     constexpr std::size_t kLeast = 20;
-    const std::vector<Column> columns = measure(rows, false);
+    const std::vector<Column> columns = columnsOf(rows, false);
     std::string text;
     for (const std::vector<std::string>& row : rows) {
         std::size_t begin = 0;
@@ -224,10 +224,6 @@ std::string formatBytes(std::uint64_t bytes) {
         return fmt::format("{:.1f} KiB", value / kKibi);
     }
     return fmt::format("{:.2f} MiB", value / (kKibi * kKibi));
-}
-
-std::string join(const std::vector<std::string>& words) {
-    return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace glint

@@ -1,6 +1,8 @@
 // Formats tables for people. Programs read --json, because cells here are cut and wrapped to fit a terminal.
 #pragma once
 
+#include "base/text.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -44,7 +46,5 @@ std::string shaderTitle(std::uint64_t id, std::string_view name, Detail detail);
 std::string formatBytes(std::uint64_t bytes);
 // Returns "1.234 ms".
 std::string formatMilliseconds(double milliseconds);
-// Returns "a, b, c", or "-" for an empty list.
-std::string join(const std::vector<std::string>& words);
 
 }  // namespace glint

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::size_t kMaxNamesListed = 8;
 
-std::string featureList(FeatureMask mask) {
-    const std::vector<std::string_view> names = featureNames(mask);
+std::string featureList(const MaterialModel& model, FeatureMask mask) {
+    const std::vector<std::string_view> names = model.names(mask);
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -54,15 +54,16 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
-void addCase(mustache::data& context, const SceneList& scenes, const Case& shaderCase) {
+void addCase(mustache::data& context, const SceneList& scenes, const MaterialModel& model,
+             const Case& shaderCase) {
     context.set("id", fmt::format("{}", shaderCase.shaderId));
     context.set("name", shaderCase.name);
     context.set("alwaysLobes", literal(shaderCase.always & kLobeMask));
     context.set("alwaysInputs", literal(shaderCase.always >> 32U));
     context.set("sometimesLobes", literal(shaderCase.sometimes & kLobeMask));
     context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
-    context.set("always", featureList(shaderCase.always));
-    context.set("sometimes", featureList(shaderCase.sometimes));
+    context.set("always", featureList(model, shaderCase.always));
+    context.set("sometimes", featureList(model, shaderCase.sometimes));
     context.set("materials", materialNames(scenes, shaderCase.materials));
 }
 
@@ -76,7 +77,7 @@ mustache::data makeContext(const SceneList& scenes, const Plan& plan, const Plan
     for (const Case& shaderCase : plan.cases) {
         if (!shaderCase.isRetired()) {
             mustache::data entry;
-            addCase(entry, scenes, shaderCase);
+            addCase(entry, scenes, *plan.model, shaderCase);
             cases.push_back(entry);
         }
     }

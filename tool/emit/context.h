@@ -24,7 +24,8 @@ kainjow::mustache::data makeContext(const SceneList& scenes, const Plan& plan, c
 
 // Adds the fields of one case to the top level: id, name, alwaysLobes, alwaysInputs, sometimesLobes,
 // sometimesInputs, always, sometimes, materials.
-void addCase(kainjow::mustache::data& context, const SceneList& scenes, const Case& shaderCase);
+void addCase(kainjow::mustache::data& context, const SceneList& scenes, const MaterialModel& model,
+             const Case& shaderCase);
 
 // Renders the template `name` without HTML escapes. Error "template" if it is missing or malformed.
 Result<std::string> renderTemplate(const SourceSet& sources, std::string_view name,

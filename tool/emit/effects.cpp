@@ -34,26 +34,8 @@ mustache::data entryOf(std::uint32_t effects, const package::EffectInfo& info) {
 }  // namespace
 
 EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings) {
-    std::vector<bool> used(scenes.materials().size());
-    for (const PrimitiveInputs& primitive : scenes.primitives()) {
-        used[static_cast<std::size_t>(primitive.material)] = true;
-    }
-    std::vector<const Material*> materials;
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        if (used[i]) {
-            materials.push_back(&scenes.materials()[i]);
-        }
-    }
-    for (std::size_t scene = 0; scene < scenes.scenes().size(); ++scene) {
-        const std::size_t first = scenes.materialsOf(scene).first;
-        for (const AnimatedMaterial& animated : scenes.scenes()[scene].animatedMaterials) {
-            if (used[first + static_cast<std::size_t>(animated.material)]) {
-                materials.push_back(&animated.smoothest);
-            }
-        }
-    }
     const bool lit = settings.addsLight || std::ranges::any_of(scenes.scenes(), isLit);
-    return decideEffects(materials, {lit}, settings.effects);
+    return decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
 }
 
 std::string effectDefines(std::uint32_t effects) {

@@ -2,6 +2,7 @@
 
 #include "emit/context.h"
 #include "emit/interop_layouts.h"
+#include "emit/material_layout.h"
 
 #include <fmt/format.h>
 
@@ -35,16 +36,14 @@ std::string cppLiteral(std::string_view text) {
     return literal + "\"";
 }
 
-mustache::data featureList() {
-    std::vector<FeatureInfo> rows(featureTable().begin(), featureTable().end());
-    std::ranges::sort(rows, {}, &FeatureInfo::feature);
+mustache::data featureList(const MaterialModel& model) {
     mustache::data list(mustache::data::type::list);
-    for (const FeatureInfo& info : rows) {
+    for (const Feature& info : model.features) {
         std::string name(info.name);
         name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
         mustache::data entry;
         entry.set("name", name);
-        entry.set("bit", fmt::format("{}", static_cast<int>(info.feature)));
+        entry.set("bit", fmt::format("{}", info.bit));
         entry.set("gltf", commentText(info.gltf));
         list.push_back(entry);
     }
@@ -89,6 +88,23 @@ mustache::data sceneTables(const SceneList& scenes) {
     return list;
 }
 
+mustache::data materialMembers(const MaterialLayout& layout) {
+    mustache::data members(mustache::data::type::list);
+    const auto add = [&members](const std::string& name, std::uint32_t offset) {
+        mustache::data entry;
+        entry.set("member", name);
+        entry.set("offset", fmt::format("{}", offset));
+        members.push_back(entry);
+    };
+    for (const RecordField& field : layout.fields) {
+        add(field.name, field.offset);
+    }
+    if (!layout.textures.empty()) {
+        add("textures", layout.textureOffset);
+    }
+    return members;
+}
+
 mustache::data layoutList() {
     mustache::data list(mustache::data::type::list);
     for (const StructLayout& layout : interopLayouts()) {
@@ -130,14 +146,18 @@ Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const 
     }
     mustache::data context = makeContext(scenes, plan, options);
     context.set("namespace", headerNamespace(scenes.scenes().front().path));
+    const MaterialLayout layout = materialLayoutOf(plan);
     context.set("interop", *interop);
-    context.set("features", featureList());
+    context.set("materialRecord", recordStruct(layout, "gpu::"));
+    context.set("features", featureList(*plan.model));
     context.set("hasCases", !plan.cases.empty());
     context.set("caseCount", fmt::format("{}", plan.cases.size()));
     context.set("caseMasks", caseMasks(plan));
     context.set("sceneCount", fmt::format("{}", scenes.scenes().size()));
     context.set("scenes", sceneTables(scenes));
     context.set("layouts", layoutList());
+    context.set("materialBytes", fmt::format("{}", layout.bytes));
+    context.set("materialMembers", materialMembers(layout));
     return renderTemplate(sources, "glint_tables.h.mustache", context);
 }
 

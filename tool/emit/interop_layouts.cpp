@@ -38,39 +38,6 @@ constexpr MemberLayout kTextureRecord[] = {
     GLINT_MEMBER(TextureRecord, anisotropy),
 };
 
-constexpr MemberLayout kMaterialRecord[] = {
-    GLINT_MEMBER(MaterialRecord, baseColorFactor),
-    GLINT_MEMBER(MaterialRecord, emissiveFactor),
-    GLINT_MEMBER(MaterialRecord, emissiveStrength),
-    GLINT_MEMBER(MaterialRecord, metallicFactor),
-    GLINT_MEMBER(MaterialRecord, roughnessFactor),
-    GLINT_MEMBER(MaterialRecord, normalScale),
-    GLINT_MEMBER(MaterialRecord, occlusionStrength),
-    GLINT_MEMBER(MaterialRecord, alphaCutoff),
-    GLINT_MEMBER(MaterialRecord, glossinessFactor),
-    GLINT_MEMBER(MaterialRecord, specularColorFactor),
-    GLINT_MEMBER(MaterialRecord, specularFactor),
-    GLINT_MEMBER(MaterialRecord, ior),
-    GLINT_MEMBER(MaterialRecord, clearcoatFactor),
-    GLINT_MEMBER(MaterialRecord, clearcoatRoughnessFactor),
-    GLINT_MEMBER(MaterialRecord, clearcoatNormalScale),
-    GLINT_MEMBER(MaterialRecord, sheenColorFactor),
-    GLINT_MEMBER(MaterialRecord, sheenRoughnessFactor),
-    GLINT_MEMBER(MaterialRecord, anisotropyDirection),
-    GLINT_MEMBER(MaterialRecord, anisotropyStrength),
-    GLINT_MEMBER(MaterialRecord, iridescenceFactor),
-    GLINT_MEMBER(MaterialRecord, iridescenceIor),
-    GLINT_MEMBER(MaterialRecord, iridescenceThicknessMinimum),
-    GLINT_MEMBER(MaterialRecord, iridescenceThicknessMaximum),
-    GLINT_MEMBER(MaterialRecord, transmissionFactor),
-    GLINT_MEMBER(MaterialRecord, diffuseTransmissionFactor),
-    GLINT_MEMBER(MaterialRecord, diffuseTransmissionColorFactor),
-    GLINT_MEMBER(MaterialRecord, thicknessFactor),
-    GLINT_MEMBER(MaterialRecord, absorption),
-    GLINT_MEMBER(MaterialRecord, dispersion),
-    GLINT_MEMBER(MaterialRecord, textures),
-};
-
 constexpr MemberLayout kLightRecord[] = {
     GLINT_MEMBER(LightRecord, position),   GLINT_MEMBER(LightRecord, type),
     GLINT_MEMBER(LightRecord, direction),  GLINT_MEMBER(LightRecord, range),
@@ -189,11 +156,10 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(MaterialRecord), GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),
-    GLINT_STRUCT(RayRecord),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
-    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),
-    GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord),    GLINT_STRUCT(InstanceRecord),  GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),    GLINT_STRUCT(RayRecord),
+    GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),
+    GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

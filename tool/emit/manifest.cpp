@@ -38,22 +38,20 @@ ManifestJson sources(const Scene& scene) {
     return list;
 }
 
-ManifestJson features() {
-    std::vector<FeatureInfo> rows(featureTable().begin(), featureTable().end());
-    std::ranges::sort(rows, {}, &FeatureInfo::feature);
+ManifestJson features(const MaterialModel& model) {
     ManifestJson list = ManifestJson::array();
-    for (const FeatureInfo& info : rows) {
-        list.push_back({{"name", info.name},
-                        {"bit", static_cast<int>(info.feature)},
-                        {"macro", info.macro},
-                        {"gltf", info.gltf},
-                        {"neutral", info.neutral}});
+    for (const Feature& feature : model.features) {
+        list.push_back({{"name", feature.name},
+                        {"bit", feature.bit},
+                        {"macro", feature.macro},
+                        {"gltf", feature.gltf},
+                        {"neutral", feature.neutralText()}});
     }
     return list;
 }
 
-ManifestJson settingsOf(const CompileSettings& settings) {
-    return {{"hitLobes", featureNames(settings.plan.keys.keptLobes & kLobeMask)},
+ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& settings) {
+    return {{"hitLobes", model.names(settings.plan.keys.keptLobes & kLobeMask)},
             {"energyCompensation", settings.energyCompensation},
             {"textureLod", toString(settings.textureLod)},
             {"precision", package::bitsOf(settings.precision)},
@@ -137,8 +135,8 @@ ManifestJson shaders(const SceneList& scenes, const CompiledPackage& package) {
         }
         list.push_back({{"id", shaderCase.shaderId},
                         {"name", shaderCase.name},
-                        {"always", featureNames(shaderCase.always)},
-                        {"sometimes", featureNames(shaderCase.sometimes)},
+                        {"always", package.plan.model->names(shaderCase.always)},
+                        {"sometimes", package.plan.model->names(shaderCase.sometimes)},
                         {"keys", shaderCase.keys.size()},
                         {"share", shareToJson(shaderCase.share)},
                         {"reason", toString(shaderCase.reason)},
@@ -163,7 +161,7 @@ ManifestJson passes(const CompiledPackage& package) {
 ManifestJson keys(const SceneList& scenes, const CompiledPackage& package) {
     ManifestJson list = ManifestJson::array();
     for (const Key& key : package.plan.keys) {
-        list.push_back({{"features", featureNames(key.mask)},
+        list.push_back({{"features", package.plan.model->names(key.mask)},
                         {"mask", fmt::format("{:#018x}", key.mask)},
                         {"primitives", key.primitives.size()},
                         {"materials", materialPlaces(scenes, key.materials)},
@@ -224,11 +222,11 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["merge"] = toString(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
     manifest["alpha"] = toString(settings.plan.keys.alpha);
-    manifest["settings"] = settingsOf(settings);
+    manifest["settings"] = settingsOf(*package.plan.model, settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
     manifest["effects"] = effectsToJson(package.plan.effects);
-    manifest["features"] = features();
+    manifest["features"] = features(*package.plan.model);
     manifest["shaders"] = shaders(scenes, package);
     manifest["passes"] = passes(package);
     manifest["keys"] = keys(scenes, package);

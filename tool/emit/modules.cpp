@@ -3,7 +3,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/prune.h"
-#include "motion/deform.h"
+#include "scene/deformed.h"
 
 #include <fmt/format.h>
 
@@ -212,7 +212,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
         if (ofCase) {
-            addCase(context, scenes, plan.cases[key.index]);
+            addCase(context, scenes, *plan.model, plan.cases[key.index]);
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, plan.effects.effects, package::kEffects[key.index].effect);
         }

@@ -3,6 +3,7 @@
 #include "emit/builtin.h"
 #include "emit/context.h"
 #include "emit/effects.h"
+#include "emit/material_layout.h"
 
 #include <fmt/format.h>
 
@@ -27,9 +28,14 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
 }
 
 // The features that decide about the alpha of a hit.
-constexpr FeatureMask kAlphaFeatures = bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0) |
-                                       bit(Feature::TexCoord1) | bit(Feature::TextureTransform) |
-                                       bit(Feature::VertexColor);
+FeatureMask alphaFeatures(const MaterialModel& model) {
+    FeatureMask mask = 0;
+    for (const char* const name :
+         {"baseColorTexture", "texCoord0", "texCoord1", "textureTransform", "vertexColor"}) {
+        mask |= model.mask(name);
+    }
+    return mask;
+}
 
 std::string sceneDefines(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     const bool hasMasked = std::ranges::any_of(
@@ -41,7 +47,8 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
     // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
-    const FeatureMask alpha = settings.plan.keys.alpha == AlphaPolicy::Tested ? kAlphaFeatures : 0;
+    const FeatureMask alpha =
+        settings.plan.keys.alpha == AlphaPolicy::Tested ? alphaFeatures(*plan.model) : 0;
     text += fmt::format("#define GLINT_ALPHA_ALWAYS {:#x}u\n", (plan.always & alpha) >> 32U);
     text += fmt::format("#define GLINT_ALPHA_SOMETIMES {:#x}u\n", (plan.sometimes & alpha) >> 32U);
     text += "// Settings\n";
@@ -95,7 +102,8 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     for (const BuiltinFile& file : builtinFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
-    sources.add("generated/features.glsl", featureDefines());
+    sources.add("generated/features.glsl", plan.model->featureDefines());
+    sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     addEffects(context, plan.effects.effects);

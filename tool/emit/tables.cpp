@@ -1,13 +1,14 @@
 #include "emit/tables.h"
 
 #include "emit/sources.h"
-#include "motion/deform.h"
+#include "scene/deformed.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <interop/scene.h>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -47,9 +48,14 @@ public:
     void add(SectionKind kind, const Elements& elements) {
         using Element = typename Elements::value_type;
         static_assert(std::is_trivially_copyable_v<Element>);
-        sections_.push_back({kind, sizeof(Element), content_.size(), elements.size()});
-        const auto* const first = reinterpret_cast<const std::uint8_t*>(elements.data());
-        content_.insert(content_.end(), first, first + elements.size() * sizeof(Element));
+        add(kind, sizeof(Element),
+            {reinterpret_cast<const std::uint8_t*>(elements.data()), elements.size() * sizeof(Element)});
+    }
+    // `bytes` holds whole elements.
+    void add(SectionKind kind, std::size_t elementBytes, std::span<const std::uint8_t> bytes) {
+        sections_.push_back(
+            {kind, static_cast<std::uint32_t>(elementBytes), content_.size(), bytes.size() / elementBytes});
+        content_.insert(content_.end(), bytes.begin(), bytes.end());
         constexpr std::size_t kAlignment = 8;
         content_.resize((content_.size() + kAlignment - 1) / kAlignment * kAlignment);
     }
@@ -78,7 +84,7 @@ private:
 };
 
 std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPolicy alpha) {
-    const bool tested = alpha == AlphaPolicy::Tested && (key & bit(Feature::AlphaMask)) != 0;
+    const bool tested = alpha == AlphaPolicy::Tested && (key & material.model().mask("alphaMask")) != 0;
     return (tested ? gpu::kGeometryAlphaTested : 0U) |
            (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
            (material.alphaMode == AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
@@ -122,7 +128,7 @@ std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
 
 // The sections that each scene has its own part of.
 struct SceneTables {
-    std::vector<gpu::MaterialRecord> materials;
+    std::vector<std::uint8_t> materials;
     std::vector<PrimitiveEntry> primitives;
     std::vector<TextureEntry> textures;
     std::vector<SamplerEntry> samplers;
@@ -187,13 +193,17 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
     const AlphaPolicy alpha = settings.plan.keys.alpha;
+    const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
         const Scene& scene = scenes.scenes()[i];
-        const MaterialTables materials = makeMaterialTables(scene);
+        const MaterialTables materials = makeMaterialTables(scene, layout);
         SceneEntry entry{};
         entry.name = strings.add(scenes.name(i));
-        append(tables.materials, materials.materials, entry.firstMaterial, entry.materialCount);
+        entry.firstMaterial = static_cast<std::uint32_t>(tables.materials.size() / layout.bytes);
+        entry.materialCount = static_cast<std::uint32_t>(scene.materials.size());
+        tables.materials.insert(tables.materials.end(), materials.materials.begin(),
+                                materials.materials.end());
         append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha),
                entry.firstPrimitive, entry.primitiveCount);
         append(tables.textures, materials.textures, entry.firstTexture, entry.textureCount);
@@ -203,7 +213,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
 
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
-    writer.add(SectionKind::Materials, tables.materials);
+    writer.add(SectionKind::Materials, layout.bytes, tables.materials);
     writer.add(SectionKind::Primitives, tables.primitives);
     writer.add(SectionKind::Textures, tables.textures);
     writer.add(SectionKind::Samplers, tables.samplers);
@@ -224,6 +234,8 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.effects = plan.effects.effects;
+    header.materialTextureOffset = layout.textureOffset;
+    header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
     header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
     return writer.finish(header);

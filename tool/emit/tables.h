@@ -2,9 +2,10 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "emit/material_layout.h"
 #include "gltf/scene_list.h"
 
-#include <interop/scene.h>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,17 +13,13 @@ namespace glint {
 
 // Materials in the device's layout, and the textures that they refer to.
 struct MaterialTables {
-    std::vector<gpu::MaterialRecord> materials;
+    std::vector<std::uint8_t> materials;          // records of the layout, one after the other
     std::vector<package::TextureEntry> textures;  // in order of first use
 };
 
 // Makes the material tables. Colour textures are sRGB, the others linear. Requires a scene that checkScene()
 // accepts.
-MaterialTables makeMaterialTables(const Scene& scene);
-
-// The record of a material alone: its factors and the transforms of its textures. What it says of the
-// textures themselves is for makeMaterialTables() to settle.
-gpu::MaterialRecord makeMaterialRecord(const Material& material);
+MaterialTables makeMaterialTables(const Scene& scene, const MaterialLayout& layout);
 
 // Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
 Status checkScene(const Scene& scene);

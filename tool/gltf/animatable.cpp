@@ -1,14 +1,12 @@
 #include "gltf/animatable.h"
 
-#include "gltf/texture_places.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace glint {
 
@@ -16,87 +14,8 @@ namespace {
 
 constexpr double kMax = std::numeric_limits<float>::max();
 
-// 0 stands for an infinite index; nothing lies between it and 1.
-double convertIor(double value) {
-    return value == 0.0 ? 0.0 : std::max(value, 1.0);
-}
-
-// The importer reads distances in the same way: 0 means infinite, and a distance that is not above 0 becomes
-// a micrometre.
-double convertDistance(double value) {
-    constexpr double kLeast = 1e-6;
-    return value >= kMax ? 0.0 : std::max(value, kLeast);
-}
-
-double convertAngle(double value) {
-    return std::remainder(value, 2.0 * std::numbers::pi);
-}
-
-using MaterialProperty = AnimatableProperty<Material, float>;
 using LightProperty = AnimatableProperty<Light, float>;
 using CameraProperty = AnimatableProperty<Camera, double>;
-
-// The factors of the core and of the extensions that Glint shades.
-constexpr MaterialProperty kFactors[] = {
-    {"alphaCutoff", 1, 0.0, kMax, [](Material& m) { return &m.alphaCutoff; }},
-    {"emissiveFactor", 3, 0.0, 1.0, [](Material& m) { return m.emissiveFactor.data(); }},
-    {"normalTexture/scale", 1, -kMax, kMax, [](Material& m) { return &m.normalScale; }},
-    {"occlusionTexture/strength", 1, 0.0, 1.0, [](Material& m) { return &m.occlusionStrength; }},
-    {"pbrMetallicRoughness/baseColorFactor", 4, 0.0, 1.0,
-     [](Material& m) { return m.baseColorFactor.data(); }},
-    {"pbrMetallicRoughness/metallicFactor", 1, 0.0, 1.0, [](Material& m) { return &m.metallicFactor; }},
-    {"pbrMetallicRoughness/roughnessFactor", 1, 0.0, 1.0, [](Material& m) { return &m.roughnessFactor; }},
-    {"extensions/KHR_materials_anisotropy/anisotropyStrength", 1, 0.0, 1.0,
-     [](Material& m) { return &m.anisotropy.strength; }},
-    {"extensions/KHR_materials_anisotropy/anisotropyRotation", 1, -kMax, kMax,
-     [](Material& m) { return &m.anisotropy.rotation; }, convertAngle},
-    {"extensions/KHR_materials_clearcoat/clearcoatFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.clearcoat.factor; }},
-    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.clearcoat.roughnessFactor; }},
-    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", 1, -kMax, kMax,
-     [](Material& m) { return &m.clearcoat.normalScale; }},
-    {"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.diffuseTransmission.factor; }},
-    {"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", 3, 0.0, 1.0,
-     [](Material& m) { return m.diffuseTransmission.colorFactor.data(); }},
-    {"extensions/KHR_materials_dispersion/dispersion", 1, 0.0, kMax,
-     [](Material& m) { return &m.dispersion.dispersion; }},
-    {"extensions/KHR_materials_emissive_strength/emissiveStrength", 1, 0.0, kMax,
-     [](Material& m) { return &m.emissiveStrength; }},
-    {"extensions/KHR_materials_ior/ior", 1, 0.0, kMax, [](Material& m) { return &m.ior.ior; }, convertIor},
-    {"extensions/KHR_materials_iridescence/iridescenceFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.iridescence.factor; }},
-    {"extensions/KHR_materials_iridescence/iridescenceIor", 1, 1.0, kMax,
-     [](Material& m) { return &m.iridescence.ior; }},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", 1, 0.0, kMax,
-     [](Material& m) { return &m.iridescence.thicknessMinimum; }},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", 1, 0.0, kMax,
-     [](Material& m) { return &m.iridescence.thicknessMaximum; }},
-    {"extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor", 4, 0.0, 1.0,
-     [](Material& m) { return m.baseColorFactor.data(); }},
-    {"extensions/KHR_materials_pbrSpecularGlossiness/specularFactor", 3, 0.0, 1.0,
-     [](Material& m) { return m.specularGlossiness.specularFactor.data(); }},
-    {"extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.specularGlossiness.glossinessFactor; }},
-    {"extensions/KHR_materials_sheen/sheenColorFactor", 3, 0.0, 1.0,
-     [](Material& m) { return m.sheen.colorFactor.data(); }},
-    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.sheen.roughnessFactor; }},
-    {"extensions/KHR_materials_specular/specularFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.specular.factor; }},
-    {"extensions/KHR_materials_specular/specularColorFactor", 3, 0.0, kMax,
-     [](Material& m) { return m.specular.colorFactor.data(); }},
-    {"extensions/KHR_materials_transmission/transmissionFactor", 1, 0.0, 1.0,
-     [](Material& m) { return &m.transmission.factor; }},
-    {"extensions/KHR_materials_volume/thicknessFactor", 1, 0.0, kMax,
-     [](Material& m) { return &m.volume.thicknessFactor; }},
-    {"extensions/KHR_materials_volume/attenuationDistance", 1, 0.0, kMax,
-     [](Material& m) { return &m.volume.attenuationDistance; }, convertDistance},
-    {"extensions/KHR_materials_volume/attenuationColor", 3, 0.0, 1.0,
-     [](Material& m) { return m.volume.attenuationColor.data(); }},
-};
-constexpr int kFactorCount = static_cast<int>(std::size(kFactors));
 
 constexpr LightProperty kLightValues[] = {
     {"color", 3, 0.0, kMax, [](Light& light) { return light.color.data(); }},
@@ -128,37 +47,69 @@ std::optional<int> findByName(const AnimatableProperty<Object, Number> (&table)[
                                     : std::optional(static_cast<int>(found - std::begin(table)));
 }
 
-// Each slot has three properties of KHR_texture_transform. They come after the factors.
+// Each place of a texture has three properties of KHR_texture_transform. They come after the parameters.
 enum TransformPart : int { kOffset = 0, kRotation = 1, kScale = 2 };
 constexpr std::string_view kTransformParts[] = {"offset", "rotation", "scale"};
 constexpr int kPartCount = 3;
 
-bool isFactor(int property) {
-    return property < kFactorCount;
+// A texture's place in the JSON of a material.
+struct TexturePlace {
+    int texture = 0;
+    const MaterialTexture::Place* place = nullptr;
+};
+
+std::vector<TexturePlace> texturePlaces(const MaterialModel& model) {
+    std::vector<TexturePlace> places;
+    for (std::size_t i = 0; i < model.textures.size(); ++i) {
+        for (const MaterialTexture::Place& place : model.textures[i].places) {
+            places.push_back({static_cast<int>(i), &place});
+        }
+    }
+    return places;
 }
 
-int partOf(int property) {
-    return (property - kFactorCount) % kPartCount;
+int parameterCount(const MaterialModel& model) {
+    return static_cast<int>(model.parameters.size());
 }
 
-const gltf::TexturePlace& placeOf(int property) {
-    return gltf::texturePlaces()[static_cast<std::size_t>((property - kFactorCount) / kPartCount)];
+// Returns the parameter, or null if the property is a transform.
+const Parameter* parameterOf(const MaterialModel& model, int property) {
+    return property < parameterCount(model) ? &model.parameters[static_cast<std::size_t>(property)] : nullptr;
 }
 
-std::string transformName(const gltf::TexturePlace& place, std::string_view part) {
-    const std::string_view owner = place.owner;
-    const std::string_view prefix = owner.starts_with("KHR_") ? "extensions/" : "";
-    return fmt::format("{}{}{}{}/extensions/KHR_texture_transform/{}", prefix, owner,
-                       owner.empty() ? "" : "/", place.member, part);
+int partOf(const MaterialModel& model, int property) {
+    return (property - parameterCount(model)) % kPartCount;
+}
+
+TexturePlace placeOf(const MaterialModel& model, int property) {
+    return texturePlaces(model)[static_cast<std::size_t>((property - parameterCount(model)) / kPartCount)];
+}
+
+std::string pathOf(const MaterialModel& model, int object, std::string_view place) {
+    const MaterialObject& row = model.objects[static_cast<std::size_t>(object)];
+    return fmt::format("{}{}{}{}", row.isExtension ? "extensions/" : "", row.name,
+                       row.name.empty() ? "" : "/", place);
+}
+
+std::string propertyPath(const MaterialModel& model, int property) {
+    if (const Parameter* parameter = parameterOf(model, property)) {
+        return pathOf(model, parameter->object, parameter->place);
+    }
+    const MaterialTexture::Place& place = *placeOf(model, property).place;
+    return pathOf(model, place.object,
+                  fmt::format("{}/extensions/KHR_texture_transform/{}", place.member,
+                              kTransformParts[partOf(model, property)]));
 }
 
 // Returns the first number of a material property.
 float* firstOf(Material& material, int property) {
-    if (isFactor(property)) {
-        return kFactors[property].first(material);
+    const MaterialModel& model = material.model();
+    if (const Parameter* parameter = parameterOf(model, property)) {
+        return &material.values[static_cast<std::size_t>(parameter->first)];
     }
-    TextureTransform& transform = material.texture(placeOf(property).slot).transform;
-    switch (partOf(property)) {
+    TextureTransform& transform =
+        material.textures[static_cast<std::size_t>(placeOf(model, property).texture)].transform;
+    switch (partOf(model, property)) {
         case kOffset:
             return transform.offset.data();
         case kRotation:
@@ -175,39 +126,23 @@ double settled(const AnimatableProperty<Object, Number>& row, double value) {
 }
 
 // Returns the value as the material stores it.
-float heldValue(int property, double value) {
-    return static_cast<float>(isFactor(property) ? settled(kFactors[property], value)
-                                                 : std::clamp(value, -kMax, kMax));
-}
-
-bool isNamed(int property, std::string_view name) {
-    return isFactor(property) && kFactors[property].name == name;
+float heldValue(const MaterialModel& model, int property, double value) {
+    const Parameter* const parameter = parameterOf(model, property);
+    return parameter != nullptr ? parameter->hold(value) : static_cast<float>(std::clamp(value, -kMax, kMax));
 }
 
 // A material reads only one of the two base models.
 bool isRead(const Material& material, int property) {
-    if (!isFactor(property)) {
-        return true;
-    }
-    const std::string_view name = kFactors[property].name;
-    const bool glossy = material.specularGlossiness.given && !material.unlit;
-    return name.starts_with("pbrMetallicRoughness/")                             ? !glossy
-           : name.starts_with("extensions/KHR_materials_pbrSpecularGlossiness/") ? glossy
-                                                                                 : true;
+    const Parameter* const parameter = parameterOf(material.model(), property);
+    return parameter == nullptr || material.reads(parameter->object);
 }
 
 }  // namespace
 
-std::optional<int> findMaterialProperty(std::string_view name) {
-    if (const std::optional<int> factor = findByName(kFactors, name)) {
-        return factor;
-    }
-    const auto places = gltf::texturePlaces();
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        for (int part = 0; part < kPartCount; ++part) {
-            if (transformName(places[place], kTransformParts[part]) == name) {
-                return kFactorCount + kPartCount * static_cast<int>(place) + part;
-            }
+std::optional<int> findMaterialProperty(const MaterialModel& model, std::string_view name) {
+    for (int property = 0; property < materialPropertyCount(model); ++property) {
+        if (propertyPath(model, property) == name) {
+            return property;
         }
     }
     return std::nullopt;
@@ -221,20 +156,21 @@ std::optional<int> findCameraProperty(std::string_view name) {
     return findByName(kCameras, name);
 }
 
-int materialPropertyCount() {
-    return kFactorCount + kPartCount * static_cast<int>(gltf::texturePlaces().size());
+int materialPropertyCount(const MaterialModel& model) {
+    return parameterCount(model) + kPartCount * static_cast<int>(texturePlaces(model).size());
 }
 
-std::string materialPropertyName(int property) {
-    const std::string name = isFactor(property)
-                                 ? std::string(kFactors[property].name)
-                                 : transformName(placeOf(property), kTransformParts[partOf(property)]);
+std::string materialPropertyName(const MaterialModel& model, int property) {
+    const std::string name = propertyPath(model, property);
     constexpr std::string_view kExtensions = "extensions/";
     return name.starts_with(kExtensions) ? name.substr(kExtensions.size()) : name;
 }
 
-std::size_t materialPropertyWidth(int property) {
-    return isFactor(property) ? kFactors[property].width : partOf(property) == kRotation ? 1 : 2;
+std::size_t materialPropertyWidth(const MaterialModel& model, int property) {
+    const Parameter* const parameter = parameterOf(model, property);
+    return parameter != nullptr                   ? static_cast<std::size_t>(parameter->channels)
+           : partOf(model, property) == kRotation ? 1U
+                                                  : 2U;
 }
 
 std::size_t lightPropertyWidth(int property) {
@@ -247,7 +183,7 @@ void setMaterialProperty(Material& material, int property, std::span<const doubl
     }
     float* const numbers = firstOf(material, property);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        numbers[i] = heldValue(property, values[i]);
+        numbers[i] = heldValue(material.model(), property, values[i]);
     }
 }
 
@@ -276,59 +212,33 @@ void settleCamera(Camera& camera) {
 
 double materialPropertyValue(const Material& material, int property, std::size_t number) {
     Material copy = material;
-    const float value = firstOf(copy, property)[number];
-    const bool infinite =
-        value == 0.0F && isNamed(property, "extensions/KHR_materials_volume/attenuationDistance");
-    return infinite ? kMax : value;
+    return firstOf(copy, property)[number];
 }
 
-bool setGenericValue(Material& material, int property, std::size_t number, ValueRange range) {
-    const float low = heldValue(property, range.low);
-    const float high = heldValue(property, range.high);
-    if (range.low == range.high || !isRead(material, property)) {
-        return false;
-    }
-    float& target = firstOf(material, property)[number];
-    const bool isIor = isNamed(property, "extensions/KHR_materials_ior/ior");
-    if (low == high && !isIor) {
-        target = low;
-        return false;
-    }
-    // The alpha is compared with the cut-off. The highest cut-off and the lowest alpha cut most.
-    if (isNamed(property, "alphaCutoff")) {
-        target = high;
-        return true;
-    }
-    if (number == 3) {
-        target = low;
-        return true;
-    }
-    // Each number has a fraction of its own, so that two numbers that vary are not taken for equal. The
-    // normal textures of base and coat would be otherwise. No value may be 0, 1 or 1.5, at which rules call
-    // features neutral.
-    double fraction = 0.437 + 0.001 * property + 0.0001 * static_cast<double>(number);
-    const double from = isIor ? std::max<double>(low, 1.0) : low;
-    const double to = isIor ? std::max<double>(high, from + 1.0) : high;
-    float value = static_cast<float>(from + fraction * (to - from));
-    while (value == 0.0F || value == 1.0F || value == 1.5F) {
-        fraction *= 0.9;
-        value = static_cast<float>(from + fraction * (to - from));
-    }
-    target = value;
-    return true;
-}
-
-void setSmoothestValue(Material& material, int property, ValueRange range) {
+bool setPropertyRange(Material& material, int property, std::size_t number, ValueRange range) {
     if (!isRead(material, property)) {
-        return;
+        return false;
     }
-    if (isNamed(property, "pbrMetallicRoughness/roughnessFactor") ||
-        isNamed(property, "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor")) {
-        *firstOf(material, property) = heldValue(property, range.low);
+    const MaterialModel& model = material.model();
+    const bool varies = range.low != range.high;
+    const Parameter* const parameter = parameterOf(model, property);
+    if (parameter == nullptr) {
+        TextureInfo& info = material.textures[static_cast<std::size_t>(placeOf(model, property).texture)];
+        info.moves = info.moves || varies;
+        return varies;
     }
-    if (isNamed(property, "extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor")) {
-        *firstOf(material, property) = heldValue(property, range.high);
+    if (material.ranges.empty()) {
+        for (const float value : material.values) {
+            material.ranges.push_back({value, value});
+        }
     }
+    const bool turns = parameter->isAngle && varies;
+    const ValueInterval held{parameter->hold(range.low), parameter->hold(range.high)};
+    material.ranges[static_cast<std::size_t>(parameter->first) + number] =
+        turns ? ValueInterval{-std::numbers::pi, std::numbers::pi}
+              : hull({held.low, held.low}, {held.high, held.high});
+    // Values that are clamped to one are always the same.
+    return turns || held.low != held.high;
 }
 
 }  // namespace glint

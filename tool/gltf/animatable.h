@@ -24,24 +24,25 @@ struct AnimatableProperty {
     double (*convert)(double value) = nullptr;
 };
 
-// AnimationChannel::property numbers the properties below. A material's factors come first, then its texture
-// transforms. Each slot has three of those, in this order: offset, rotation, scale.
+// AnimationChannel::property numbers the properties below. A material's parameters come first, in the order
+// of its model, then its texture transforms. Each place of a texture has three of those, in this order:
+// offset, rotation, scale.
 
-std::optional<int> findMaterialProperty(std::string_view name);
+std::optional<int> findMaterialProperty(const MaterialModel& model, std::string_view name);
 std::optional<int> findLightProperty(std::string_view name);
 // `name` starts with the camera's type: "perspective/yfov".
 std::optional<int> findCameraProperty(std::string_view name);
 
 // All numbers of material properties are below this.
-int materialPropertyCount();
+int materialPropertyCount(const MaterialModel& model);
 // Returns the name without "extensions/" at its start.
-std::string materialPropertyName(int property);
+std::string materialPropertyName(const MaterialModel& model, int property);
 
-std::size_t materialPropertyWidth(int property);
+std::size_t materialPropertyWidth(const MaterialModel& model, int property);
 std::size_t lightPropertyWidth(int property);
 
 // `values` has as many numbers as the property is wide. If the material does not read the base model of the
-// property (KHR_materials_pbrSpecularGlossiness or metallic-roughness), the property stays as it is.
+// property, the property stays as it is.
 void setMaterialProperty(Material& material, int property, std::span<const double> values);
 void setLightProperty(Light& light, int property, std::span<const double> values);
 void setCameraProperty(Camera& camera, int property, double value);
@@ -57,13 +58,11 @@ struct ValueRange {
     double high = 0.0;
 };
 
-// Returns the number that the material has. An infinite attenuation distance is the largest float.
+// Returns the number that the material has.
 double materialPropertyValue(const Material& material, int property, std::size_t number);
 
-// `range` bounds all values that the number takes. Sets the number to a value between the ends at which no
-// feature is neutral, or to the only value that it takes. Returns false if the number is always the same.
-bool setGenericValue(Material& material, int property, std::size_t number, ValueRange range);
-// Sets roughness to its least value and glossiness to its greatest. Other properties stay as they are.
-void setSmoothestValue(Material& material, int property, ValueRange range);
+// `range` bounds all values that the number takes. Planning reads the range in place of the value. Returns
+// false if the number is always the same.
+bool setPropertyRange(Material& material, int property, std::size_t number, ValueRange range);
 
 }  // namespace glint

@@ -89,8 +89,8 @@ MaterialRanges materialRanges(const Scene& scene) {
     return all;
 }
 
-std::string describe(int property, const std::vector<ValueRange>& ranges) {
-    std::string text = materialPropertyName(property);
+std::string describe(const MaterialModel& model, int property, const std::vector<ValueRange>& ranges) {
+    std::string text = materialPropertyName(model, property);
     for (const ValueRange& range : ranges) {
         text +=
             fmt::format("{}{:.4g} to {:.4g}", &range == ranges.data() ? " " : ", ", range.low, range.high);
@@ -100,25 +100,17 @@ std::string describe(int property, const std::vector<ValueRange>& ranges) {
 
 void settleMaterials(Scene& scene) {
     for (AnimatedMaterial& animated : scene.animatedMaterials) {
-        animated.generic = animated.rest;
+        animated.planned = animated.rest;
     }
-    const MaterialRanges all = materialRanges(scene);
-    for (const auto& [place, ranges] : all) {
+    for (const auto& [place, ranges] : materialRanges(scene)) {
         AnimatedMaterial& animated = scene.animatedMaterials[static_cast<std::size_t>(place.first)];
         bool varies = false;
         for (std::size_t i = 0; i < ranges.size(); ++i) {
-            varies = setGenericValue(animated.generic, place.second, i, ranges[i]) || varies;
+            varies = setPropertyRange(animated.planned, place.second, i, ranges[i]) || varies;
         }
         if (varies) {
-            animated.changes.push_back(describe(place.second, ranges));
+            animated.changes.push_back(describe(animated.rest.model(), place.second, ranges));
         }
-    }
-    for (AnimatedMaterial& animated : scene.animatedMaterials) {
-        animated.smoothest = animated.generic;
-    }
-    for (const auto& [place, ranges] : all) {
-        setSmoothestValue(scene.animatedMaterials[static_cast<std::size_t>(place.first)].smoothest,
-                          place.second, ranges.front());
     }
 }
 
@@ -179,7 +171,7 @@ void settleLights(Scene& scene) {
 std::vector<Material> planningMaterials(const Scene& scene) {
     std::vector<Material> materials = scene.materials;
     for (const AnimatedMaterial& animated : scene.animatedMaterials) {
-        materials[static_cast<std::size_t>(animated.material)] = animated.generic;
+        materials[static_cast<std::size_t>(animated.material)] = animated.planned;
     }
     return materials;
 }

@@ -5,7 +5,7 @@
 
 namespace glint::gltf {
 
-// Fills AnimatedMaterial::generic, smoothest and changes, Node::canShow, Light::canShine, and the visibility
+// Fills AnimatedMaterial::planned and changes, Node::canShow, Light::canShine, and the visibility
 // of nodes and lights at rest. The animations must have been imported.
 void settleAnimatedValues(Scene& scene);
 

@@ -211,13 +211,14 @@ private:
     }
 
     PointerTarget material(std::size_t index, Tokens rest) const {
-        const std::optional<int> property = findMaterialProperty(nameOf(rest));
+        const std::optional<int> property = findMaterialProperty(builtinMaterialModel(), nameOf(rest));
         if (!property) {
             return unknown();
         }
-        return hasOwner() ? known(AnimationPath::Material, materialPropertyWidth(*property),
-                                  {static_cast<int>(index)}, *property)
-                          : undefined();
+        return hasOwner()
+                   ? known(AnimationPath::Material, materialPropertyWidth(builtinMaterialModel(), *property),
+                           {static_cast<int>(index)}, *property)
+                   : undefined();
     }
 
     template <typename Object>

@@ -2,6 +2,7 @@
 
 #include "gltf/document.h"
 #include "gltf/schema.h"
+#include "plan/material_model.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,33 +15,12 @@ namespace glint::gltf {
 
 namespace {
 
-// KHR_texture_basisu is listed even if this build does not decode it. textures.cpp decides about each
-// texture.
-constexpr auto kSupported = std::to_array<std::string_view>({"EXT_mesh_gpu_instancing",
-                                                             "EXT_meshopt_compression",
-                                                             "EXT_texture_webp",
-                                                             "KHR_animation_pointer",
-                                                             "KHR_draco_mesh_compression",
-                                                             "KHR_lights_punctual",
-                                                             "KHR_materials_anisotropy",
-                                                             "KHR_materials_clearcoat",
-                                                             "KHR_materials_diffuse_transmission",
-                                                             "KHR_materials_dispersion",
-                                                             "KHR_materials_emissive_strength",
-                                                             "KHR_materials_ior",
-                                                             "KHR_materials_iridescence",
-                                                             "KHR_materials_pbrSpecularGlossiness",
-                                                             "KHR_materials_sheen",
-                                                             "KHR_materials_specular",
-                                                             "KHR_materials_transmission",
-                                                             "KHR_materials_unlit",
-                                                             "KHR_materials_variants",
-                                                             "KHR_materials_volume",
-                                                             "KHR_mesh_quantization",
-                                                             "KHR_meshopt_compression",
-                                                             "KHR_node_visibility",
-                                                             "KHR_texture_basisu",
-                                                             "KHR_texture_transform"});
+// Extensions of materials are declared (shaders/materials). KHR_texture_basisu is listed even if this build
+// does not decode it. textures.cpp decides about each texture.
+constexpr auto kSupported = std::to_array<std::string_view>(
+    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_animation_pointer",
+     "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_variants", "KHR_mesh_quantization",
+     "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_basisu", "KHR_texture_transform"});
 
 // Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
 constexpr auto kNoPicture = std::to_array<std::string_view>(
@@ -74,7 +54,10 @@ std::string extensionHint(std::string_view name) {
 }  // namespace
 
 bool isSupportedExtension(std::string_view name) {
-    return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+    const MaterialModel& model = builtinMaterialModel();
+    const int object = model.findObject(name);
+    return (object >= 0 && model.objects[static_cast<std::size_t>(object)].isExtension) ||
+           std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }
 
 bool changesNoPicture(std::string_view name) {

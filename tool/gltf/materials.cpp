@@ -1,12 +1,13 @@
 #include "gltf/materials.h"
 
-#include "gltf/material_extensions.h"
+#include "gltf/extensions.h"
 #include "gltf/object_reader.h"
-#include "gltf/texture_places.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,55 +15,33 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr TexturePlace kTextures[] = {
-    {"pbrMetallicRoughness", "baseColorTexture", TextureSlot::BaseColor},
-    {"pbrMetallicRoughness", "metallicRoughnessTexture", TextureSlot::MetallicRoughness},
-    {"KHR_materials_pbrSpecularGlossiness", "diffuseTexture", TextureSlot::BaseColor},
-    {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture", TextureSlot::MetallicRoughness},
-    {"", "normalTexture", TextureSlot::Normal},
-    {"", "occlusionTexture", TextureSlot::Occlusion},
-    {"", "emissiveTexture", TextureSlot::Emissive},
-    {"KHR_materials_clearcoat", "clearcoatTexture", TextureSlot::Clearcoat},
-    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", TextureSlot::ClearcoatRoughness},
-    {"KHR_materials_clearcoat", "clearcoatNormalTexture", TextureSlot::ClearcoatNormal},
-    {"KHR_materials_sheen", "sheenColorTexture", TextureSlot::SheenColor},
-    {"KHR_materials_sheen", "sheenRoughnessTexture", TextureSlot::SheenRoughness},
-    {"KHR_materials_anisotropy", "anisotropyTexture", TextureSlot::Anisotropy},
-    {"KHR_materials_specular", "specularTexture", TextureSlot::Specular},
-    {"KHR_materials_specular", "specularColorTexture", TextureSlot::SpecularColor},
-    {"KHR_materials_iridescence", "iridescenceTexture", TextureSlot::Iridescence},
-    {"KHR_materials_iridescence", "iridescenceThicknessTexture", TextureSlot::IridescenceThickness},
-    {"KHR_materials_transmission", "transmissionTexture", TextureSlot::Transmission},
-    {"KHR_materials_volume", "thicknessTexture", TextureSlot::Thickness},
-    {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", TextureSlot::DiffuseTransmission},
-    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture",
-     TextureSlot::DiffuseTransmissionColor},
-};
+// Returns an object of a material's JSON, or null if the material does not have it.
+const Json* objectOf(const Json& json, const MaterialObject& object) {
+    return object.name.empty()  ? &json
+           : object.isExtension ? findExtension(json, object.name)
+                                : find(json, object.name);
+}
 
-// Returns the base model whose textures the material does not read.
-const char* ignoredModel(const Material& material) {
-    return material.specularGlossiness.given && !material.unlit ? "pbrMetallicRoughness"
-                                                                : "KHR_materials_pbrSpecularGlossiness";
+std::string pointerOf(const std::string& pointer, const MaterialObject& object) {
+    return object.name.empty()
+               ? pointer
+               : fmt::format("{}{}/{}", pointer, object.isExtension ? "/extensions" : "", object.name);
 }
 
 Status readTextures(Document& document, TextureTable& textures, const Json& json, const std::string& pointer,
                     Material& material) {
-    const std::string_view ignored = ignoredModel(material);
-    for (const auto& [owner, member, slot] : kTextures) {
-        const std::string_view name = owner;
-        const bool isExtension = name.starts_with("KHR_");
-        const Json* object = name.empty()  ? &json
-                             : isExtension ? findExtension(json, name)
-                                           : find(json, name);
-        if (object == nullptr || name == ignored) {
-            continue;
-        }
-        const std::string place = name.empty()  ? pointer
-                                  : isExtension ? fmt::format("{}/extensions/{}", pointer, name)
-                                                : fmt::format("{}/{}", pointer, name);
-        const ObjectReader reader(document, *object, place);
-        if (Status status = reader.texture(member, textures, material.texture(slot)); !status) {
-            return status;
+    const MaterialModel& model = material.model();
+    for (std::size_t slot = 0; slot < model.textures.size(); ++slot) {
+        for (const MaterialTexture::Place& place : model.textures[slot].places) {
+            const MaterialObject& owner = model.objects[static_cast<std::size_t>(place.object)];
+            const Json* const object = objectOf(json, owner);
+            if (object == nullptr || !material.reads(place.object)) {
+                continue;
+            }
+            const ObjectReader reader(document, *object, pointerOf(pointer, owner));
+            if (Status status = reader.texture(place.member, textures, material.textures[slot]); !status) {
+                return status;
+            }
         }
     }
     return okStatus();
@@ -72,13 +51,13 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
 // agree.
 void checkTransfer(Document& document, const Scene& scene, const Material& material,
                    const std::string& pointer) {
-    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
         if (material.textures[slot].texture < 0) {
             continue;
         }
         const Texture& texture = scene.textures[static_cast<std::size_t>(material.textures[slot].texture)];
         const Image& image = scene.images[static_cast<std::size_t>(texture.image)];
-        const bool color = isColor(material, static_cast<TextureSlot>(slot));
+        const bool color = material.isColor(static_cast<int>(slot));
         if (image.transfer == (color ? Transfer::Linear : Transfer::Srgb)) {
             document.warn("ktx2-metadata", pointer,
                           fmt::format("{} says that it is {}, but is used as {}; it is read as the latter",
@@ -104,32 +83,77 @@ AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::
     return AlphaMode::Opaque;
 }
 
-void readFactors(Document& document, const Json& json, const std::string& pointer, Material& material) {
-    const ObjectReader reader(document, json, pointer);
-    reader.numbers("emissiveFactor", material.emissiveFactor, kUnit);
-    // A value above 1 is legal, and means that nothing is opaque.
-    material.alphaCutoff = reader.number("alphaCutoff", 0.5, kNotNegative);
-    if (const Json* core = find(json, "pbrMetallicRoughness")) {
-        const ObjectReader coreReader(document, *core, reader.pointerTo("pbrMetallicRoughness"));
-        coreReader.numbers("baseColorFactor", material.baseColorFactor, kUnit);
-        material.metallicFactor = coreReader.number("metallicFactor", 1.0, kUnit);
-        material.roughnessFactor = coreReader.number("roughnessFactor", 1.0, kUnit);
+// Returns the value at a place below an object, such as "normalTexture/scale", or null.
+const Json* findBelow(const Json& object, std::string_view place) {
+    const Json* value = &object;
+    while (value != nullptr && !place.empty()) {
+        const std::string_view member = place.substr(0, place.find('/'));
+        value = find(*value, member);
+        place.remove_prefix(std::min(place.size(), member.size() + 1));
     }
-    if (const Json* normal = find(json, "normalTexture")) {
-        const ObjectReader normalReader(document, *normal, reader.pointerTo("normalTexture"));
-        material.normalScale = static_cast<float>(normalReader.number("scale", 1.0));
+    return value;
+}
+
+// The value's range is told to the user as the declaration gives it.
+std::string rangeHint(const Parameter& parameter) {
+    const std::string also = parameter.also ? fmt::format("{}, or ", *parameter.also) : "";
+    return parameter.high >= std::numeric_limits<float>::max()
+               ? fmt::format("use {}{} or more", also, parameter.low)
+               : fmt::format("use {}{} to {}", also, parameter.low, parameter.high);
+}
+
+void readParameter(const ObjectReader& reader, const Parameter& parameter, Material& material) {
+    const Json* const json = findBelow(reader.json(), parameter.place);
+    for (int i = 0; i < parameter.channels; ++i) {
+        float& target = material.values[static_cast<std::size_t>(parameter.first + i)];
+        if (json == nullptr) {
+            // An object that replaces another one has defaults of its own.
+            target = parameter.aliasOf >= 0 ? parameter.fallback[static_cast<std::size_t>(i)] : target;
+            continue;
+        }
+        const double value = (json->is_array() ? (*json)[static_cast<std::size_t>(i)] : *json).get<double>();
+        target = parameter.hold(value);
+        if (!parameter.isValid(value)) {
+            const std::string place =
+                json->is_array() ? fmt::format("{}/{}", parameter.place, i) : parameter.place;
+            reader.warn(
+                place,
+                fmt::format("is {}; {} is used", value, std::clamp(value, parameter.low, parameter.high)),
+                rangeHint(parameter));
+        }
     }
-    if (const Json* occlusion = find(json, "occlusionTexture")) {
-        const ObjectReader occlusionReader(document, *occlusion, reader.pointerTo("occlusionTexture"));
-        material.occlusionStrength = occlusionReader.number("strength", 1.0, kUnit);
+}
+
+void readParameters(Document& document, const Json& json, const std::string& pointer, Material& material) {
+    const MaterialModel& model = material.model();
+    for (std::size_t i = 0; i < model.objects.size(); ++i) {
+        material.given[i] = objectOf(json, model.objects[i]) != nullptr ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < model.objects.size(); ++i) {
+        for (const MaterialObject::Setting& setting : model.objects[i].settings) {
+            if (material.reads(static_cast<int>(i))) {
+                const Parameter& parameter = model.parameters[static_cast<std::size_t>(setting.parameter)];
+                material.values[static_cast<std::size_t>(parameter.first)] = setting.value;
+            }
+        }
+    }
+    for (const Parameter& parameter : model.parameters) {
+        const MaterialObject& owner = model.objects[static_cast<std::size_t>(parameter.object)];
+        const Json* const object = objectOf(json, owner);
+        if (object != nullptr && material.reads(parameter.object)) {
+            readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
+        }
+    }
+    if (const Json* extensions = find(json, "extensions")) {
+        for (const auto& [name, ignored] : extensions->items()) {
+            if (!isSupportedExtension(name) && !changesNoPicture(name)) {
+                material.unsupportedExtensions.push_back(name);
+            }
+        }
     }
 }
 
 }  // namespace
-
-std::span<const TexturePlace> texturePlaces() {
-    return kTextures;
-}
 
 Status importMaterials(Document& document, Scene& scene) {
     importSamplers(document, scene);
@@ -142,8 +166,7 @@ Status importMaterials(Document& document, Scene& scene) {
         const tinygltf::Material& source = document.model().materials[i];
         material.alphaMode = readAlphaMode(document, source.alphaMode, pointer);
         material.doubleSided = source.doubleSided;
-        readFactors(document, json, pointer, material);
-        readMaterialExtensions(document, json, pointer, material);
+        readParameters(document, json, pointer, material);
         if (Status status = readTextures(document, textures, json, pointer, material); !status) {
             return status;
         }

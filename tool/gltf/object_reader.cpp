@@ -22,31 +22,8 @@ std::string ObjectReader::pointerTo(std::string_view member) const {
     return fmt::format("{}/{}", pointer_, member);
 }
 
-std::string ObjectReader::elementPointer(std::string_view member, std::size_t index) const {
-    return fmt::format("{}/{}/{}", pointer_, member, index);
-}
-
 void ObjectReader::warn(std::string_view member, std::string message, std::string hint) const {
     document_.warn("material-range", pointerTo(member), std::move(message), std::move(hint));
-}
-
-float ObjectReader::clamp(const std::string& pointer, double value, Range range) const {
-    const double clamped = std::clamp(value, range.low, range.high);
-    if (clamped != value) {
-        document_.warn("material-range", pointer, fmt::format("is {}; {} is used", value, clamped),
-                       range.high == kNotNegative.high ? fmt::format("use {} or more", range.low)
-                                                       : fmt::format("use {} to {}", range.low, range.high));
-    }
-    return static_cast<float>(clamped);
-}
-
-double ObjectReader::number(std::string_view member, double fallback) const {
-    const Json* found = find(object_, member);
-    return found == nullptr ? fallback : found->get<double>();
-}
-
-float ObjectReader::number(std::string_view member, double fallback, Range range) const {
-    return clamp(pointerTo(member), number(member, fallback), range);
 }
 
 Status ObjectReader::texture(std::string_view member, TextureTable& textures, TextureInfo& info) const {

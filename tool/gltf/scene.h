@@ -187,14 +187,13 @@ struct SourceFile {
 };
 
 // A material whose values animations change (KHR_animation_pointer). Its features are decided once for all
-// times. Two materials stand for every value between the least and the greatest that it takes at rest or in a
-// keyframe.
+// times.
 struct AnimatedMaterial {
     int material = 0;  // index into Scene::materials
     Material rest;     // as the file gives it
-    // A value that varies lies between its bounds here, and no feature is neutral at it.
-    Material generic;
-    Material smoothest;                // the same, but as smooth as it becomes
+    // The same, with the ranges of what varies. A feature is only left out if it is neutral over the whole
+    // range.
+    Material planned;
     std::vector<std::string> changes;  // the values that vary, such as "metallicFactor 0 to 1"
 };
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace glint::gltf {
 
@@ -112,23 +114,31 @@ constexpr std::array kVariants{objects("variants", kVariant, true)};
 constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
                                      object("KHR_materials_variants", kVariants)};
 
-constexpr std::array kRoot{
-    object("extensions", kRootExtensions),
-    objects("buffers", kBuffer),
-    objects("bufferViews", kBufferView),
-    objects("accessors", {}),
-    objects("meshes", kMesh),
-    objects("materials", kMaterial),
-    objects("textures", kTexture),
-    objects("samplers", kSampler),
-    objects("images", kImage),
-    objects("nodes", kNode),
-    objects("scenes", kScene),
-    objects("cameras", kCamera),
-    objects("animations", kAnimation),
-    objects("skins", kSkin),
-    index("scene", "/scenes"),
-};
+std::vector<Rule> makeRoot() {
+    static const MaterialRules kMaterial(builtinMaterialModel());
+    return {
+        object("extensions", kRootExtensions),
+        objects("buffers", kBuffer),
+        objects("bufferViews", kBufferView),
+        objects("accessors", {}),
+        objects("meshes", kMesh),
+        objects("materials", kMaterial.rules()),
+        objects("textures", kTexture),
+        objects("samplers", kSampler),
+        objects("images", kImage),
+        objects("nodes", kNode),
+        objects("scenes", kScene),
+        objects("cameras", kCamera),
+        objects("animations", kAnimation),
+        objects("skins", kSkin),
+        index("scene", "/scenes"),
+    };
+}
+
+std::span<const Rule> rootRules() {
+    static const std::vector<Rule> kRoot = makeRoot();
+    return kRoot;
+}
 
 // Calls `use(index, isIndices)` for every accessor to which the member of that name refers, if there is such
 // a member.
@@ -256,7 +266,7 @@ std::optional<SchemaError> checkCameras(const Json& root) {
 }  // namespace
 
 std::optional<SchemaError> checkDocument(Json& root) {
-    if (auto error = checkObject(root, root, kRoot, "")) {
+    if (auto error = checkObject(root, root, rootRules(), "")) {
         return error;
     }
     if (auto error = checkStrides(root)) {
@@ -277,7 +287,7 @@ std::optional<SchemaError> checkDocument(Json& root) {
 }
 
 Json projectDocument(const Json& root) {
-    Json projection = project(root, kRoot);
+    Json projection = project(root, rootRules());
     projection["asset"] = {{"version", "2.0"}};
     projection.erase("buffers");
     projection.erase("images");

@@ -1,5 +1,7 @@
 #include "image/tone.h"
 
+#include "base/vectors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -19,10 +21,6 @@ constexpr double kBlackShare = 1e-6;
 constexpr float kFresnel = 0.04F;
 constexpr float kCompressionStart = 0.8F - kFresnel;
 constexpr float kDesaturation = 0.15F;
-
-bool isFinite(const Rgb& color) {
-    return std::isfinite(color[0]) && std::isfinite(color[1]) && std::isfinite(color[2]);
-}
 
 }  // namespace
 

@@ -10,20 +10,6 @@ namespace glint {
 
 namespace {
 
-struct Code {
-    double instructions = 0.0;
-    double fetches = 0.0;
-};
-
-constexpr std::array<Code, 64> makeCodeByBit() {
-    std::array<Code, 64> code{};
-    for (const fitted::FeatureCode& row : fitted::kFeatureCode) {
-        code[static_cast<std::size_t>(row.feature)] = {row.instructions, row.fetches};
-    }
-    return code;
-}
-constexpr std::array<Code, 64> kCode = makeCodeByBit();
-
 // Returns which part of a feature's code the hits without it run in vain, if the share p of their case's hits
 // have it.
 double idleShare(double p) {
@@ -42,24 +28,37 @@ void forEachBit(FeatureMask mask, const Use& use) {
     }
 }
 
+// Calls use(feature) for each feature of `mask`, the lowest bit first. Bits that the model does not have are
+// skipped.
+template <typename Use>
+void forEachFeature(const MaterialModel& model, FeatureMask mask, const Use& use) {
+    for (const Feature& feature : model.features) {
+        if ((mask & feature.mask()) != 0) {
+            use(feature);
+        }
+    }
+}
+
 // Returns the surplus of an average hit of a case in which the share p of the hits have the feature.
-double surplusOf(std::size_t place, double p) {
-    const FeatureMask feature = FeatureMask{1} << place;
-    double cost = (feature & kLobeMask) != 0 ? fitted::kLobeBranch : fitted::kInputBranch;
-    cost += (kCode[place].instructions + kFetchCost * kCode[place].fetches) * idleShare(p);
-    if (feature == bit(Feature::Unlit)) {
+double surplusOf(const Feature& feature, bool isUnlit, double p) {
+    double cost = feature.isLobe() ? fitted::kLobeBranch : fitted::kInputBranch;
+    cost += (feature.cost.instructions + kFetchCost * feature.cost.fetches) * idleShare(p);
+    if (isUnlit) {
         cost += fitted::kLitInstructions * idleShare(1.0 - p);
     }
     return cost;
 }
 
 template <typename ShareWith>
-double surplus(double share, FeatureMask sometimes, const ShareWith& shareWith) {
+double surplus(const MaterialModel& model, double share, FeatureMask sometimes, const ShareWith& shareWith) {
     if (share <= 0.0) {
         return 0.0;
     }
     double cost = 0.0;
-    forEachBit(sometimes, [&](std::size_t place) { cost += surplusOf(place, shareWith(place) / share); });
+    forEachFeature(model, sometimes, [&](const Feature& feature) {
+        const double with = shareWith(static_cast<std::size_t>(feature.bit));
+        cost += surplusOf(feature, (feature.mask() & model.unlit) != 0, with / share);
+    });
     return share * cost;
 }
 
@@ -70,6 +69,7 @@ KeySet toSet(const WeightedKey& key) {
     set.share = key.share;
     set.always = key.mask;
     set.any = key.mask;
+    set.model = key.model;
     forEachBit(key.mask, [&](std::size_t place) { set.shareWith[place] = key.share; });
     return set;
 }
@@ -78,6 +78,7 @@ KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
     assert(!indices.empty());
     KeySet set;
     set.always = ~FeatureMask{0};
+    set.model = keys[static_cast<std::size_t>(indices.front())].model;
     for (const int index : indices) {
         const WeightedKey& key = keys[static_cast<std::size_t>(index)];
         set.share += key.share;
@@ -93,6 +94,7 @@ KeySet unionOf(const KeySet& a, const KeySet& b) {
     set.share = a.share + b.share;
     set.always = a.always & b.always;
     set.any = a.any | b.any;
+    set.model = a.model;
     for (std::size_t place = 0; place < set.shareWith.size(); ++place) {
         set.shareWith[place] = a.shareWith[place] + b.shareWith[place];
     }
@@ -100,29 +102,29 @@ KeySet unionOf(const KeySet& a, const KeySet& b) {
 }
 
 double mergingCost(const KeySet& keys) {
-    return surplus(keys.share, keys.any & ~keys.always,
+    return surplus(*keys.model, keys.share, keys.any & ~keys.always,
                    [&](std::size_t place) { return keys.shareWith[place]; });
 }
 
 double mergingCost(const KeySet& a, const KeySet& b) {
-    return surplus(a.share + b.share, (a.any | b.any) & ~(a.always & b.always),
+    return surplus(*a.model, a.share + b.share, (a.any | b.any) & ~(a.always & b.always),
                    [&](std::size_t place) { return a.shareWith[place] + b.shareWith[place]; });
 }
 
-double branchCost(const KeySet& keys, Feature feature) {
-    return surplus(keys.share, keys.any & ~keys.always & bit(feature),
+double branchCost(const KeySet& keys, const Feature& feature) {
+    return surplus(*keys.model, keys.share, keys.any & ~keys.always & feature.mask(),
                    [&](std::size_t place) { return keys.shareWith[place]; });
 }
 
-CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes) {
+CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes, const MaterialModel& model) {
     CodeEstimate estimate;
     estimate.instructions = fitted::kUnlitInstructions;
-    if ((always & bit(Feature::Unlit)) == 0) {
+    if ((always & model.unlit) == 0) {
         estimate.instructions += fitted::kLitInstructions;
     }
-    forEachBit(always | sometimes, [&](std::size_t place) {
-        estimate.instructions += kCode[place].instructions;
-        estimate.fetches += kCode[place].fetches;
+    forEachFeature(model, always | sometimes, [&](const Feature& feature) {
+        estimate.instructions += feature.cost.instructions;
+        estimate.fetches += feature.cost.fetches;
     });
     estimate.lobeBranches = std::popcount(sometimes & kLobeMask);
     estimate.inputBranches = std::popcount(sometimes & ~kLobeMask);

@@ -14,10 +14,10 @@
 //              pay for it in tests, selects and registers: kInputBranch, kLobeBranch
 //
 // Lit shading counts as such a feature too, which unlit keys lack. Instructions, fetches and branches are
-// measured (cost_constants.h). The constants in this file are chosen.
+// measured (cost_constants.h, and "cost" in each declaration). The constants in this file are chosen.
 #pragma once
 
-#include "plan/features.h"
+#include "plan/material_model.h"
 
 #include <array>
 #include <span>
@@ -42,6 +42,7 @@ inline constexpr double kCaseCost = 10.0;
 struct WeightedKey {
     FeatureMask mask = 0;
     double share = 0.0;
+    const MaterialModel* model = &builtinMaterialModel();  // the same for all keys
 };
 
 // The facts about a set of keys that the model needs.
@@ -49,7 +50,8 @@ struct KeySet {
     double share = 0.0;
     FeatureMask always = 0;
     FeatureMask any = 0;
-    std::array<double, 64> shareWith{};  // by bit: the total share of the keys that have it
+    std::array<double, kFeatureBits> shareWith{};  // by bit: the total share of the keys that have it
+    const MaterialModel* model = &builtinMaterialModel();
 };
 
 KeySet toSet(const WeightedKey& key);
@@ -63,7 +65,7 @@ double mergingCost(const KeySet& keys);
 double mergingCost(const KeySet& a, const KeySet& b);
 
 // Returns the surplus that comes from one feature which some of `keys` have and others don't.
-double branchCost(const KeySet& keys, Feature feature);
+double branchCost(const KeySet& keys, const Feature& feature);
 
 // An estimate of the code that the shader of a case holds; only compiling it gives the exact numbers.
 struct CodeEstimate {
@@ -72,6 +74,7 @@ struct CodeEstimate {
     int inputBranches = 0;
     int lobeBranches = 0;
 };
-CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes);
+CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes,
+                          const MaterialModel& model = builtinMaterialModel());
 
 }  // namespace glint

@@ -1,8 +1,12 @@
 #include "plan/effects.h"
 
+#include "plan/plan.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 namespace glint {
 
@@ -15,118 +19,132 @@ struct Finding {
     std::string reason;
 };
 
+// A material as some primitive has it.
+struct Surface {
+    const Material* material = nullptr;
+    const PrimitiveInputs* primitive = nullptr;
+};
+
+// Returns each material of the primitives once for each set of UV sets that it is used with, in the order of
+// materials.
+std::vector<Surface> surfacesOf(std::span<const Material> materials,
+                                std::span<const PrimitiveInputs> primitives) {
+    std::map<std::tuple<int, bool, bool>, const PrimitiveInputs*> found;
+    for (const PrimitiveInputs& primitive : primitives) {
+        found.try_emplace({primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1}, &primitive);
+    }
+    std::vector<Surface> surfaces;
+    for (const auto& [key, primitive] : found) {
+        surfaces.push_back({&materials[static_cast<std::size_t>(primitive->material)], primitive});
+    }
+    return surfaces;
+}
+
 std::string nameOf(const Material& material) {
     return material.name.empty() ? "a material without a name"
                                  : fmt::format("material \"{}\"", material.name);
 }
 
-bool hasTexture(const Material& material, TextureSlot slot) {
-    return material.texture(slot).texture >= 0;
+std::string filledIn(std::string text, std::string_view placeholder, double value) {
+    if (const std::size_t place = text.find(placeholder); place != std::string::npos) {
+        text.replace(place, placeholder.size(), fmt::format("{:.3g}", value));
+    }
+    return text;
 }
 
-// Returns whether no channel of a linear factor is above 0.
-template <typename Color>
-bool isBlack(const Color& color) {
-    return color[0] <= 0.0F && color[1] <= 0.0F && color[2] <= 0.0F;
-}
+// Evaluates the declared behaviours of one surface.
+class SurfaceBehaviour {
+public:
+    explicit SurfaceBehaviour(const Surface& surface)
+        : material_(*surface.material),
+          key_(makeKey(material_, *surface.primitive, {.alpha = AlphaPolicy::Tested})),
+          facts_(material_, *surface.primitive, options_, key_),
+          factors_(material_, *surface.primitive, options_, key_, MaterialFacts::Textures::Ignored) {}
 
-// Finds the first material for which `test` holds; its reason becomes the reason of the decision.
-template <typename Test>
-Finding findMaterial(std::span<const Material* const> materials, const std::string& none, const Test& test) {
-    for (const Material* const material : materials) {
-        if (material->unlit) {
+    // Returns why the surface may behave so, or an empty text. A rougher reflection than `limit` does not
+    // count.
+    std::string why(Behaviour behaviour, double limit) const {
+        for (const BehaviourRule& rule : material_.model().behaviours) {
+            if (rule.does != behaviour || !holds(rule)) {
+                continue;
+            }
+            if (!rule.roughness) {
+                const double value = rule.value ? rule.value->number(factors_).of[0].high : 0.0;
+                return rule.text.empty() ? std::string(kDefaultText) : filledIn(rule.text, "{}", value);
+            }
+            const double factor = rule.roughness->number(factors_).of[0].low;
+            if (rule.roughness->number(facts_).of[0].low <= limit) {
+                const bool byTexture = factor > limit && !rule.textureText.empty();
+                return filledIn(filledIn(byTexture ? rule.textureText : rule.text, "{}", factor), "{limit}",
+                                limit);
+            }
+        }
+        return {};
+    }
+
+    double leastRoughness() const {
+        double least = kUnlimited;
+        for (const BehaviourRule& rule : material_.model().behaviours) {
+            if (rule.roughness && holds(rule)) {
+                least = std::min(least, rule.roughness->number(factors_).of[0].low);
+            }
+        }
+        return least;
+    }
+
+private:
+    static constexpr std::string_view kDefaultText = "scatters light diffusely";
+
+    bool holds(const BehaviourRule& rule) const {
+        return material_.reads(rule.object) && rule.when.holds(facts_) != Certainty::False;
+    }
+
+    const Material& material_;
+    KeyOptions options_{};
+    FeatureMask key_;
+    MaterialFacts facts_;
+    MaterialFacts factors_;
+};
+
+// Finds the first lit surface for which why(surface) gives a reason.
+template <typename Why>
+Finding findSurface(std::span<const Surface> surfaces, const std::string& none, const Why& why) {
+    bool anyLit = false;
+    for (const Surface& surface : surfaces) {
+        if (surface.material->isUnlit()) {
             continue;
         }
-        if (std::string why = test(*material); !why.empty()) {
-            return {true, fmt::format("{} {}", nameOf(*material), why)};
+        anyLit = true;
+        if (const std::string reason = why(surface); !reason.empty()) {
+            return {true, fmt::format("{} {}", nameOf(*surface.material), reason)};
         }
     }
-    const bool unlit =
-        std::ranges::all_of(materials, [](const Material* material) { return material->unlit; });
-    return {false, materials.empty() ? "nothing has a surface" : unlit ? "every material is unlit" : none};
+    return {false, surfaces.empty() ? "nothing has a surface" : anyLit ? none : "every material is unlit"};
 }
 
-bool isMetal(const Material& material) {
-    return material.metallicFactor >= 1.0F && !hasTexture(material, TextureSlot::MetallicRoughness) &&
-           !material.specularGlossiness.given;
-}
-
-// Returns whether the microfacets of a material can reflect at all; an extension may take that away.
-bool reflects(const Material& material) {
-    if (material.specularGlossiness.given) {
-        return !isBlack(material.specularGlossiness.specularFactor);
-    }
-    if (material.metallicFactor > 0.0F && !isBlack(material.baseColorFactor)) {
-        return true;
-    }
-    // At grazing angles the whole specular factor is reflected, whatever its colour and the index of
-    // refraction.
-    return material.specular.factor > 0.0F;
-}
-
-std::string smoothness(const Material& material, float limit) {
-    // A texture may make the surface smoother than its factor, but not rougher.
-    const bool glossy = material.specularGlossiness.given;
-    const float roughness =
-        glossy ? 1.0F - material.specularGlossiness.glossinessFactor : material.roughnessFactor;
-    const bool textured = hasTexture(material, TextureSlot::MetallicRoughness);
-    const bool varies = textured && (glossy ? false : roughness > 0.0F);
-    if (reflects(material) && (roughness <= limit || (glossy && textured && roughness <= limit))) {
-        return fmt::format("has the roughness {:.3g}, at most {:.3g}", roughness, limit);
-    }
-    if (reflects(material) && varies) {
-        return fmt::format("has a texture of roughness, which may be at most {:.3g}", limit);
-    }
-    const Clearcoat& coat = material.clearcoat;
-    if (coat.factor > 0.0F &&
-        (coat.roughnessFactor <= limit || hasTexture(material, TextureSlot::ClearcoatRoughness))) {
-        return fmt::format("has a coat of roughness {:.3g}", coat.roughnessFactor);
-    }
-    return {};
-}
-
-std::string transmission(const Material& material) {
-    if (material.transmission.factor > 0.0F && !isMetal(material) && !isBlack(material.baseColorFactor)) {
-        return fmt::format("transmits {:.3g} of the light", material.transmission.factor);
-    }
-    return {};
-}
-
-std::string diffuse(const Material& material) {
-    const bool base =
-        !isMetal(material) && !isBlack(material.baseColorFactor) && material.transmission.factor < 1.0F;
-    const bool back = material.diffuseTransmission.factor > 0.0F &&
-                      !isBlack(material.diffuseTransmission.colorFactor) && !isMetal(material);
-    return base || back ? "scatters light diffusely" : std::string();
-}
-
-Finding findShadow(std::span<const Material* const> materials, const SceneLights& lights) {
-    if (!lights.lit) {
-        return {false, "no light shines"};
-    }
-    return findMaterial(materials, "",
-                        [](const Material&) { return std::string("is lit by punctual lights"); });
-}
-
-Finding find(Effect effect, std::span<const Material* const> materials, const SceneLights& lights,
+Finding find(Effect effect, std::span<const Surface> surfaces, const SceneLights& lights,
              const EffectRequest& request) {
+    const double limit = request.maxReflectionRoughness;
+    const auto behaves = [&](Behaviour behaviour, const std::string& none) {
+        return findSurface(surfaces, none, [&](const Surface& surface) {
+            return SurfaceBehaviour(surface).why(behaviour, limit);
+        });
+    };
+    const auto always = [&](const char* reason) {
+        return findSurface(surfaces, "", [reason](const Surface&) { return std::string(reason); });
+    };
     switch (effect) {
         case package::kEffectShadow:
-            return findShadow(materials, lights);
+            return lights.lit ? always("is lit by punctual lights") : Finding{false, "no light shines"};
         case package::kEffectAmbientOcclusion:
-            return findMaterial(materials, "",
-                                [](const Material&) { return std::string("is lit by the sky"); });
+            return always("is lit by the sky");
         case package::kEffectReflection:
-            return findMaterial(materials,
-                                fmt::format("no surface is smoother than the roughness limit {:.3g}",
-                                            request.maxReflectionRoughness),
-                                [&](const Material& material) {
-                                    return smoothness(material, request.maxReflectionRoughness);
-                                });
+            return behaves(Behaviour::Reflects,
+                           fmt::format("no surface is smoother than the roughness limit {:.3g}", limit));
         case package::kEffectRefraction:
-            return findMaterial(materials, "no material transmits light", transmission);
+            return behaves(Behaviour::Transmits, "no material transmits light");
         default:
-            return findMaterial(materials, "no material scatters light diffusely", diffuse);
+            return behaves(Behaviour::Scatters, "no material scatters light diffusely");
     }
 }
 
@@ -135,20 +153,26 @@ constexpr std::uint32_t kRefinements = package::kEffectAmbientOcclusion | packag
 
 }  // namespace
 
-bool sendsRays(package::Effect effect, const Material& material, float maxReflectionRoughness) {
-    const Material* const alone[] = {&material};
+bool sendsRays(package::Effect effect, const Material& material, const PrimitiveInputs& primitive,
+               float maxReflectionRoughness) {
+    const Surface alone[] = {{&material, &primitive}};
     EffectRequest request;
     request.maxReflectionRoughness = maxReflectionRoughness;
     return package::effectInfo(effect).kind == package::EffectKind::Rays &&
            find(effect, alone, {}, request).usable;
 }
 
-EffectPlan decideEffects(std::span<const Material* const> materials, const SceneLights& lights,
-                         const EffectRequest& request) {
+double leastRoughness(const Material& material, const PrimitiveInputs& primitive) {
+    return SurfaceBehaviour({&material, &primitive}).leastRoughness();
+}
+
+EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
+                         const SceneLights& lights, const EffectRequest& request) {
+    const std::vector<Surface> surfaces = surfacesOf(materials, primitives);
     EffectPlan plan;
     plan.effects = 0;
     for (const package::EffectInfo& info : package::kEffects) {
-        Finding finding = find(info.effect, materials, lights, request);
+        Finding finding = find(info.effect, surfaces, lights, request);
         EffectDecision decision{info.effect, false, finding.usable, std::move(finding.reason)};
         const bool named = (request.named & info.effect) != 0;
         const bool refines = (kRefinements & info.effect) != 0;

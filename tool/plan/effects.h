@@ -38,13 +38,17 @@ struct EffectPlan {
     std::vector<EffectDecision> decisions;  // one for each of package::kEffects, in their order
 };
 
-// `materials` are those that primitives use; no pointer is null. The reasons name values, not extensions that
-// are merely present.
-EffectPlan decideEffects(std::span<const Material* const> materials, const SceneLights& lights,
-                         const EffectRequest& request);
+// Only the materials of `primitives` count. Requires every PrimitiveInputs::material to index `materials`.
+// The reasons name values, not extensions that are merely present.
+EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
+                         const SceneLights& lights, const EffectRequest& request);
 
-// Returns whether pixels of this material send rays of an effect of the kind Rays, judged by its factors
-// alone. A texture may make parts of it rougher or black.
-bool sendsRays(package::Effect effect, const Material& material, float maxReflectionRoughness);
+// Returns whether pixels of this material on this primitive may send rays of an effect of the kind Rays. A
+// texture may make parts of it rougher or black.
+bool sendsRays(package::Effect effect, const Material& material, const PrimitiveInputs& primitive,
+               float maxReflectionRoughness);
+
+// Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.
+double leastRoughness(const Material& material, const PrimitiveInputs& primitive);
 
 }  // namespace glint

@@ -9,16 +9,11 @@ namespace glint {
 
 namespace {
 
-double coherenceOf(package::Effect effect, const Material& material) {
+double coherenceOf(package::Effect effect, const Material& material, const PrimitiveInputs& primitive) {
     switch (effect) {
-        case package::kEffectReflection: {
-            const float roughness = material.specularGlossiness.given
-                                        ? 1.0F - material.specularGlossiness.glossinessFactor
-                                        : material.roughnessFactor;
-            const bool coated =
-                material.clearcoat.factor > 0.0F && material.clearcoat.roughnessFactor <= kMirrorRoughness;
-            return roughness <= kMirrorRoughness || coated ? kMirrorCoherence : kGlossyCoherence;
-        }
+        case package::kEffectReflection:
+            return leastRoughness(material, primitive) <= kMirrorRoughness ? kMirrorCoherence
+                                                                           : kGlossyCoherence;
         case package::kEffectRefraction:
             return kRefractionCoherence;
         default:
@@ -72,7 +67,8 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
     return hits;
 }
 
-std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits) {
+std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
+                                  const MaterialModel& model) {
     std::vector<double> byCase(cases.size());
     double all = 0.0;
     for (const CaseHits& entry : hits) {
@@ -82,7 +78,7 @@ std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span
     std::vector<RoundCase> result;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (!cases[i].retired) {
-            const CodeEstimate code = estimateCode(cases[i].always, cases[i].sometimes);
+            const CodeEstimate code = estimateCode(cases[i].always, cases[i].sometimes, model);
             result.push_back({all > 0.0 ? byCase[i] / all : 0.0, code.instructions, code.fetches});
         }
     }
@@ -105,9 +101,9 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
-            if (sendsRays(info.effect, material, shape.maxReflectionRoughness)) {
+            if (sendsRays(info.effect, material, primitives[i], shape.maxReflectionRoughness)) {
                 senders += shares[i];
-                round.coherence += shares[i] * coherenceOf(info.effect, material);
+                round.coherence += shares[i] * coherenceOf(info.effect, material, primitives[i]);
             }
         }
         if (senders <= 0.0) {

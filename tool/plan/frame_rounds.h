@@ -60,7 +60,8 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
 
 // Returns every case that is not retired, with its share of the hits and its estimated code. Shares are equal
 // if nothing is known. `cases` is indexed by shader ID.
-std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits);
+std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
+                                  const MaterialModel& model = builtinMaterialModel());
 
 // Returns one round for each effect that sends rays, in the order of package::kEffects, or one round for all.
 // `primitives` are those of one scene; their materials index `materials`.

@@ -1,41 +1,136 @@
 #include "plan/plan.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
 namespace glint {
 
 namespace {
 
 using Drops = std::vector<std::pair<std::string, std::string>>;
 
-// These replace the base model, so no hit can do without them.
-constexpr FeatureMask kBaseModels = bit(Feature::Unlit) | bit(Feature::SpecularGlossiness);
+// Whether a feature is in a key.
+struct Presence {
+    bool present = false;
+    // If not empty, the file asks for the feature, and this is the reason why the key lacks it.
+    std::string droppedBecause;
+};
 
-FeatureMask evaluate(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
-                     Drops* dropped) {
-    const FeatureMask left = kLobeMask & ~(options.keptLobes | kBaseModels);
-    FeatureMask mask = 0;
-    for (const FeatureInfo& info : featureTable()) {
-        Presence presence = info.rule(material, primitive, options, mask);
-        if (presence.present) {
-            mask |= bit(info.feature) & ~left;
-        } else if (dropped != nullptr && !presence.droppedBecause.empty()) {
-            dropped->emplace_back(info.name, std::move(presence.droppedBecause));
+// Decides about the features of one key, in the model's order. When lobes are left out
+// (KeyOptions::keptLobes), a key may have fewer features, never more, because what hits need is part of what
+// primary surfaces need. So a declared reason may ask whether the key lacks a feature, but not whether it has
+// one, except for the base models, which are always kept.
+class KeyMaker {
+public:
+    KeyMaker(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options)
+        : model_(material.model()),
+          material_(material),
+          primitive_(primitive),
+          kept_(~kLobeMask | options.keptLobes | model_.baseModels()),
+          facts_(material, primitive, options, key_) {}
+
+    FeatureMask make(Drops* dropped) {
+        for (const int index : model_.order) {
+            const Feature& feature = model_.features[static_cast<std::size_t>(index)];
+            Presence presence = decide(feature);
+            if (presence.present) {
+                key_ |= feature.mask() & kept_;
+            } else if (dropped != nullptr && !presence.droppedBecause.empty()) {
+                dropped->emplace_back(feature.name, std::move(presence.droppedBecause));
+            }
         }
+        return key_;
     }
-    return mask;
-}
+
+private:
+    bool has(int feature) const {
+        return (key_ & model_.features[static_cast<std::size_t>(feature)].mask()) != 0;
+    }
+
+    // A texture that is not there is not asked for. A lobe is present by its values, whether or not the file
+    // gives its extension.
+    Presence decide(const Feature& feature) const {
+        const TextureInfo* const info =
+            feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
+        if (info != nullptr && info->texture < 0) {
+            return {};
+        }
+        const std::optional<std::string> neutral = findNeutral(feature, info);
+        const std::optional<std::string> excluded = findExclusion(feature);
+        // The presence of an extension without reasons changes the shading by itself.
+        const bool asksByValue = feature.object < 0 || !feature.neutral.empty();
+        const bool given = isGiven(feature);
+        if (!neutral && !excluded && (asksByValue || given)) {
+            return {true, {}};
+        }
+        const bool reports = given || (!neutral && asksByValue);
+        return {false, !reports ? "" : excluded ? *excluded : neutral.value_or("")};
+    }
+
+    bool isGiven(const Feature& feature) const {
+        if (feature.texture >= 0) {
+            return true;
+        }
+        if (feature.given) {
+            return feature.given->holds(facts_) != Certainty::False;
+        }
+        return feature.object >= 0 && material_.given[static_cast<std::size_t>(feature.object)] != 0;
+    }
+
+    std::optional<std::string> findExclusion(const Feature& feature) const {
+        for (const Exclusion& exclusion : model_.exclusions) {
+            if (has(exclusion.by) && (exclusion.excluded & feature.mask()) != 0) {
+                return exclusion.because;
+            }
+        }
+        return std::nullopt;
+    }
+
+    std::optional<std::string> findNeutral(const Feature& feature, const TextureInfo* info) const {
+        if (feature.lobe >= 0 && !has(feature.lobe)) {
+            return fmt::format("the key has no {}",
+                               model_.features[static_cast<std::size_t>(feature.lobe)].name);
+        }
+        for (const NeutralReason& reason : feature.neutral) {
+            const bool counts = (reason.onlyWith < 0 || has(reason.onlyWith)) &&
+                                (reason.onlyWithout < 0 || !has(reason.onlyWithout));
+            if (counts && reason.when.holds(facts_) == Certainty::True) {
+                return reason.because;
+            }
+        }
+        if (info != nullptr && info->texCoord > 1) {
+            return fmt::format("it reads TEXCOORD_{}; Glint reads sets 0 and 1", info->texCoord);
+        }
+        if (info != nullptr && !primitive_.hasTexCoords(info->texCoord)) {
+            return fmt::format("the primitive has no TEXCOORD_{}", info->texCoord);
+        }
+        return std::nullopt;
+    }
+
+    const MaterialModel& model_;
+    const Material& material_;
+    const PrimitiveInputs& primitive_;
+    FeatureMask kept_;
+    FeatureMask key_ = 0;
+    MaterialFacts facts_;
+};
 
 }  // namespace
 
 FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
                     Drops* dropped) {
     // First drop what is neutral, and record the reasons. Then drop the lobes that hits leave out.
-    const FeatureMask whole = evaluate(material, primitive, keepAllLobes(options), dropped);
-    const FeatureMask kept = evaluate(material, primitive, options, nullptr);
+    const MaterialModel& model = material.model();
+    const FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
+    const bool keepsAll = (options.keptLobes & kLobeMask) == kLobeMask;
+    const FeatureMask kept = keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
-        for (const FeatureInfo& info : featureTable()) {
-            if ((whole & ~kept & bit(info.feature)) != 0) {
-                const bool isLobe = (bit(info.feature) & kLobeMask) != 0;
-                dropped->emplace_back(info.name, isLobe ? "hits do not keep it (--hit-lobes)"
+        for (const Feature& feature : model.features) {
+            if ((whole & ~kept & feature.mask()) != 0) {
+                dropped->emplace_back(feature.name, feature.isLobe()
+                                                        ? "hits do not keep it (--hit-lobes)"
                                                         : "nothing that hits keep reads it (--hit-lobes)");
             }
         }
@@ -49,6 +144,14 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
 KeyOptions keepAllLobes(KeyOptions options) {
     options.keptLobes = kLobeMask;
     return options;
+}
+
+bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives) {
+    return std::ranges::any_of(primitives, [&](const PrimitiveInputs& primitive) {
+        const Material& material = materials[static_cast<std::size_t>(primitive.material)];
+        return (makeKey(material, primitive, {.alpha = AlphaPolicy::Tested}) &
+                material.model().mask("alphaMask")) != 0;
+    });
 }
 
 }  // namespace glint

@@ -54,6 +54,8 @@ std::optional<int> parseNumber(std::string_view word, int max) {
 
 class Parser {
 public:
+    explicit Parser(const MaterialModel& model) : model_(model) {}
+
     std::variant<LockText, LockTextError> parse(std::string_view text) {
         constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
         if (text.starts_with(kByteOrderMark)) {
@@ -143,18 +145,18 @@ private:
             return mask;
         }
         for (; !word.empty() && !error_; word = takeWord(rest)) {
-            const std::span<const FeatureInfo> table = featureTable();
-            const auto row = std::ranges::find(table, word, &FeatureInfo::name);
-            if (row == table.end()) {
+            const int feature = model_.findFeature(word);
+            if (feature < 0) {
                 fail(fmt::format("{} is no feature", quote(word)),
                      "correct the name, or use the version of Glint that wrote it", word);
                 break;
             }
-            mask |= bit(row->feature);
+            mask |= model_.features[static_cast<std::size_t>(feature)].mask();
         }
         return mask;
     }
 
+    const MaterialModel& model_;
     LockText lock_;
     std::optional<LockTextError> error_;
     int line_ = 0;
@@ -163,15 +165,15 @@ private:
 
 }  // namespace
 
-std::variant<LockText, LockTextError> parseLock(std::string_view text) {
-    return Parser().parse(text);
+std::variant<LockText, LockTextError> parseLock(std::string_view text, const MaterialModel& model) {
+    return Parser(model).parse(text);
 }
 
-std::string formatLock(const LockedIds& ids) {
+std::string formatLock(const LockedIds& ids, const MaterialModel& model) {
     std::vector<std::pair<std::string, int>> lines;
     lines.reserve(ids.size());
     for (const auto& [mask, id] : ids) {
-        lines.emplace_back(lockKeyName(mask), id);
+        lines.emplace_back(lockKeyName(mask, model), id);
     }
     std::ranges::sort(lines);
     std::string text = fmt::format("{}{} {}\n", kHeader, kVersionWord, kVersion);
@@ -181,8 +183,8 @@ std::string formatLock(const LockedIds& ids) {
     return text;
 }
 
-std::string lockKeyName(FeatureMask mask) {
-    const std::vector<std::string_view> names = featureNames(mask);
+std::string lockKeyName(FeatureMask mask, const MaterialModel& model) {
+    const std::vector<std::string_view> names = model.names(mask);
     return names.empty() ? std::string(kNoFeatures) : fmt::format("{}", fmt::join(names, " "));
 }
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "plan/lock_ids.h"
+#include "plan/material_model.h"
 
 #include <string>
 #include <string_view>
@@ -39,12 +40,13 @@ struct LockText {
     std::vector<RepeatedLockKey> repeated;
 };
 
-std::variant<LockText, LockTextError> parseLock(std::string_view text);
+std::variant<LockText, LockTextError> parseLock(std::string_view text,
+                                                const MaterialModel& model = builtinMaterialModel());
 
 // Formats a lock file. parseLock() gives the same IDs back, and the same IDs always give the same text.
-std::string formatLock(const LockedIds& ids);
+std::string formatLock(const LockedIds& ids, const MaterialModel& model = builtinMaterialModel());
 
 // Returns a key as the file has it: "baseColorTexture texCoord0", or "-".
-std::string lockKeyName(FeatureMask mask);
+std::string lockKeyName(FeatureMask mask, const MaterialModel& model = builtinMaterialModel());
 
 }  // namespace glint

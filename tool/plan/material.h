@@ -1,45 +1,28 @@
-// The material model that planning reads: core glTF 2.0 and the extensions that Glint shades. Plain data.
+// The materials that planning reads. Which parameters and textures they have is declared
+// (plan/material_model.h).
 #pragma once
 
+#include "plan/material_model.h"
+
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
-
-// The texture slots, in the order of MaterialRecord::textures (shaders/interop/scene.h).
-// KHR_materials_pbrSpecularGlossiness keeps its diffuse texture in BaseColor and its other texture in
-// MetallicRoughness.
-enum class TextureSlot : std::uint8_t {
-    BaseColor,
-    MetallicRoughness,
-    Normal,
-    Occlusion,
-    Emissive,
-    Clearcoat,
-    ClearcoatRoughness,
-    ClearcoatNormal,
-    SheenColor,
-    SheenRoughness,
-    Anisotropy,
-    Specular,
-    SpecularColor,
-    Iridescence,
-    IridescenceThickness,
-    Transmission,
-    Thickness,
-    DiffuseTransmission,
-    DiffuseTransmissionColor,
-    Count
-};
-inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::Count);
 
 // KHR_texture_transform: uv' = T(offset) R(rotation) S(scale) uv; rotation in radians, counter-clockwise.
 struct TextureTransform {
     std::array<float, 2> offset{0.0F, 0.0F};
     float rotation = 0.0F;
     std::array<float, 2> scale{1.0F, 1.0F};
+
+    bool operator==(const TextureTransform&) const = default;
 };
 
 struct TextureInfo {
@@ -47,135 +30,100 @@ struct TextureInfo {
     int texCoord = 0;  // the UV set; the extension's override is already applied
     TextureTransform transform;
     bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
-};
-
-// The extensions that change what light does at the surface. `given` says that the file has the extension,
-// even if its values are neutral.
-
-struct SpecularGlossiness {  // KHR_materials_pbrSpecularGlossiness; its diffuseFactor is baseColorFactor
-    bool given = false;
-    std::array<float, 3> specularFactor{1.0F, 1.0F, 1.0F};
-    float glossinessFactor = 1.0F;
-};
-
-struct Ior {  // KHR_materials_ior
-    bool given = false;
-    float ior = 1.5F;  // at least 1, or 0 for a surface that reflects everything
-};
-
-struct Specular {  // KHR_materials_specular
-    bool given = false;
-    float factor = 1.0F;
-    std::array<float, 3> colorFactor{1.0F, 1.0F, 1.0F};  // may exceed 1
-};
-
-struct Clearcoat {  // KHR_materials_clearcoat
-    bool given = false;
-    float factor = 0.0F;
-    float roughnessFactor = 0.0F;
-    float normalScale = 1.0F;
-};
-
-struct Sheen {  // KHR_materials_sheen
-    bool given = false;
-    std::array<float, 3> colorFactor{0.0F, 0.0F, 0.0F};
-    float roughnessFactor = 0.0F;
-};
-
-struct Anisotropy {  // KHR_materials_anisotropy
-    bool given = false;
-    float strength = 0.0F;
-    float rotation = 0.0F;  // radians, counter-clockwise from the tangent
-};
-
-struct Iridescence {  // KHR_materials_iridescence
-    bool given = false;
-    float factor = 0.0F;
-    float ior = 1.3F;
-    float thicknessMinimum = 100.0F;  // nanometres
-    float thicknessMaximum = 400.0F;
-};
-
-struct Transmission {  // KHR_materials_transmission
-    bool given = false;
-    float factor = 0.0F;
-};
-
-struct DiffuseTransmission {  // KHR_materials_diffuse_transmission
-    bool given = false;
-    float factor = 0.0F;
-    std::array<float, 3> colorFactor{1.0F, 1.0F, 1.0F};
-};
-
-struct Volume {  // KHR_materials_volume
-    bool given = false;
-    float thicknessFactor = 0.0F;      // metres in the space of the mesh; 0 for thin-walled
-    float attenuationDistance = 0.0F;  // metres; 0 means infinite absorption distance
-    std::array<float, 3> attenuationColor{1.0F, 1.0F, 1.0F};
-};
-
-struct Dispersion {  // KHR_materials_dispersion
-    bool given = false;
-    float dispersion = 0.0F;  // 20 / Abbe number
+    bool moves = false;         // An animation changes the transform.
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
-// Default member values are the defaults of the glTF specification.
-struct Material {
+// The numbers of one parameter of a material, to which it refers. `Number` is float or const float.
+template <typename Number>
+class BasicParameterValue {
+public:
+    explicit BasicParameterValue(std::span<Number> numbers) : numbers_(numbers) {}
+    BasicParameterValue(const BasicParameterValue&) = default;
+    BasicParameterValue& operator=(const BasicParameterValue&) = delete;
+    ~BasicParameterValue() = default;
+
+    // The first number.
+    operator float() const {
+        return numbers_[0];
+    }
+    Number& operator[](std::size_t channel) const {
+        return numbers_[channel];
+    }
+    // Sets all numbers to one value, or each to its own. `values` must have as many as the parameter.
+    const BasicParameterValue& operator=(float value) const {
+        std::ranges::fill(numbers_, value);
+        return *this;
+    }
+    const BasicParameterValue& operator=(std::span<const float> values) const {
+        assert(values.size() == numbers_.size());
+        std::ranges::copy(values, numbers_.begin());
+        return *this;
+    }
+    const BasicParameterValue& operator=(std::initializer_list<float> values) const {
+        return *this = std::span(values.begin(), values.size());
+    }
+    std::size_t size() const {
+        return numbers_.size();
+    }
+    auto begin() const {
+        return numbers_.begin();
+    }
+    auto end() const {
+        return numbers_.end();
+    }
+    template <std::size_t Count>
+    bool operator==(const std::array<float, Count>& values) const {
+        return std::ranges::equal(numbers_, values);
+    }
+
+private:
+    std::span<Number> numbers_;
+};
+using ParameterValue = BasicParameterValue<float>;
+using ConstParameterValue = BasicParameterValue<const float>;
+
+// Values are the declared defaults until something sets them. The model must outlive the material.
+class Material {
+public:
+    explicit Material(const MaterialModel& model = builtinMaterialModel());
+
     std::string name;
-    std::array<float, 4> baseColorFactor{1.0F, 1.0F, 1.0F, 1.0F};  // linear
-    float metallicFactor = 1.0F;
-    float roughnessFactor = 1.0F;
-    std::array<float, 3> emissiveFactor{0.0F, 0.0F, 0.0F};  // linear
-    float emissiveStrength = 1.0F;                          // KHR_materials_emissive_strength
-    bool hasEmissiveStrength = false;                       // The file gives the extension, even if its value
-                                                            // is 1.
-    float normalScale = 1.0F;
-    float occlusionStrength = 1.0F;
-    float alphaCutoff = 0.5F;
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
-    bool unlit = false;  // KHR_materials_unlit
-    SpecularGlossiness specularGlossiness;
-    Ior ior;
-    Specular specular;
-    Clearcoat clearcoat;
-    Sheen sheen;
-    Anisotropy anisotropy;
-    Iridescence iridescence;
-    Transmission transmission;
-    DiffuseTransmission diffuseTransmission;
-    Volume volume;
-    Dispersion dispersion;
-    std::array<TextureInfo, kTextureSlots> textures;
+    std::vector<float> values;          // by Parameter::first
+    std::vector<TextureInfo> textures;  // by index into MaterialModel::textures
+    std::vector<std::uint8_t> given;  // by index into MaterialModel::objects: 1 if the file gives the object
+    // The values that an animation gives each number, by its index in `values`; empty if none changes.
+    // Planning reads them in place of the numbers.
+    std::vector<ValueInterval> ranges;
     // Material extensions that the file uses for this material and that Glint does not shade.
     std::vector<std::string> unsupportedExtensions;
 
-    const TextureInfo& texture(TextureSlot slot) const {
-        return textures[static_cast<std::size_t>(slot)];
+    const MaterialModel& model() const {
+        return *model_;
     }
-    TextureInfo& texture(TextureSlot slot) {
-        return textures[static_cast<std::size_t>(slot)];
-    }
-};
+    // Requires a name that the model has.
+    ParameterValue operator[](std::string_view parameter);
+    ConstParameterValue operator[](std::string_view parameter) const;
+    TextureInfo& texture(std::string_view texture);
+    const TextureInfo& texture(std::string_view texture) const;
+    // Sets parameters of an extension, and that the file gives it.
+    void give(std::string_view object);
+    bool gives(std::string_view object) const;
+    // Whether a texture is colour, in sRGB; its alpha, where something reads that, is linear all the same.
+    bool isColor(int texture) const;
 
-// Whether the slot's texture is colour, in sRGB; its alpha, where something reads that, is linear all the
-// same.
-inline bool isColor(const Material& material, TextureSlot slot) {
-    switch (slot) {
-        case TextureSlot::BaseColor:
-        case TextureSlot::Emissive:
-        case TextureSlot::SheenColor:
-        case TextureSlot::SpecularColor:
-        case TextureSlot::DiffuseTransmissionColor:
-            return true;
-        case TextureSlot::MetallicRoughness:
-            return material.specularGlossiness.given;
-        default:
-            return false;
-    }
-}
+    // Whether the material reads an object of its JSON. It does not read the base model that another one
+    // replaces.
+    bool reads(int object) const;
+    // Whether no light changes what the surface shows.
+    bool isUnlit() const;
+
+private:
+    const MaterialModel* model_;
+};
 
 enum class ColorContent : std::uint8_t {
     None,   // no COLOR_0
@@ -194,6 +142,47 @@ struct PrimitiveInputs {
     bool hasTexCoords1 = false;
     ColorContent colors = ColorContent::None;
     double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
+
+    bool hasTexCoords(int set) const {
+        return set == 0 ? hasTexCoords0 : set == 1 && hasTexCoords1;
+    }
+};
+
+enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
+
+struct KeyOptions {
+    AlphaPolicy alpha = AlphaPolicy::Opaque;
+    // The lobes that a key may have. If a lobe is left out, inputs that only this lobe reads are left out
+    // too.
+    FeatureMask keptLobes = kLobeMask;
+};
+
+// Returns whether the slot has a texture whose UV set the primitive has and Glint reads.
+bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture);
+
+// What is known of a material on a primitive. A parameter that a readable texture scales has the interval of
+// all products with numbers in [0, 1]. The objects that it refers to must outlive it.
+class MaterialFacts final : public Facts {
+public:
+    enum class Textures : std::uint8_t { Scale, Ignored };
+
+    // `key` holds the features that are known to be in the key.
+    MaterialFacts(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
+                  const FeatureMask& key, Textures textures = Textures::Scale);
+
+    Channels number(int symbol) const override;
+    Certainty condition(int symbol) const override;
+
+private:
+    Certainty fact(Fact fact) const;
+    bool readsTexCoord(int set) const;
+    bool hasTangents() const;
+
+    const Material& material_;
+    const PrimitiveInputs& primitive_;
+    const KeyOptions& options_;
+    const FeatureMask& key_;
+    Textures textures_;
 };
 
 }  // namespace glint

@@ -33,8 +33,9 @@ void collectKeys(std::span<const Material> materials, std::span<const PrimitiveI
         std::vector<std::pair<std::string, std::string>> dropped;
         const FeatureMask mask = makeKey(materials[materialIndex], primitives[i], options, &dropped);
         masks.push_back(mask);
+        const bool keepsAll = (options.keptLobes & kLobeMask) == kLobeMask;
         plan.primaryMaskOfPrimitive.push_back(
-            makeKey(materials[materialIndex], primitives[i], keepAllLobes(options)));
+            keepsAll ? mask : makeKey(materials[materialIndex], primitives[i], keepAllLobes(options)));
         Key& key = byMask[mask];
         key.mask = mask;
         key.primitives.push_back(static_cast<int>(i));
@@ -106,21 +107,21 @@ void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& o
 
 // Names a case by its features, as an identifier: "Pbr_BaseTex_Normals"; "PbrFamily" if its keys differ in
 // inputs only; "PbrMixed" if they differ in lobes.
-std::string nameCase(const Case& shaderCase, bool hasAllKeys) {
+std::string nameCase(const MaterialModel& model, const Case& shaderCase, bool hasAllKeys) {
     const bool merged = shaderCase.sometimes != 0;
     if (merged && hasAllKeys) {
         return "AllMaterials";
     }
     std::string lobes;
     std::string inputs;
-    for (const FeatureInfo& info : featureTable()) {
-        if ((shaderCase.always & bit(info.feature)) == 0) {
+    for (const Feature& feature : model.features) {
+        if ((shaderCase.always & feature.mask()) == 0) {
             continue;
         }
-        if ((bit(info.feature) & kLobeMask) != 0) {
-            lobes += info.shortName;
+        if (feature.isLobe()) {
+            lobes += feature.shortName;
         } else {
-            inputs += fmt::format("_{}", info.shortName);
+            inputs += fmt::format("_{}", feature.shortName);
         }
     }
     const std::string base = lobes.empty() ? "Pbr" : lobes;
@@ -155,7 +156,7 @@ void nameCases(Plan& plan) {
             shaderCase.name = fmt::format("Retired_{}", shaderCase.shaderId);
             continue;
         }
-        shaderCase.name = nameCase(shaderCase, shaderCase.keys.size() == plan.keys.size());
+        shaderCase.name = nameCase(*plan.model, shaderCase, shaderCase.keys.size() == plan.keys.size());
         // Two cases may get the same name because the name does not say which features they never have.
         if (const int count = ++named[shaderCase.name]; count > 1) {
             shaderCase.name += fmt::format("_{}", count);
@@ -166,7 +167,7 @@ void nameCases(Plan& plan) {
 void makeCases(const PlanOptions& options, Plan& plan) {
     std::vector<WeightedKey> weighted;
     for (const Key& key : plan.keys) {
-        weighted.push_back({key.mask, key.share});
+        weighted.push_back({key.mask, key.share, plan.model});
     }
     std::vector<CaseKeys> merged = mergeKeys(weighted, options.merge, budgetOf(options));
     const std::vector<int> ids = assignShaderIds(weighted, merged, options.lockedIds);
@@ -191,6 +192,9 @@ bool countsHits(const PlanOptions& options) {
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options) {
     Plan plan;
+    if (!materials.empty()) {
+        plan.model = &materials.front().model();
+    }
     DroppedMap droppedBy;
     collectKeys(materials, primitives, options.keys, plan, droppedBy);
     shareHits(primitives, options, plan.keys);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "plan/effects.h"
-#include "plan/features.h"
 #include "plan/lock_ids.h"
 #include "plan/merge.h"
 
@@ -66,9 +65,10 @@ struct Case {
 // The keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes): the key of
 // a primitive's hits is part of its primary mask, and equals it if hits keep all lobes.
 struct Plan {
-    std::vector<Key> keys;            // ascending by mask
-    std::vector<Case> cases;          // by shader ID
-    std::vector<int> keyOfPrimitive;  // by primitive
+    const MaterialModel* model = &builtinMaterialModel();  // of all materials
+    std::vector<Key> keys;                                 // ascending by mask
+    std::vector<Case> cases;                               // by shader ID
+    std::vector<int> keyOfPrimitive;                       // by primitive
     std::vector<FeatureMask> primaryMaskOfPrimitive;
     std::vector<DroppedFeature> dropped;
     FeatureMask always = 0;     // features that all keys have
@@ -95,7 +95,7 @@ bool hasAlphaMasks(std::span<const Material> materials, std::span<const Primitiv
 bool countsHits(const PlanOptions& options);
 
 // Clusters the keys of `primitives` into cases. Requires every PrimitiveInputs::material to index
-// `materials`.
+// `materials`, and one model for all of these.
 Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
               const PlanOptions& options);
 

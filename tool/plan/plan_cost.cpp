@@ -12,11 +12,11 @@ using Keys = std::span<const WeightedKey>;
 
 std::vector<BranchCost> branchesOf(const KeySet& set) {
     std::vector<BranchCost> branches;
-    for (const FeatureInfo& info : featureTable()) {
-        if ((set.any & ~set.always & bit(info.feature)) != 0) {
-            const double with = set.shareWith[static_cast<std::size_t>(info.feature)];
+    for (const Feature& feature : set.model->features) {
+        if ((set.any & ~set.always & feature.mask()) != 0) {
+            const double with = set.shareWith[static_cast<std::size_t>(feature.bit)];
             branches.push_back(
-                {info.feature, set.share > 0.0 ? with / set.share : 0.0, branchCost(set, info.feature)});
+                {&feature, set.share > 0.0 ? with / set.share : 0.0, branchCost(set, feature)});
         }
     }
     std::ranges::stable_sort(branches, std::ranges::greater(), &BranchCost::cost);
@@ -26,7 +26,8 @@ std::vector<BranchCost> branchesOf(const KeySet& set) {
 std::vector<KeyCost> keysOf(const Case& shaderCase, Keys keys, double inVain) {
     std::vector<KeyCost> costs;
     for (const int key : shaderCase.keys) {
-        KeyCost cost{key, estimateCode(keys[static_cast<std::size_t>(key)].mask, 0)};
+        const WeightedKey& weighted = keys[static_cast<std::size_t>(key)];
+        KeyCost cost{key, estimateCode(weighted.mask, 0, *weighted.model)};
         std::vector<int> others = shaderCase.keys;
         std::erase(others, key);
         if (!others.empty()) {
@@ -77,7 +78,7 @@ PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
     std::vector<WeightedKey> keys;
     keys.reserve(plan.keys.size());
     for (const Key& key : plan.keys) {
-        keys.push_back({key.mask, key.share});
+        keys.push_back({key.mask, key.share, plan.model});
     }
     PlanCost cost;
     std::vector<KeySet> sets;
@@ -88,7 +89,7 @@ PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
         const KeySet& set = sets.emplace_back(toSet(shaderCase.keys, keys));
         CaseCost& entry = cost.cases.emplace_back();
         entry.shaderId = shaderCase.shaderId;
-        entry.code = estimateCode(shaderCase.always, shaderCase.sometimes);
+        entry.code = estimateCode(shaderCase.always, shaderCase.sometimes, *plan.model);
         entry.inVain = mergingCost(set);
         entry.saved = kCaseCost * static_cast<double>(shaderCase.keys.size() - 1);
         entry.branches = branchesOf(set);

@@ -14,8 +14,8 @@ namespace glint {
 
 // A feature that a case branches on.
 struct BranchCost {
-    Feature feature{};
-    double share = 0.0;  // share of the case's hits that have it; 0 if nothing hits the case
+    const Feature* feature = nullptr;  // of the plan's model
+    double share = 0.0;                // share of the case's hits that have it; 0 if nothing hits the case
     double cost = 0.0;
 };
 

@@ -1,5 +1,5 @@
 // clang-format off
-// Made by scripts/fit_strategy_costs.py from scripts/strategy_costs_*.json; run it again rather than edit this.
+// Made by benchmarks/fit_strategy_costs.py from benchmarks/data/strategy_costs_*.json; run it again rather than edit this.
 // Errors are of estimates by constants that were fitted to other scenes than the one that is estimated.
 #pragma once
 

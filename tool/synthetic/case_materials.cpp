@@ -11,48 +11,44 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace glint::synthetic {
 
 namespace {
 
-void readTexture(Material& material, TextureSlot slot, CaseTexture texture) {
-    material.texture(slot).texture = texture;
+void readTexture(Material& material, std::string_view name, CaseTexture texture) {
+    material.texture(name).texture = texture;
 }
 
 using Switch = void (*)(CaseMaterial& made);
 
 constexpr Switch kCheap[] = {
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::BaseColor, kColors); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::MetallicRoughness, kFactors); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Normal, kBumps); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Occlusion, kFactors); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Emissive, kColors); },
-    [](CaseMaterial& made) {
-        made.material.hasEmissiveStrength = true;
-        made.material.emissiveStrength = 2.0F;
-    },
+    [](CaseMaterial& made) { readTexture(made.material, "baseColorTexture", kColors); },
+    [](CaseMaterial& made) { readTexture(made.material, "metallicRoughnessTexture", kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, "normalTexture", kBumps); },
+    [](CaseMaterial& made) { readTexture(made.material, "occlusionTexture", kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, "emissiveTexture", kColors); },
+    [](CaseMaterial& made) { made.material["emissiveStrength"] = 2.0F; },
     [](CaseMaterial& made) { made.colors = true; },
     [](CaseMaterial& made) { made.normals = true; },
 };
 
 constexpr Switch kExpensive[] = {
     [](CaseMaterial& made) {
-        made.material.sheen = {true, {0.2F, 0.2F, 0.3F}, 0.5F};
+        made.material["sheenColorFactor"] = {0.2F, 0.2F, 0.3F};
+        made.material["sheenRoughnessFactor"] = 0.5F;
     },
+    [](CaseMaterial& made) { made.material["transmissionFactor"] = 0.3F; },
     [](CaseMaterial& made) {
-        made.material.transmission = {true, 0.3F};
+        made.material["diffuseTransmissionFactor"] = 0.3F;
+        made.material["diffuseTransmissionColorFactor"] = {0.9F, 0.8F, 0.7F};
     },
-    [](CaseMaterial& made) {
-        made.material.diffuseTransmission = {true, 0.3F, {0.9F, 0.8F, 0.7F}};
-    },
-    [](CaseMaterial& made) {
-        made.material.ior = {true, 1.8F};
-    },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::Normal, kBumps); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::ClearcoatRoughness, kFactors); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::SpecularColor, kColors); },
-    [](CaseMaterial& made) { readTexture(made.material, TextureSlot::IridescenceThickness, kFactors); },
+    [](CaseMaterial& made) { made.material["ior"] = 1.8F; },
+    [](CaseMaterial& made) { readTexture(made.material, "normalTexture", kBumps); },
+    [](CaseMaterial& made) { readTexture(made.material, "clearcoatRoughnessTexture", kFactors); },
+    [](CaseMaterial& made) { readTexture(made.material, "specularColorTexture", kColors); },
+    [](CaseMaterial& made) { readTexture(made.material, "iridescenceThicknessTexture", kFactors); },
 };
 static_assert(std::size(kCheap) == 8 && std::size(kExpensive) == 8);
 static_assert(kMaxCases == 256);
@@ -93,9 +89,9 @@ CaseMaterial makePlain(int index) {
     CaseMaterial made;
     Material& material = made.material;
     material.name = "case " + std::to_string(index);
-    material.baseColorFactor = colorOf(index);
-    material.metallicFactor = 0.3F;
-    material.roughnessFactor = 0.5F;
+    std::ranges::copy(colorOf(index), material["baseColorFactor"].begin());
+    material["metallicFactor"] = 0.3F;
+    material["roughnessFactor"] = 0.5F;
     return made;
 }
 
@@ -104,12 +100,18 @@ void addLobes(CaseMaterial& made) {
     Material& material = made.material;
     made.normals = true;
     made.tangents = true;
-    readTexture(material, TextureSlot::BaseColor, kColors);
-    readTexture(material, TextureSlot::MetallicRoughness, kFactors);
-    material.specular = {true, 0.8F, {0.9F, 1.0F, 0.8F}};
-    material.clearcoat = {true, 0.6F, 0.2F, 1.0F};
-    material.anisotropy = {true, 0.6F, 0.5F};
-    material.iridescence = {true, 0.7F, 1.4F, 200.0F, 500.0F};
+    readTexture(material, "baseColorTexture", kColors);
+    readTexture(material, "metallicRoughnessTexture", kFactors);
+    material["specularFactor"] = 0.8F;
+    material["specularColorFactor"] = {0.9F, 1.0F, 0.8F};
+    material["clearcoatFactor"] = 0.6F;
+    material["clearcoatRoughnessFactor"] = 0.2F;
+    material["anisotropyStrength"] = 0.6F;
+    material["anisotropyRotation"] = 0.5F;
+    material["iridescenceFactor"] = 0.7F;
+    material["iridescenceIor"] = 1.4F;
+    material["iridescenceThicknessMinimum"] = 200.0F;
+    material["iridescenceThicknessMaximum"] = 500.0F;
 }
 
 }  // namespace
@@ -124,7 +126,7 @@ std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count) {
             addLobes(made);
         } else {
             // Without emission, EmissiveStrength and the texture would change nothing.
-            made.material.emissiveFactor = {0.05F, 0.05F, 0.05F};
+            made.material["emissiveFactor"] = 0.05F;
         }
         for (std::size_t bit = 0; bit < switches.size(); ++bit) {
             if ((sets[static_cast<std::size_t>(i)] >> bit & 1U) != 0) {
@@ -141,30 +143,26 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     CaseMaterial made = like;
     Material& material = made.material;
     material.name = "floor";
-    material.baseColorFactor = {0.9F, 0.9F, 0.9F, 1.0F};
+    material["baseColorFactor"] = {0.9F, 0.9F, 0.9F, 1.0F};
     const bool mirror = coherence == Coherence::Coherent;
     // The floor is not fully metallic, because metals have no dielectric lobes. It is not fully rough,
     // because anisotropy would then have no effect.
-    material.metallicFactor = mirror ? 1.0F - kFaint : kFaint;
-    material.roughnessFactor = mirror ? 0.0F : 1.0F - kFaint;
-    const auto fade = [](bool given, auto& value) { value = given ? kFaint : value; };
-    fade(material.clearcoat.given, material.clearcoat.factor);
-    fade(material.anisotropy.given, material.anisotropy.strength);
-    fade(material.iridescence.given, material.iridescence.factor);
-    fade(material.transmission.given, material.transmission.factor);
-    fade(material.diffuseTransmission.given, material.diffuseTransmission.factor);
-    if (material.sheen.given) {
-        material.sheen.colorFactor.fill(kFaint);
-    }
-    if (material.emissiveFactor[0] > 0.0F) {
-        material.emissiveFactor.fill(kFaint);
+    material["metallicFactor"] = mirror ? 1.0F - kFaint : kFaint;
+    material["roughnessFactor"] = mirror ? 0.0F : 1.0F - kFaint;
+    // Whatever is there stays, and hardly shows.
+    for (const char* const name :
+         {"clearcoatFactor", "anisotropyStrength", "iridescenceFactor", "transmissionFactor",
+          "diffuseTransmissionFactor", "sheenColorFactor", "emissiveFactor"}) {
+        const ParameterValue value = material[name];
+        if (value > 0.0F) {
+            value = kFaint;
+        }
     }
     // 8 bits have no exact middle, so the normal would lean by a quarter of a degree.
-    material.normalScale = kFaint;
-    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-        TextureInfo& info = material.textures[slot];
+    material["normalScale"] = kFaint;
+    for (TextureInfo& info : material.textures) {
         if (info.texture >= 0) {
-            info.texture = slot == static_cast<std::size_t>(TextureSlot::Normal) ? kFlat : kWhite;
+            info.texture = &info == &material.texture("normalTexture") ? kFlat : kWhite;
         }
     }
     return made;

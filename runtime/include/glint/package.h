@@ -16,14 +16,28 @@
 
 namespace glint {
 
-namespace gpu {
-struct MaterialRecord;
-}
+// Records of materials, one after the other, in the layout that the package's shaders read. Each ends with
+// its textures.
+struct MaterialTable {
+    std::span<const std::uint8_t> bytes;
+    std::uint32_t recordBytes = 0;
+    std::uint32_t textureOffset = 0;  // of the first gpu::TextureRecord in a record, bytes
+    std::uint32_t textureCount = 0;   // in each record
+
+    std::size_t size() const {
+        return recordBytes == 0 ? 0 : bytes.size() / recordBytes;
+    }
+    // Requires first + count <= size().
+    MaterialTable part(std::size_t first, std::size_t count) const {
+        return {bytes.subspan(first * recordBytes, count * recordBytes), recordBytes, textureOffset,
+                textureCount};
+    }
+};
 
 // The tables of one of a package's scenes. The spans are valid as long as the package.
 struct PackageScene {
     std::string_view name;
-    std::span<const gpu::MaterialRecord> materials;
+    MaterialTable materials;
     std::span<const package::PrimitiveEntry> primitives;  // sorted by (mesh, primitive)
     std::span<const package::TextureEntry> textures;
     std::span<const package::SamplerEntry> samplers;

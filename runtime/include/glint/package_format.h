@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kVersion = 7;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -88,13 +88,16 @@ struct PackageHeader {
     std::uint32_t effects;         // Effect bits
     std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
     ShadingPrecision precision;
+    // A record of a material ends with its gpu::TextureRecords, and the runtime knows nothing else of it.
+    std::uint32_t materialTextureOffset;  // bytes
+    std::uint32_t materialTextureCount;
 };
 
 enum class SectionKind : std::uint32_t {
     Modules = 1,     // ModuleEntry
-    Materials = 2,   // glint::gpu::MaterialRecord, scene by scene
+    Materials = 2,   // records in the layout of the package's shaders, scene by scene
     Primitives = 3,  // PrimitiveEntry, scene by scene
-    Textures = 4,    // TextureEntry: the bindless images that MaterialRecord refers to, scene by scene
+    Textures = 4,    // TextureEntry: the bindless images that materials refer to, scene by scene
     Samplers = 5,    // SamplerEntry, scene by scene
     Strings = 6,     // bytes, UTF-8
     Cases = 7,       // CaseEntry
@@ -206,7 +209,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 80);
+static_assert(sizeof(PackageHeader) == 88);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

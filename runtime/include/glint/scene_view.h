@@ -95,9 +95,9 @@ struct LightView {
     float size = 0.0F;
 };
 
-// Values of a material that replace the package's, as the bytes of a gpu::MaterialRecord
-// (shaders/interop/scene.h). Texture transforms are taken from the record, but the textures and samplers stay
-// those of the package.
+// Values of a material that replace the package's, as the bytes of a record in the package's layout
+// (MaterialRecord of its C++ header). Texture transforms are taken from the record, but the textures and
+// samplers stay those of the package.
 struct MaterialView {
     std::uint32_t material = 0;  // material number, as in the package's PrimitiveEntry::materialIndex
     std::span<const std::uint8_t> record;

@@ -1,9 +1,10 @@
 #include "oracle/scene/input.h"
 
-#include "cli/camera.h"
-#include "cli/scene_view.h"
 #include "gltf/import.h"
 #include "oracle/scene/picture.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <algorithm>
 #include <charconv>
@@ -13,7 +14,7 @@ namespace {
 
 // The sun of glint render.
 Light sun() {
-    const LightView view = sunLight();
+    const LightView view = scene_view::sunLight();
     Light light;
     light.name = "sun";
     light.color = view.intensity;
@@ -47,9 +48,9 @@ Result<OracleInput> readOracleInput(const SceneChoice& choice, std::uint32_t wid
         return makeError("oracle-moves", choice.path.string(), "has skins or morph targets",
                          "the oracle renders rigid meshes only: use another scene");
     }
-    const SceneViewData data = makeSceneView(*scene);
-    const Result<CameraChoice> camera =
-        chooseCamera(*scene, data, choice.camera, static_cast<double>(width) / height);
+    const scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
+    const Result<scene_view::CameraChoice> camera =
+        scene_view::chooseCamera(*scene, data, choice.camera, static_cast<double>(width) / height);
     if (!camera) {
         return camera.error();
     }

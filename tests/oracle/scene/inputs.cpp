@@ -1,5 +1,7 @@
 #include "oracle/scene/inputs.h"
 
+#include <string_view>
+
 namespace glint::oracle {
 
 Inputs::Inputs(const Textures& textures, const SurfacePoint& point)
@@ -7,21 +9,20 @@ Inputs::Inputs(const Textures& textures, const SurfacePoint& point)
       point_(point),
       material_(textures.scene().materials[static_cast<std::size_t>(point.material)]) {}
 
-glm::dvec4 Inputs::texel(TextureSlot slot) const {
+glm::dvec4 Inputs::texel(std::string_view slot) const {
     return textures_.sample(material_, slot, point_).value_or(glm::dvec4(1.0));
 }
 
-bool Inputs::reads(TextureSlot slot) const {
+bool Inputs::reads(std::string_view slot) const {
     return textureCoordinates(material_.texture(slot), point_).has_value();
 }
 
 glm::dvec4 Inputs::baseColor() const {
-    const auto& factor = material_.baseColorFactor;
-    return glm::dvec4(factor[0], factor[1], factor[2], factor[3]) * texel(TextureSlot::BaseColor) *
-           point_.color;
+    const auto& factor = material_["baseColorFactor"];
+    return glm::dvec4(factor[0], factor[1], factor[2], factor[3]) * texel("baseColorTexture") * point_.color;
 }
 
-glm::dmat3 Inputs::tangentFrame(TextureSlot slot) const {
+glm::dmat3 Inputs::tangentFrame(std::string_view slot) const {
     const Vec3& n = point_.normal;
     Vec3 along(0.0);
     double handedness = point_.handedness;
@@ -42,7 +43,7 @@ glm::dmat3 Inputs::tangentFrame(TextureSlot slot) const {
     return {tangent, glm::cross(n, tangent) * handedness, n};
 }
 
-Vec3 Inputs::mappedNormal(TextureSlot slot, double scale) const {
+Vec3 Inputs::mappedNormal(std::string_view slot, double scale) const {
     if (!reads(slot)) {
         return point_.normal;
     }
@@ -56,11 +57,11 @@ bool Inputs::hasDirection() const {
 }
 
 bool Inputs::passesAlphaMask() const {
-    return baseColor().a >= material_.alphaCutoff;
+    return baseColor().a >= material_["alphaCutoff"];
 }
 
 // Returns the slot's own set, or the first existing set if the slot has no texture.
-std::size_t Inputs::derivedSet(TextureSlot slot) const {
+std::size_t Inputs::derivedSet(std::string_view slot) const {
     if (reads(slot)) {
         return static_cast<std::size_t>(material_.texture(slot).texCoord);
     }

@@ -4,6 +4,8 @@
 #include "gltf/scene.h"
 #include "oracle/scene/texture.h"
 
+#include <string_view>
+
 namespace glint::oracle {
 
 class Inputs {
@@ -12,14 +14,14 @@ public:
     Inputs(const Textures& textures, const SurfacePoint& point);
 
     // Returns white if there is nothing to read.
-    glm::dvec4 texel(TextureSlot slot) const;
-    bool reads(TextureSlot slot) const;
+    glm::dvec4 texel(std::string_view slot) const;
+    bool reads(std::string_view slot) const;
     glm::dvec4 baseColor() const;
     // Returns the columns tangent, bitangent and normal. They come from TANGENT, or from the directions in
     // which the UVs of the slot grow. The bitangent points up in the image (glTF 2.0, 3.7.2.1).
-    glm::dmat3 tangentFrame(TextureSlot slot) const;
+    glm::dmat3 tangentFrame(std::string_view slot) const;
     // Returns the normal of a normal texture, towards the front.
-    Vec3 mappedNormal(TextureSlot slot, double scale) const;
+    Vec3 mappedNormal(std::string_view slot, double scale) const;
     // Returns whether anisotropy has a direction.
     bool hasDirection() const;
     // Applies glTF 2.0, 3.9.4, alphaMode MASK.
@@ -33,7 +35,7 @@ public:
     }
 
 private:
-    std::size_t derivedSet(TextureSlot slot) const;
+    std::size_t derivedSet(std::string_view slot) const;
 
     const Textures& textures_;
     const SurfacePoint& point_;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "numerics/shaders_double.h"
+#include "oracle/material_vectors.h"
 #include "oracle/scene/inputs.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace glint::oracle {
 namespace {
@@ -24,21 +26,21 @@ struct Base {
 // glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular; KHR_materials_pbrSpecularGlossiness.
 Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     const Material& material = inputs.material();
-    const glm::dvec4 texel = inputs.texel(TextureSlot::MetallicRoughness);
+    const glm::dvec4 texel = inputs.texel("metallicRoughnessTexture");
     Base base;
     base.color = Vec3(inputs.baseColor());
-    if (material.specularGlossiness.given) {
-        bsdf.f0 = toVec(material.specularGlossiness.specularFactor) * Vec3(texel);
+    if (material.gives("KHR_materials_pbrSpecularGlossiness")) {
+        bsdf.f0 = toVec(material["glossySpecularFactor"]) * Vec3(texel);
         bsdf.f90 = 1.0;
         bsdf.diffuse = base.color * (1.0 - largestOf(bsdf.f0));
-        base.roughness = 1.0 - material.specularGlossiness.glossinessFactor * texel.a;
+        base.roughness = 1.0 - material["glossinessFactor"] * texel.a;
         return base;
     }
-    base.metallic = material.metallicFactor * texel.b;
-    base.roughness = material.roughnessFactor * texel.g;
-    const double ior = material.ior.ior;
-    const double specular = material.specular.factor * inputs.texel(TextureSlot::Specular).a;
-    const Vec3 tint = toVec(material.specular.colorFactor) * Vec3(inputs.texel(TextureSlot::SpecularColor));
+    base.metallic = material["metallicFactor"] * texel.b;
+    base.roughness = material["roughnessFactor"] * texel.g;
+    const double ior = material["ior"];
+    const double specular = material["specularFactor"] * inputs.texel("specularTexture").a;
+    const Vec3 tint = toVec(material["specularColorFactor"]) * Vec3(inputs.texel("specularColorTexture"));
     const Vec3 dielectric = glm::min(squared((ior - 1.0) / (ior + 1.0)) * tint, Vec3(1.0)) * specular;
     bsdf.diffuse = base.color * (1.0 - base.metallic);
     bsdf.f0 = dielectric;
@@ -67,11 +69,11 @@ struct SurfaceLobes {
           side(point.front ? 1.0 : -1.0),
           view(-incoming),
           mirrorLimit(mirrorRoughness) {
-        if (inputs.material().unlit) {
+        if (inputs.material().isUnlit()) {
             return;
         }
         const Material& material = inputs.material();
-        const Vec3 normal = side * inputs.mappedNormal(TextureSlot::Normal, material.normalScale);
+        const Vec3 normal = side * inputs.mappedNormal("normalTexture", material["normalScale"]);
         frame = frameAbout(normal);
         bsdf.eta = Vec3(1.0);
         bsdf.clearcoatAlpha = 1.0;
@@ -80,7 +82,7 @@ struct SurfaceLobes {
         const Base base = applyBase(inputs, bsdf);
         bsdf.alpha = glm::dvec2(std::max(squared(base.roughness), glsl::kMinAlpha));
         roughness = base.roughness;
-        if (!material.specularGlossiness.given) {
+        if (!material.gives("KHR_materials_pbrSpecularGlossiness")) {
             applyAnisotropy();
             applyIridescence();
             applyTransmission(base);
@@ -88,10 +90,10 @@ struct SurfaceLobes {
             applyClearcoat();
         }
         glsl::prepareBsdf(bsdf, features(), toFrame(view));
-        emission = toVec(material.emissiveFactor) * Vec3(inputs.texel(TextureSlot::Emissive)) *
-                   static_cast<double>(material.emissiveStrength) * (1.0 - coat());
-        if (inputs.reads(TextureSlot::Occlusion)) {
-            occlusion = 1.0 + material.occlusionStrength * (inputs.texel(TextureSlot::Occlusion).r - 1.0);
+        emission = toVec(material["emissiveFactor"]) * Vec3(inputs.texel("emissiveTexture")) *
+                   static_cast<double>(material["emissiveStrength"]) * (1.0 - coat());
+        if (inputs.reads("occlusionTexture")) {
+            occlusion = 1.0 + material["occlusionStrength"] * (inputs.texel("occlusionTexture").r - 1.0);
         }
     }
 
@@ -109,17 +111,17 @@ struct SurfaceLobes {
 
     // KHR_materials_anisotropy.
     void applyAnisotropy() {
-        const Anisotropy& given = inputs.material().anisotropy;
-        if (given.strength == 0.0F || !inputs.hasDirection()) {
+        const Material& given = inputs.material();
+        if (given["anisotropyStrength"] == 0.0F || !inputs.hasDirection()) {
             return;
         }
         lobes |= GLINT_ANISOTROPY;
-        double angle = given.rotation;
-        double strength = given.strength;
+        double angle = given["anisotropyRotation"];
+        double strength = given["anisotropyStrength"];
         Vec2 direction(std::cos(angle), std::sin(angle));
-        TextureSlot slot = TextureSlot::Normal;
-        if (inputs.reads(TextureSlot::Anisotropy)) {
-            slot = TextureSlot::Anisotropy;
+        std::string_view slot = "normalTexture";
+        if (inputs.reads("anisotropyTexture")) {
+            slot = "anisotropyTexture";
             const glm::dvec4 texel = inputs.texel(slot);
             const Vec2 turned = Vec2(texel) * 2.0 - 1.0;
             direction = {direction.x * turned.x - direction.y * turned.y,
@@ -140,19 +142,20 @@ struct SurfaceLobes {
 
     // KHR_materials_iridescence, at the angle of the view.
     void applyIridescence() {
-        const Iridescence& given = inputs.material().iridescence;
-        if (given.factor == 0.0F || given.ior == 1.0F) {
+        const Material& given = inputs.material();
+        if (given["iridescenceFactor"] == 0.0F || given["iridescenceIor"] == 1.0F) {
             return;
         }
-        const double factor = given.factor * inputs.texel(TextureSlot::Iridescence).r;
-        double thickness = given.thicknessMaximum;
-        if (inputs.reads(TextureSlot::IridescenceThickness)) {
-            thickness = glm::mix<double>(given.thicknessMinimum, given.thicknessMaximum,
-                                         inputs.texel(TextureSlot::IridescenceThickness).g);
+        const double factor = given["iridescenceFactor"] * inputs.texel("iridescenceTexture").r;
+        double thickness = given["iridescenceThicknessMaximum"];
+        if (inputs.reads("iridescenceThicknessTexture")) {
+            thickness = glm::mix<double>(float{given["iridescenceThicknessMinimum"]},
+                                         float{given["iridescenceThicknessMaximum"]},
+                                         inputs.texel("iridescenceThicknessTexture").g);
         }
         const double cosine = std::clamp(toFrame(view).z, 0.0, 1.0);
         const auto covered = [&](const Vec3& f0, double f90) {
-            const Vec3 film = glsl::iridescentFresnel(cosine, f0, given.ior, thickness);
+            const Vec3 film = glsl::iridescentFresnel(cosine, f0, float{given["iridescenceIor"]}, thickness);
             return glm::mix(f0, glm::min(glsl::schlickF0(film, f90, cosine), Vec3(f90)), factor);
         };
         bsdf.f0 = covered(bsdf.f0, bsdf.f90);
@@ -164,22 +167,22 @@ struct SurfaceLobes {
         const Material& material = inputs.material();
         const double dielectric = 1.0 - base.metallic;
         double passed = 0.0;
-        if (material.transmission.factor > 0.0F) {
+        if (material["transmissionFactor"] > 0.0F) {
             lobes |= GLINT_TRANSMISSION;
-            passed = material.transmission.factor * inputs.texel(TextureSlot::Transmission).r;
+            passed = material["transmissionFactor"] * inputs.texel("transmissionTexture").r;
             bsdf.transmitted = base.color * (dielectric * passed);
             bsdf.diffuse *= 1.0 - passed;
         }
-        if (material.diffuseTransmission.factor > 0.0F) {
+        if (material["diffuseTransmissionFactor"] > 0.0F) {
             lobes |= GLINT_DIFFUSE_TRANSMISSION;
             const double share =
-                material.diffuseTransmission.factor * inputs.texel(TextureSlot::DiffuseTransmission).a;
-            bsdf.diffuseTransmitted = toVec(material.diffuseTransmission.colorFactor) *
-                                      Vec3(inputs.texel(TextureSlot::DiffuseTransmissionColor)) *
+                material["diffuseTransmissionFactor"] * inputs.texel("diffuseTransmissionTexture").a;
+            bsdf.diffuseTransmitted = toVec(material["diffuseTransmissionColorFactor"]) *
+                                      Vec3(inputs.texel("diffuseTransmissionColorTexture")) *
                                       (share * (1.0 - passed) * dielectric);
             bsdf.diffuse *= 1.0 - share;
         }
-        if (has(GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION) && material.volume.thicknessFactor > 0.0F) {
+        if (has(GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION) && material["thicknessFactor"] > 0.0F) {
             applyVolume();
         }
     }
@@ -187,11 +190,11 @@ struct SurfaceLobes {
     void applyVolume() {
         const Material& material = inputs.material();
         lobes |= GLINT_VOLUME;
-        Vec3 iors(material.ior.ior);
-        if (material.dispersion.dispersion > 0.0F && has(GLINT_TRANSMISSION)) {
+        Vec3 iors(material["ior"]);
+        if (material["dispersion"] > 0.0F && has(GLINT_TRANSMISSION)) {
             // KHR_materials_dispersion, "Implementation".
             lobes |= GLINT_DISPERSION;
-            const double spread = (material.ior.ior - 1.0) * 0.025 * material.dispersion.dispersion;
+            const double spread = (material["ior"] - 1.0) * 0.025 * material["dispersion"];
             iors += Vec3(-spread, 0.0, spread);
         }
         bsdf.eta = side < 0.0 ? 1.0 / iors : iors;
@@ -199,41 +202,41 @@ struct SurfaceLobes {
             bsdf.diffuse = Vec3(0.0);
             bsdf.diffuseTransmitted = Vec3(0.0);
         }
-        if (material.volume.attenuationDistance > 0.0F) {
-            const double thickness = material.volume.thicknessFactor *
-                                     inputs.texel(TextureSlot::Thickness).g * inputs.point().scale;
-            const Vec3 transmittance = glm::pow(toVec(material.volume.attenuationColor),
-                                                Vec3(thickness / material.volume.attenuationDistance));
+        if (material["attenuationDistance"] > 0.0F) {
+            const double thickness =
+                material["thicknessFactor"] * inputs.texel("thicknessTexture").g * inputs.point().scale;
+            const Vec3 transmittance = glm::pow(toVec(material["attenuationColor"]),
+                                                Vec3(thickness / material["attenuationDistance"]));
             bsdf.transmitted *= transmittance;
             bsdf.diffuseTransmitted *= transmittance;
         }
     }
 
     void applySheen() {
-        const Sheen& given = inputs.material().sheen;
-        if (toVec(given.colorFactor) == Vec3(0.0)) {
+        const Material& given = inputs.material();
+        if (toVec(given["sheenColorFactor"]) == Vec3(0.0)) {
             return;
         }
         lobes |= GLINT_SHEEN;
-        bsdf.sheenColor = toVec(given.colorFactor) * Vec3(inputs.texel(TextureSlot::SheenColor));
+        bsdf.sheenColor = toVec(given["sheenColorFactor"]) * Vec3(inputs.texel("sheenColorTexture"));
         bsdf.sheenAlpha =
-            std::max(squared(given.roughnessFactor * inputs.texel(TextureSlot::SheenRoughness).a),
+            std::max(squared(given["sheenRoughnessFactor"] * inputs.texel("sheenRoughnessTexture").a),
                      glsl::kMinSheenAlpha);
     }
 
     // KHR_materials_clearcoat: the coat has the mesh's normals unless it has a texture of its own.
     void applyClearcoat() {
-        const Clearcoat& given = inputs.material().clearcoat;
-        if (given.factor == 0.0F) {
+        const Material& given = inputs.material();
+        if (given["clearcoatFactor"] == 0.0F) {
             return;
         }
         lobes |= GLINT_CLEARCOAT;
-        bsdf.clearcoat = given.factor * inputs.texel(TextureSlot::Clearcoat).r;
+        bsdf.clearcoat = given["clearcoatFactor"] * inputs.texel("clearcoatTexture").r;
         bsdf.clearcoatAlpha =
-            std::max(squared(given.roughnessFactor * inputs.texel(TextureSlot::ClearcoatRoughness).g),
+            std::max(squared(given["clearcoatRoughnessFactor"] * inputs.texel("clearcoatRoughnessTexture").g),
                      glsl::kMinAlpha);
         bsdf.clearcoatNormal =
-            toFrame(side * inputs.mappedNormal(TextureSlot::ClearcoatNormal, given.normalScale));
+            toFrame(side * inputs.mappedNormal("clearcoatNormalTexture", given["clearcoatNormalScale"]));
     }
 
     // Returns the share that the coat reflects at the view.

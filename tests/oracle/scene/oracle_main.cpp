@@ -1,6 +1,5 @@
 // glint_oracle: renders a scene in double precision and compares pictures of the device with it.
 #include "base/files.h"
-#include "cli/camera.h"
 #include "gltf/import.h"
 #include "image/compare.h"
 #include "image/exr.h"
@@ -9,6 +8,8 @@
 #include "oracle/scene/input.h"
 #include "oracle/scene/report.h"
 #include "oracle/scene/texels.h"
+
+#include <glint/scene_view/camera.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // Compares pictures of real scenes on the device with the scene renderer.
-#include "cli/temporary_folder.h"
 #include "image/tone.h"
 #include "oracle/scene/difference.h"
 #include "oracle/scene/input.h"
@@ -7,6 +6,7 @@
 #include "oracle/scene/texels.h"
 #include "render/harness.h"
 #include "support/models.h"
+#include "support/temporary_folder.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -76,12 +76,12 @@ private:
 
 // Returns the table of the device. If that fails, the test fails and the exact table is returned.
 SrgbTable deviceTexels() {
-    const Result<TemporaryFolder> folder = TemporaryFolder::create();
-    if (!folder || !writeTexelScene(folder->path())) {
+    const test::TemporaryFolder folder;
+    if (!writeTexelScene(folder.path())) {
         ADD_FAILURE() << "can't write the scene of texels";
         return exactSrgb();
     }
-    const Result<OracleInput> input = readOracleInput({folder->path() / "texels.gltf", "", ""}, 16, 16);
+    const Result<OracleInput> input = readOracleInput({folder.path() / "texels.gltf", "", ""}, 16, 16);
     if (!input) {
         ADD_FAILURE() << toString(input.error());
         return exactSrgb();

@@ -110,7 +110,7 @@ LitSurface::LitSurface(const Textures& textures, const SurfacePoint& point, cons
 LitSurface::~LitSurface() = default;
 
 bool LitSurface::unlit() const {
-    return lobes_->inputs.material().unlit;
+    return lobes_->inputs.material().isUnlit();
 }
 
 Vec3 LitSurface::baseColor() const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <string_view>
 
 namespace glint::oracle {
 namespace {
@@ -75,20 +77,11 @@ private:
 
 }  // namespace
 
-bool isSrgb(const Material& material, TextureSlot slot) {
-    switch (slot) {
-        case TextureSlot::BaseColor:
-        case TextureSlot::Emissive:
-        case TextureSlot::SheenColor:
-        case TextureSlot::SpecularColor:
-        case TextureSlot::DiffuseTransmissionColor:
-            return true;
-        case TextureSlot::MetallicRoughness:
-            // In this model the slot holds the specular colour.
-            return material.specularGlossiness.given;
-        default:
-            return false;
-    }
+bool isSrgb(const Material& material, std::string_view slot) {
+    constexpr std::string_view kColors[] = {"baseColorTexture", "emissiveTexture", "sheenColorTexture",
+                                            "specularColorTexture", "diffuseTransmissionColorTexture"};
+    return std::ranges::find(kColors, slot) != std::end(kColors) ||
+           (slot == "metallicRoughnessTexture" && material.gives("KHR_materials_pbrSpecularGlossiness"));
 }
 
 std::optional<Vec2> textureCoordinates(const TextureInfo& info, const SurfacePoint& point) {
@@ -115,7 +108,7 @@ SrgbTable exactSrgb() {
     return table;
 }
 
-std::optional<glm::dvec4> Textures::sample(const Material& material, TextureSlot slot,
+std::optional<glm::dvec4> Textures::sample(const Material& material, std::string_view slot,
                                            const SurfacePoint& point) const {
     const TextureInfo& info = material.texture(slot);
     const std::optional<Vec2> uv = textureCoordinates(info, point);

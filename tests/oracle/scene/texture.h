@@ -6,11 +6,12 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 namespace glint::oracle {
 
 // Returns whether a slot holds colours with the sRGB transfer function: glTF 2.0 and its extensions.
-bool isSrgb(const Material& material, TextureSlot slot);
+bool isSrgb(const Material& material, std::string_view slot);
 
 // Returns the transformed UVs that a slot reads (KHR_texture_transform), or nothing if it has no texture or
 // the surface lacks that set.
@@ -31,7 +32,7 @@ public:
     }
     // Returns RGBA in [0, 1] with linear colours: texels are first decoded, then filtered. Returns nothing if
     // there is nothing to read.
-    std::optional<glm::dvec4> sample(const Material& material, TextureSlot slot,
+    std::optional<glm::dvec4> sample(const Material& material, std::string_view slot,
                                      const SurfacePoint& point) const;
 
 private:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace {
 
@@ -21,12 +22,12 @@ Scene sceneOf(const Sampler& sampler) {
     scene.samplers = {sampler};
     scene.textures = {{0, 0}};
     scene.materials.resize(1);
-    scene.materials[0].texture(TextureSlot::Normal).texture = 0;
-    scene.materials[0].texture(TextureSlot::BaseColor).texture = 0;
+    scene.materials[0].texture("normalTexture").texture = 0;
+    scene.materials[0].texture("baseColorTexture").texture = 0;
     return scene;
 }
 
-double sampleAt(const Scene& scene, double u, double v, TextureSlot slot = TextureSlot::Normal) {
+double sampleAt(const Scene& scene, double u, double v, std::string_view slot = "normalTexture") {
     SurfacePoint point;
     point.texCoords[0] = Vec2(u, v);
     return Textures(scene, exactSrgb()).sample(scene.materials[0], slot, point).value().r;
@@ -44,7 +45,7 @@ TEST(OracleTexture, MixesTheFourNearestTexels) {
 TEST(OracleTexture, DecodesColoursBeforeItMixesThem) {
     const Scene scene = sceneOf({});
     const double fifth = std::pow((0.2 + 0.055) / 1.055, 2.4);
-    EXPECT_NEAR(sampleAt(scene, 0.5, 0.25, TextureSlot::BaseColor), 0.5 * fifth, 1e-15);
+    EXPECT_NEAR(sampleAt(scene, 0.5, 0.25, "baseColorTexture"), 0.5 * fifth, 1e-15);
 }
 
 TEST(OracleTexture, WrapsAsItsSamplerSays) {
@@ -68,13 +69,13 @@ TEST(OracleTexture, WrapsAsItsSamplerSays) {
 // rotates the image counter-clockwise.
 TEST(OracleTexture, TransformsCoordinates) {
     Scene scene = sceneOf({});
-    TextureTransform& transform = scene.materials[0].texture(TextureSlot::Normal).transform;
+    TextureTransform& transform = scene.materials[0].texture("normalTexture").transform;
     transform.offset = {0.0F, 1.0F};
     transform.rotation = static_cast<float>(kPi / 2.0);
     // The surface's corner (0, 0), top left, shows the image's bottom left; (1, 0) shows its top left.
     SurfacePoint point;
     point.texCoords[0] = Vec2(0.0, 0.0);
-    const TextureInfo& info = scene.materials[0].texture(TextureSlot::Normal);
+    const TextureInfo& info = scene.materials[0].texture("normalTexture");
     EXPECT_NEAR(glm::length(*textureCoordinates(info, point) - Vec2(0.0, 1.0)), 0.0, 1e-6);
     point.texCoords[0] = Vec2(1.0, 0.0);
     EXPECT_NEAR(glm::length(*textureCoordinates(info, point) - Vec2(0.0, 0.0)), 0.0, 1e-6);
@@ -85,10 +86,10 @@ TEST(OracleTexture, TransformsCoordinates) {
 
 TEST(OracleTexture, ReadsNothingWithoutCoordinates) {
     Scene scene = sceneOf({});
-    scene.materials[0].texture(TextureSlot::Normal).texCoord = 1;
+    scene.materials[0].texture("normalTexture").texCoord = 1;
     SurfacePoint point;
     point.texCoords[0] = Vec2(0.0);
-    EXPECT_FALSE(Textures(scene, exactSrgb()).sample(scene.materials[0], TextureSlot::Normal, point));
+    EXPECT_FALSE(Textures(scene, exactSrgb()).sample(scene.materials[0], "normalTexture", point));
 }
 
 }  // namespace

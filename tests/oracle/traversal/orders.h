@@ -1,7 +1,7 @@
 // Makes orders of leaves to compare the driver's own order with. They have the form of halvingOrder().
 #pragma once
 
-#include "leaf_order.h"
+#include "scene/leaf_order.h"
 
 #include <cstdint>
 #include <span>

@@ -1,9 +1,9 @@
 #include "oracle/traversal/trace_kernel.h"
 
-#include "context_state.h"
-#include "shader_modules.h"
+#include "context/context_state.h"
+#include "context/vulkan_error.h"
+#include "package/shader_modules.h"
 #include "spirv/compiler.h"
-#include "vulkan_error.h"
 
 #include <cstring>
 

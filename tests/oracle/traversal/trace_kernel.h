@@ -1,11 +1,11 @@
 // Runs the benchmark's compute shader on the device. The shader only traces.
 #pragma once
 
-#include "commands.h"
-#include "gpu_scene_state.h"
+#include "context/commands.h"
+#include "context/resources.h"
+#include "context/timer.h"
 #include "oracle/traversal/rays.h"
-#include "resources.h"
-#include "timer.h"
+#include "scene/gpu_scene_state.h"
 
 #include <cstdint>
 #include <memory>

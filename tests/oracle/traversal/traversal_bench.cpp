@@ -2,16 +2,17 @@
 // instances, for scenes as they are and shuffled. It compares them with Embree, which traces the same rays
 // with as many threads. Each round measures everything once, one after the other, so that other work on the
 // machine slows all alike.
-#include "cli/camera.h"
-#include "cli/scene_view.h"
-#include "cli/temporary_folder.h"
-#include "context_state.h"
+#include "context/context_state.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
+#include "scene/traversal_order.h"
 #include "support/halved_tree.h"
-#include "traversal_order.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -74,7 +75,7 @@ double quantile(std::vector<double> values, double q) {
 
 // Puts indices and instances into a random order. Afterwards spans of `data` point to them.
 struct Shuffled {
-    explicit Shuffled(SceneViewData& data) {
+    explicit Shuffled(scene_view::SceneViewData& data) {
         std::mt19937_64 random(3);
         for (PrimitiveView& primitive : data.primitives) {
             std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -99,7 +100,7 @@ struct Shuffled {
 // Orders the triangles of each primitive, and the instances by their meshes, as the driver's order does, but
 // without a BLAS for each geometry.
 struct OrderedMeshes {
-    explicit OrderedMeshes(const SceneViewData& data)
+    explicit OrderedMeshes(const scene_view::SceneViewData& data)
         : primitives(data.primitives),
           instances(data.instances),
           indices(orderedTriangles(data.primitives, {std::uint64_t{1} << 24U, 1}, halvingOrder)) {
@@ -164,7 +165,7 @@ struct Measured {
 };
 
 // Returns the cost of the driver's tree over the primitive with the most triangles.
-double costOf(const SceneViewData& data, const Variant& variant) {
+double costOf(const scene_view::SceneViewData& data, const Variant& variant) {
     const auto largest = std::ranges::max_element(
         data.primitives, {}, [](const PrimitiveView& primitive) { return primitive.indices.size(); });
     std::vector<LeafBox> leaves(largest->indices.size() / 3);
@@ -182,19 +183,7 @@ Result<Package> packageOf(const Scene& scene) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = MergePolicy::All;
     settings.plan.maxShaders = 1;
-    const Result<CompiledPackage> compiled = compilePackage(scene, settings);
-    if (!compiled) {
-        return compiled.error();
-    }
-    const Result<TemporaryFolder> folder = TemporaryFolder::create();
-    if (!folder) {
-        return folder.error();
-    }
-    const std::filesystem::path path = folder->path() / "package";
-    if (Status written = writePackage(*compiled, path); !written) {
-        return written.error();
-    }
-    return Package::load(path);
+    return scene_view::compileAndLoad(scene, settings);
 }
 
 class SceneBench {
@@ -209,7 +198,7 @@ public:
         if (!scene) {
             return scene.error();
         }
-        SceneViewData data = makeSceneView(*scene);
+        scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
         for (InstanceView& instance : data.instances) {
             instance.joints = {};
             instance.morphWeights = {};
@@ -219,7 +208,8 @@ public:
             return std::optional<Measured>();
         }
         const EmbreeScene embree(triangles);
-        const Result<CameraChoice> camera = chooseCamera(*scene, data, "auto", 16.0 / 9.0);
+        const Result<scene_view::CameraChoice> camera =
+            scene_view::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
         if (!camera) {
             return camera.error();
         }
@@ -243,7 +233,7 @@ public:
     }
 
 private:
-    Status upload(const Scene& scene, SceneViewData& data, Measured& measured) {
+    Status upload(const Scene& scene, scene_view::SceneViewData& data, Measured& measured) {
         const Result<Package> package = packageOf(scene);
         if (!package) {
             return package.error();

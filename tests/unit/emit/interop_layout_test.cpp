@@ -1,6 +1,7 @@
 // Every structure that host and device share must have the same layout in SPIR-V as in C++.
 
 #include "emit/interop_layouts.h"
+#include "emit/material_layout.h"
 #include "spirv/reader.h"
 #include "unit/emit/sample_scene.h"
 
@@ -105,6 +106,21 @@ TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
     settings.debugInfo = true;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     expectInModules(compileSample(settings), interopLayouts());
+}
+
+// The record of a material is declared, so its layout is made and not compiled.
+TEST(InteropLayout, OfMaterialsIsThatOfThePackage) {
+    CompileSettings settings;
+    settings.debugInfo = true;
+    const CompiledPackage package = compileSample(settings);
+    const MaterialLayout layout = materialLayoutOf(package.plan);
+    std::vector<MemberLayout> members;
+    for (const RecordField& field : layout.fields) {
+        members.push_back({field.name, field.offset});
+    }
+    members.push_back({"textures", layout.textureOffset});
+    const StructLayout record{"MaterialRecord", layout.bytes, members};
+    expectInModules(package, {&record, 1});
 }
 
 TEST(InteropLayout, OfThePassThatDeformsLikewise) {

@@ -1,6 +1,7 @@
 #include "emit/compile.h"
 #include "emit/modules.h"
 #include "gltf/import.h"
+#include "support/features.h"
 #include "support/models.h"
 #include "unit/emit/sample_scene.h"
 
@@ -71,9 +72,8 @@ TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
         }
         const Case& shaderCase = package.plan.cases[module.key.index];
         std::uint32_t expected = 0;
-        for (const Feature feature :
-             {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture, Feature::NormalTexture,
-              Feature::OcclusionTexture, Feature::EmissiveTexture}) {
+        for (const char* const feature : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
+                                          "occlusionTexture", "emissiveTexture"}) {
             expected += (shaderCase.always & bit(feature)) != 0 ? 1 : 0;
         }
         EXPECT_EQ(module.statistics.textureFetches, expected) << module.name;
@@ -154,7 +154,7 @@ TEST(Manifest, DescribesThePackage) {
     EXPECT_EQ(manifest["effects"][2]["name"], "reflection");
     EXPECT_EQ(manifest["effects"][2]["chosen"], true);
     EXPECT_EQ(manifest["effects"][3]["chosen"], false);
-    EXPECT_EQ(manifest["features"].size(), featureTable().size());
+    EXPECT_EQ(manifest["features"].size(), builtinMaterialModel().features.size());
     ASSERT_EQ(manifest["shaders"].size(), 4U);
     std::set<int> materials;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -182,7 +182,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const nlohmann::json usual = manifestOf(compileSample(settings));
-    EXPECT_EQ(usual["settings"]["hitLobes"].size(), featureNames(kLobeMask).size());
+    EXPECT_EQ(usual["settings"]["hitLobes"].size(), builtinMaterialModel().names(kLobeMask).size());
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");
     EXPECT_EQ(usual["settings"]["precision"], 32);
@@ -190,8 +190,8 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
 
     Scene scene = makeSampleScene();
     scene.variant = "Night";
-    scene.materials[0].sheen.colorFactor = {1.0F, 1.0F, 1.0F};
-    settings.plan.keys.keptLobes = bit(Feature::Unlit) | bit(Feature::Ior);
+    scene.materials[0]["sheenColorFactor"] = {1.0F, 1.0F, 1.0F};
+    settings.plan.keys.keptLobes = bit("unlit") | bit("ior");
     settings.energyCompensation = false;
     settings.textureLod = TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;

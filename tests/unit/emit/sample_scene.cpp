@@ -36,16 +36,16 @@ Scene makeSampleScene() {
     scene.materials.resize(4);
     scene.materials[0].name = "plain */ \\";
     scene.materials[1].name = "textured\n\"red\"";
-    scene.materials[1].texture(TextureSlot::BaseColor).texture = 0;
+    scene.materials[1].texture("baseColorTexture").texture = 0;
     scene.materials[1].doubleSided = true;
     scene.materials[2].name = "transformed";
-    scene.materials[2].texture(TextureSlot::BaseColor).texture = 1;
-    scene.materials[2].texture(TextureSlot::Occlusion).texture = 1;
-    scene.materials[2].texture(TextureSlot::Occlusion).transform = {{0.25F, 0.5F}, 1.5707964F, {2, 3}};
+    scene.materials[2].texture("baseColorTexture").texture = 1;
+    scene.materials[2].texture("occlusionTexture").texture = 1;
+    scene.materials[2].texture("occlusionTexture").transform = {{0.25F, 0.5F}, 1.5707964F, {2, 3}};
     scene.materials[3].name = "";
-    scene.materials[3].unlit = true;
+    scene.materials[3].give("KHR_materials_unlit");
     scene.materials[3].alphaMode = AlphaMode::Mask;
-    scene.materials[3].texture(TextureSlot::BaseColor).texture = 0;
+    scene.materials[3].texture("baseColorTexture").texture = 0;
 
     Mesh mesh;
     for (int i = 0; i < 4; ++i) {

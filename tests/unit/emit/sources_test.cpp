@@ -1,5 +1,6 @@
 #include "emit/sources.h"
 
+#include "support/features.h"
 #include "unit/emit/sample_scene.h"
 
 #include <fmt/format.h>
@@ -42,13 +43,13 @@ TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
 // Other features of a scene do not change modules that test alpha.
 TEST(SceneSource, AlphaHasWhatItReadsAlone) {
     Plan plan;
-    plan.always = bit(Feature::TexCoord0) | bit(Feature::Normals) | bit(Feature::Sheen);
-    plan.sometimes = bit(Feature::BaseColorTexture) | bit(Feature::NormalTexture);
+    plan.always = bit("texCoord0") | bit("normals") | bit("sheen");
+    plan.sometimes = bit("baseColorTexture") | bit("normalTexture");
     CompileSettings settings;
     EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS", "0x0u"));
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     const std::string text = sceneSource(plan, settings);
-    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS", fmt::format("{:#x}u", bit(Feature::TexCoord0) >> 32U)));
+    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS", fmt::format("{:#x}u", bit("texCoord0") >> 32U)));
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES", "0x1u"));
 }
 

@@ -2,16 +2,21 @@
 
 #include "emit/sources.h"
 #include "gltf/import.h"
+#include "support/features.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <interop/scene.h>
+#include <limits>
 #include <map>
 #include <set>
+#include <string_view>
 
 namespace glint {
 namespace {
@@ -41,6 +46,10 @@ public:
         return elements;
     }
 
+    std::uint64_t count(SectionKind kind) const {
+        return sections_.at(kind).count;
+    }
+
     package::PackageHeader header{};
 
 private:
@@ -48,8 +57,63 @@ private:
     std::map<SectionKind, package::PackageSection> sections_;
 };
 
+// A layout with every field and texture.
+const MaterialLayout& wholeLayout() {
+    static const MaterialLayout kLayout = makeMaterialLayout(builtinMaterialModel(), ~FeatureMask{0});
+    return kLayout;
+}
+
+// Reads records of that layout.
+class Records {
+public:
+    explicit Records(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
+
+    float value(std::size_t material, std::string_view field, std::uint32_t channel = 0) const {
+        const auto& fields = wholeLayout().fields;
+        const auto found = std::ranges::find(fields, field, &RecordField::name);
+        EXPECT_NE(found, fields.end()) << field;
+        float number = 0.0F;
+        std::memcpy(&number, &bytes_.at(material * wholeLayout().bytes + found->offset + 4 * channel),
+                    sizeof number);
+        return number;
+    }
+    gpu::TextureRecord texture(std::size_t material, std::string_view name) const {
+        const int slot = wholeLayout().slotOf(builtinMaterialModel().findTexture(name));
+        EXPECT_GE(slot, 0) << name;
+        gpu::TextureRecord record{};
+        std::memcpy(&record,
+                    &bytes_.at(material * wholeLayout().bytes + wholeLayout().textureOffset +
+                               static_cast<std::size_t>(slot) * sizeof record),
+                    sizeof record);
+        return record;
+    }
+
+private:
+    std::vector<std::uint8_t> bytes_;
+};
+
+TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
+    const MaterialModel& model = builtinMaterialModel();
+    const auto has = [](const MaterialLayout& layout, std::string_view field) {
+        return std::ranges::find(layout.fields, field, &RecordField::name) != layout.fields.end();
+    };
+    const MaterialLayout plain = makeMaterialLayout(model, 0);
+    EXPECT_TRUE(has(plain, "baseColorFactor"));
+    EXPECT_FALSE(has(plain, "clearcoatFactor"));
+    EXPECT_TRUE(plain.textures.empty());
+    EXPECT_EQ(plain.bytes, plain.textureOffset);
+    const MaterialLayout coated =
+        makeMaterialLayout(model, model.mask("clearcoat") | model.mask("normalTexture"));
+    EXPECT_TRUE(has(coated, "clearcoatFactor"));
+    EXPECT_TRUE(has(coated, "normalScale"));
+    EXPECT_FALSE(has(coated, "clearcoatNormalScale"));
+    EXPECT_EQ(coated.textures, std::vector{model.findTexture("normalTexture")});
+    EXPECT_EQ(coated.bytes, coated.textureOffset + sizeof(gpu::TextureRecord));
+    EXPECT_LT(plain.bytes, 64U);
+}
+
 TEST(MaterialTables, ListEachImageOncePerColourSpace) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene());
+    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     ASSERT_EQ(tables.textures.size(), 3U);
     EXPECT_EQ(tables.textures[0].image, 0U);
     EXPECT_EQ(tables.textures[0].srgb, 1U);
@@ -57,26 +121,26 @@ TEST(MaterialTables, ListEachImageOncePerColourSpace) {
     EXPECT_EQ(tables.textures[1].srgb, 1U);
     EXPECT_EQ(tables.textures[2].image, 1U);
     EXPECT_EQ(tables.textures[2].srgb, 0U);
-    const auto slots = [&](int material) { return tables.materials[material].textures; };
-    EXPECT_EQ(slots(1)[gpu::kTextureBaseColor].textureIndex, 0U);
-    EXPECT_EQ(slots(2)[gpu::kTextureBaseColor].textureIndex, 1U);
-    EXPECT_EQ(slots(2)[gpu::kTextureBaseColor].samplerIndex, 1U);
-    EXPECT_EQ(slots(2)[gpu::kTextureOcclusion].textureIndex, 2U);
-    EXPECT_EQ(slots(3)[gpu::kTextureBaseColor].textureIndex, 0U);
+    const Records records(tables.materials);
+    EXPECT_EQ(records.texture(1, "baseColorTexture").textureIndex, 0U);
+    EXPECT_EQ(records.texture(2, "baseColorTexture").textureIndex, 1U);
+    EXPECT_EQ(records.texture(2, "baseColorTexture").samplerIndex, 1U);
+    EXPECT_EQ(records.texture(2, "occlusionTexture").textureIndex, 2U);
+    EXPECT_EQ(records.texture(3, "baseColorTexture").textureIndex, 0U);
 }
 
 TEST(MaterialTables, LeaveEmptySlotsZero) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene());
+    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     using Words = std::array<std::uint32_t, sizeof(gpu::TextureRecord) / sizeof(std::uint32_t)>;
-    for (const gpu::TextureRecord& record : tables.materials[0].textures) {
-        EXPECT_EQ(std::bit_cast<Words>(record), Words{});
+    for (const MaterialTexture& texture : builtinMaterialModel().textures) {
+        EXPECT_EQ(std::bit_cast<Words>(Records(tables.materials).texture(0, texture.name)), Words{});
     }
 }
 
 // A quarter turn counter-clockwise on the image, whose v points down, takes (1, 0) to (0, -1).
 TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene());
-    const gpu::TextureRecord& record = tables.materials[2].textures[gpu::kTextureOcclusion];
+    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
+    const gpu::TextureRecord record = Records(tables.materials).texture(2, "occlusionTexture");
     const auto apply = [&](float u, float v) {
         return std::pair(record.rowU.x * u + record.rowU.y * v + record.rowU.z,
                          record.rowV.x * u + record.rowV.y * v + record.rowV.z);
@@ -88,7 +152,7 @@ TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
     const auto [u2, v2] = apply(0, 1);
     EXPECT_NEAR(u2, 3 + 0.25, 1e-6);
     EXPECT_NEAR(v2, 0.5, 1e-6);
-    const gpu::TextureRecord& identity = tables.materials[2].textures[gpu::kTextureBaseColor];
+    const gpu::TextureRecord identity = Records(tables.materials).texture(2, "baseColorTexture");
     EXPECT_EQ(identity.rowU.x, 1.0F);
     EXPECT_EQ(identity.rowU.y, 0.0F);
     EXPECT_EQ(identity.rowV.x, 0.0F);
@@ -100,86 +164,110 @@ TEST(MaterialTables, TexturesOfColorsAreSrgb) {
     const auto srgbSlots = [](bool specularGlossiness) {
         Scene scene = makeSampleScene();
         scene.materials.resize(1);
-        scene.materials[0].specularGlossiness.given = specularGlossiness;
+        if (specularGlossiness) {
+            scene.materials[0].give("KHR_materials_pbrSpecularGlossiness");
+        }
         for (TextureInfo& info : scene.materials[0].textures) {
             info.texture = 0;
         }
-        const MaterialTables tables = makeMaterialTables(scene);
+        const MaterialTables tables = makeMaterialTables(scene, wholeLayout());
         EXPECT_EQ(tables.textures.size(), 2U);
-        std::set<std::uint32_t> slots;
-        for (std::uint32_t slot = 0; slot < gpu::kTextureSlotCount; ++slot) {
-            if (tables.textures[tables.materials[0].textures[slot].textureIndex].srgb == 1U) {
-                slots.insert(slot);
+        std::set<std::string> slots;
+        for (const MaterialTexture& texture : builtinMaterialModel().textures) {
+            if (tables.textures[Records(tables.materials).texture(0, texture.name).textureIndex].srgb == 1U) {
+                slots.insert(texture.name);
             }
         }
         return slots;
     };
-    std::set<std::uint32_t> expected{gpu::kTextureBaseColor, gpu::kTextureEmissive, gpu::kTextureSheenColor,
-                                     gpu::kTextureSpecularColor, gpu::kTextureDiffuseTransmissionColor};
+    std::set<std::string> expected{"baseColorTexture", "emissiveTexture", "sheenColorTexture",
+                                   "specularColorTexture", "diffuseTransmissionColorTexture"};
     EXPECT_EQ(srgbSlots(false), expected);
-    expected.insert(gpu::kTextureMetallicRoughness);
+    expected.insert("metallicRoughnessTexture");
     EXPECT_EQ(srgbSlots(true), expected);
 }
 
-gpu::MaterialRecord recordOf(const Material& material) {
-    Scene scene;
-    scene.materials = {material};
-    return makeMaterialTables(scene).materials.at(0);
+Records recordOf(const Material& material) {
+    return Records(makeMaterialRecord(material, wholeLayout()));
 }
 
 TEST(MaterialTables, HoldEveryFactorOfTheExtensions) {
     Material material;
-    material.ior.ior = 1.25F;
-    material.specular = {true, 0.5F, {0.25F, 0.5F, 2.0F}};
-    material.clearcoat = {true, 0.75F, 0.125F, -1.5F};
-    material.sheen = {true, {0.1F, 0.2F, 0.3F}, 0.4F};
-    material.anisotropy = {true, 0.625F, 2.5F};
-    material.iridescence = {true, 0.7F, 1.8F, 150.0F, 650.0F};
-    material.transmission = {true, 0.9F};
-    material.diffuseTransmission = {true, 0.35F, {0.6F, 0.5F, 0.4F}};
-    material.volume.thicknessFactor = 0.05F;
-    material.dispersion = {true, 0.45F};
-    const gpu::MaterialRecord record = recordOf(material);
-    EXPECT_EQ(record.ior, 1.25F);
-    EXPECT_EQ(record.specularFactor, 0.5F);
-    EXPECT_EQ(record.specularColorFactor.z, 2.0F);
-    EXPECT_EQ(record.clearcoatFactor, 0.75F);
-    EXPECT_EQ(record.clearcoatRoughnessFactor, 0.125F);
-    EXPECT_EQ(record.clearcoatNormalScale, -1.5F);
-    EXPECT_EQ(record.sheenColorFactor.y, 0.2F);
-    EXPECT_EQ(record.sheenRoughnessFactor, 0.4F);
-    EXPECT_EQ(record.anisotropyStrength, 0.625F);
-    EXPECT_FLOAT_EQ(record.anisotropyDirection.x, std::cos(2.5F));
-    EXPECT_FLOAT_EQ(record.anisotropyDirection.y, std::sin(2.5F));
-    EXPECT_EQ(record.iridescenceFactor, 0.7F);
-    EXPECT_EQ(record.iridescenceIor, 1.8F);
-    EXPECT_EQ(record.iridescenceThicknessMinimum, 150.0F);
-    EXPECT_EQ(record.iridescenceThicknessMaximum, 650.0F);
-    EXPECT_EQ(record.transmissionFactor, 0.9F);
-    EXPECT_EQ(record.diffuseTransmissionFactor, 0.35F);
-    EXPECT_EQ(record.diffuseTransmissionColorFactor.z, 0.4F);
-    EXPECT_EQ(record.thicknessFactor, 0.05F);
-    EXPECT_EQ(record.dispersion, 0.45F);
-    material.specularGlossiness = {true, {0.3F, 0.2F, 0.1F}, 0.85F};
-    EXPECT_EQ(recordOf(material).glossinessFactor, 0.85F);
-    EXPECT_EQ(recordOf(material).specularColorFactor.x, 0.3F);
+    material["ior"] = 1.25F;
+    material.give("KHR_materials_specular");
+    material["specularFactor"] = 0.5F;
+    material["specularColorFactor"] = {0.25F, 0.5F, 2.0F};
+    material.give("KHR_materials_clearcoat");
+    material["clearcoatFactor"] = 0.75F;
+    material["clearcoatRoughnessFactor"] = 0.125F;
+    material["clearcoatNormalScale"] = -1.5F;
+    material.give("KHR_materials_sheen");
+    material["sheenColorFactor"] = {0.1F, 0.2F, 0.3F};
+    material["sheenRoughnessFactor"] = 0.4F;
+    material.give("KHR_materials_anisotropy");
+    material["anisotropyStrength"] = 0.625F;
+    material["anisotropyRotation"] = 2.5F;
+    material.give("KHR_materials_iridescence");
+    material["iridescenceFactor"] = 0.7F;
+    material["iridescenceIor"] = 1.8F;
+    material["iridescenceThicknessMinimum"] = 150.0F;
+    material["iridescenceThicknessMaximum"] = 650.0F;
+    material.give("KHR_materials_transmission");
+    material["transmissionFactor"] = 0.9F;
+    material.give("KHR_materials_diffuse_transmission");
+    material["diffuseTransmissionFactor"] = 0.35F;
+    material["diffuseTransmissionColorFactor"] = {0.6F, 0.5F, 0.4F};
+    material["thicknessFactor"] = 0.05F;
+    material.give("KHR_materials_dispersion");
+    material["dispersion"] = 0.45F;
+    const Records record = recordOf(material);
+    EXPECT_EQ(record.value(0, "ior"), 1.25F);
+    EXPECT_EQ(record.value(0, "specularFactor"), 0.5F);
+    EXPECT_EQ(record.value(0, "specularColorFactor", 2), 2.0F);
+    EXPECT_EQ(record.value(0, "clearcoatFactor"), 0.75F);
+    EXPECT_EQ(record.value(0, "clearcoatRoughnessFactor"), 0.125F);
+    EXPECT_EQ(record.value(0, "clearcoatNormalScale"), -1.5F);
+    EXPECT_EQ(record.value(0, "sheenColorFactor", 1), 0.2F);
+    EXPECT_EQ(record.value(0, "sheenRoughnessFactor"), 0.4F);
+    EXPECT_EQ(record.value(0, "anisotropyStrength"), 0.625F);
+    EXPECT_FLOAT_EQ(record.value(0, "anisotropyDirection", 0), std::cos(2.5F));
+    EXPECT_FLOAT_EQ(record.value(0, "anisotropyDirection", 1), std::sin(2.5F));
+    EXPECT_EQ(record.value(0, "iridescenceFactor"), 0.7F);
+    EXPECT_EQ(record.value(0, "iridescenceIor"), 1.8F);
+    EXPECT_EQ(record.value(0, "iridescenceThicknessMinimum"), 150.0F);
+    EXPECT_EQ(record.value(0, "iridescenceThicknessMaximum"), 650.0F);
+    EXPECT_EQ(record.value(0, "transmissionFactor"), 0.9F);
+    EXPECT_EQ(record.value(0, "diffuseTransmissionFactor"), 0.35F);
+    EXPECT_EQ(record.value(0, "diffuseTransmissionColorFactor", 2), 0.4F);
+    EXPECT_EQ(record.value(0, "thicknessFactor"), 0.05F);
+    EXPECT_EQ(record.value(0, "dispersion"), 0.45F);
+    material.give("KHR_materials_pbrSpecularGlossiness");
+    material["glossySpecularFactor"] = {0.3F, 0.2F, 0.1F};
+    material["glossinessFactor"] = 0.85F;
+    EXPECT_EQ(recordOf(material).value(0, "glossinessFactor"), 0.85F);
+    EXPECT_EQ(recordOf(material).value(0, "glossySpecularFactor"), 0.3F);
 }
 
 // After the attenuation distance, white light has become the attenuation colour.
 TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
     Material material;
-    material.volume = {true, 1.0F, 0.25F, {0.5F, 1.0F, 0.0F}};
-    const gpu::vec3 absorption = recordOf(material).absorption;
+    material.give("KHR_materials_volume");
+    material["thicknessFactor"] = 1.0F;
+    material["attenuationDistance"] = 0.25F;
+    material["attenuationColor"] = {0.5F, 1.0F, 0.0F};
+    const Records record = recordOf(material);
+    const gpu::vec3 absorption{record.value(0, "absorption", 0), record.value(0, "absorption", 1),
+                               record.value(0, "absorption", 2)};
     EXPECT_NEAR(std::exp(-static_cast<double>(absorption.x) * 0.25), 0.5, 1e-7);
     EXPECT_EQ(absorption.y, 0.0F);
     EXPECT_FALSE(std::signbit(absorption.y));
     // Black lets nothing pass, and the product with a kilometre is finite.
     EXPECT_GE(absorption.z, 1e17F);
     EXPECT_TRUE(std::isfinite(absorption.z * 1000.0F));
-    material.volume.attenuationDistance = 1e-30F;
-    EXPECT_LE(recordOf(material).absorption.x, 1.0001e18F);
-    material.volume.attenuationDistance = 0.0F;
-    EXPECT_EQ(recordOf(material).absorption.z, 0.0F);
+    material["attenuationDistance"] = 1e-30F;
+    EXPECT_LE(recordOf(material).value(0, "absorption", 0), 1.0001e18F);
+    material["attenuationDistance"] = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(recordOf(material).value(0, "absorption", 2), 0.0F);
 }
 
 TEST(Tables, HoldWhatTheHeaderSays) {
@@ -220,7 +308,7 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     const auto cases = reader.read<package::CaseEntry>(SectionKind::Cases);
     ASSERT_EQ(cases.size(), compiled.plan.cases.size());
     EXPECT_EQ(text(cases[1].name), compiled.plan.cases[1].name);
-    EXPECT_EQ(reader.read<gpu::MaterialRecord>(SectionKind::Materials).size(), 4U);
+    EXPECT_EQ(reader.count(SectionKind::Materials), 4U);
 
     const auto samplers = reader.read<package::SamplerEntry>(SectionKind::Samplers);
     ASSERT_EQ(samplers.size(), 2U);
@@ -257,7 +345,7 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
 // Scenes share cases but have their own tables: materials and textures of each count from 0.
 TEST(Tables, GoSceneByScene) {
     std::vector<Scene> scenes{makeSampleScene(), makeSampleScene()};
-    scenes[1].materials[0].clearcoat.factor = 1.0F;
+    scenes[1].materials[0]["clearcoatFactor"] = 1.0F;
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = MergePolicy::None;
@@ -270,15 +358,11 @@ TEST(Tables, GoSceneByScene) {
     EXPECT_EQ(entries[1].materialCount, 4U);
     EXPECT_EQ(entries[1].firstPrimitive, 4U);
     const auto primitives = reader.read<package::PrimitiveEntry>(SectionKind::Primitives);
-    const auto materials = reader.read<gpu::MaterialRecord>(SectionKind::Materials);
     ASSERT_EQ(primitives.size(), 8U);
-    ASSERT_EQ(materials.size(), 8U);
+    ASSERT_EQ(reader.count(SectionKind::Materials), 8U);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(primitives[4 + i].materialIndex, i);
         EXPECT_EQ(primitives[4 + i].shaderId == primitives[i].shaderId, i != 0);
-        for (std::size_t slot = 0; slot < std::size(materials[i].textures); ++slot) {
-            EXPECT_EQ(materials[4 + i].textures[slot].textureIndex, materials[i].textures[slot].textureIndex);
-        }
     }
     const std::size_t keysOfOne = compileSample(settings).plan.keys.size();
     EXPECT_EQ(compiled->plan.keys.size(), keysOfOne + 1);
@@ -287,7 +371,7 @@ TEST(Tables, GoSceneByScene) {
 // Hits may keep fewer lobes, but the mask on the device is that of primary surfaces.
 TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     Scene scene = makeSampleScene();
-    scene.materials[0].clearcoat.factor = 1.0F;
+    scene.materials[0]["clearcoatFactor"] = 1.0F;
     CompileSettings settings;
     settings.plan.keys.keptLobes = 0;
     const SceneList scenes({&scene, 1});
@@ -295,8 +379,8 @@ TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     const Bytes bytes = makeTables(scenes, plan, {}, settings);
     const auto primitives = TableReader(bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
     ASSERT_EQ(primitives.size(), 4U);
-    EXPECT_EQ(primitives[0].featureLobes, bit(Feature::Clearcoat));
-    EXPECT_EQ((plan.always | plan.sometimes) & bit(Feature::Clearcoat), 0U);
+    EXPECT_EQ(primitives[0].featureLobes, bit("clearcoat"));
+    EXPECT_EQ((plan.always | plan.sometimes) & bit("clearcoat"), 0U);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(primitives[i].featureLobes | FeatureMask{primitives[i].featureInputs} << 32U,
                   plan.primaryMaskOfPrimitive[i]);

@@ -3,6 +3,7 @@
 
 #include "document.h"
 #include "gltf/import.h"
+#include "support/features.h"
 
 #include <gtest/gtest.h>
 
@@ -47,8 +48,8 @@ TEST(GalleryPlan, CoversEveryFeature) {
     const auto inputs = glint::planningInputs(scene());
     const glint::Plan plan =
         glint::makePlan(scene().materials, inputs, {{glint::AlphaPolicy::Tested}, glint::MergePolicy::None});
-    for (const glint::FeatureInfo& feature : glint::featureTable()) {
-        EXPECT_NE((plan.always | plan.sometimes) & glint::bit(feature.feature), 0U) << feature.name;
+    for (const glint::Feature& feature : glint::builtinMaterialModel().features) {
+        EXPECT_NE((plan.always | plan.sometimes) & feature.mask(), 0U) << feature.name;
     }
 }
 
@@ -77,24 +78,24 @@ TEST(GalleryPlan, TwinsShareAKey) {
 // The lobes that distinguish the exhibits of extensions from all others, one row for each material.
 TEST(GalleryPlan, ExhibitsHaveTheLobesOfTheirExtensions) {
     using glint::Feature;
-    const std::map<std::string, std::set<Feature>> expected{
-        {"Carbon fibre", {Feature::Clearcoat}},
-        {"Worn lacquer", {Feature::Clearcoat}},
-        {"Enamel", {Feature::Clearcoat}},
-        {"Velvet, crimson", {Feature::Sheen}},
-        {"Amber glass", {Feature::Transmission, Feature::Volume, Feature::Attenuation}},
-        {"Frosted glass", {Feature::Transmission, Feature::Volume}},
-        {"Stained glass", {Feature::Transmission}},
-        {"Diamond", {Feature::Ior, Feature::Transmission, Feature::Volume, Feature::Dispersion}},
-        {"Filmed steel", {Feature::Iridescence}},
-        {"Lustre porcelain", {Feature::Specular}},
-        {"Turned steel", {Feature::Anisotropy}},
-        {"Paper shade", {Feature::DiffuseTransmission}},
-        {"Celadon", {Feature::SpecularGlossiness}}};
+    const std::map<std::string, std::set<std::string>> expected{
+        {"Carbon fibre", {"clearcoat"}},
+        {"Worn lacquer", {"clearcoat"}},
+        {"Enamel", {"clearcoat"}},
+        {"Velvet, crimson", {"sheen"}},
+        {"Amber glass", {"transmission", "volume", "attenuation"}},
+        {"Frosted glass", {"transmission", "volume"}},
+        {"Stained glass", {"transmission"}},
+        {"Diamond", {"ior", "transmission", "volume", "dispersion"}},
+        {"Filmed steel", {"iridescence"}},
+        {"Lustre porcelain", {"specular"}},
+        {"Turned steel", {"anisotropy"}},
+        {"Paper shade", {"diffuseTransmission"}},
+        {"Celadon", {"specularGlossiness"}}};
     const auto keys = keysByMaterial({});
     for (const auto& [name, lobes] : expected) {
         glint::FeatureMask mask = 0;
-        for (const Feature lobe : lobes) {
+        for (const std::string& lobe : lobes) {
             mask |= glint::bit(lobe);
         }
         ASSERT_EQ(keys.at(name).size(), 1U) << name;

@@ -83,7 +83,7 @@ TEST(GltfWebp, RoundTrips) {
     EXPECT_EQ(scene->images[0].width, 2);
     EXPECT_EQ(scene->images[0].height, 1);
     EXPECT_EQ(scene->images[0].pixels, Bytes(kWebpPixels.begin(), kWebpPixels.end()));
-    EXPECT_EQ(scene->materials[0].texture(TextureSlot::BaseColor).texture, 0);
+    EXPECT_EQ(scene->materials[0].texture("baseColorTexture").texture, 0);
 }
 
 TEST(GltfWebp, IsPreferredToItsFallback) {

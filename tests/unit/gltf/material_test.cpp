@@ -39,17 +39,17 @@ TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
     ASSERT_EQ(scene.materials.size(), 1U);
     const Material& read = scene.materials[0];
     const Material expected;
-    EXPECT_EQ(read.baseColorFactor, expected.baseColorFactor);
-    EXPECT_EQ(read.metallicFactor, 1.0F);
-    EXPECT_EQ(read.roughnessFactor, 1.0F);
-    EXPECT_EQ(read.emissiveFactor, expected.emissiveFactor);
-    EXPECT_EQ(read.emissiveStrength, 1.0F);
-    EXPECT_EQ(read.normalScale, 1.0F);
-    EXPECT_EQ(read.occlusionStrength, 1.0F);
-    EXPECT_EQ(read.alphaCutoff, 0.5F);
+    EXPECT_EQ(read["baseColorFactor"], expected["baseColorFactor"]);
+    EXPECT_EQ(read["metallicFactor"], 1.0F);
+    EXPECT_EQ(read["roughnessFactor"], 1.0F);
+    EXPECT_EQ(read["emissiveFactor"], expected["emissiveFactor"]);
+    EXPECT_EQ(read["emissiveStrength"], 1.0F);
+    EXPECT_EQ(read["normalScale"], 1.0F);
+    EXPECT_EQ(read["occlusionStrength"], 1.0F);
+    EXPECT_EQ(read["alphaCutoff"], 0.5F);
     EXPECT_EQ(read.alphaMode, AlphaMode::Opaque);
     EXPECT_FALSE(read.doubleSided);
-    EXPECT_FALSE(read.unlit);
+    EXPECT_FALSE(read.isUnlit());
     for (const TextureInfo& info : read.textures) {
         EXPECT_EQ(info.texture, -1);
     }
@@ -75,23 +75,24 @@ TEST(GltfMaterials, ReadsEveryValue) {
     const Material& read = scene.materials.at(0);
     EXPECT_EQ(read.name, "paint");
     EXPECT_TRUE(read.doubleSided);
-    EXPECT_TRUE(read.unlit);
+    EXPECT_TRUE(read.isUnlit());
     EXPECT_EQ(read.alphaMode, AlphaMode::Mask);
-    EXPECT_EQ(read.alphaCutoff, 0.25F);
-    EXPECT_EQ(read.baseColorFactor, (std::array{0.5F, 0.25F, 0.125F, 0.75F}));
-    EXPECT_EQ(read.emissiveFactor, (std::array{0.125F, 0.25F, 0.5F}));
-    EXPECT_EQ(read.emissiveStrength, 3e9F);
-    EXPECT_EQ(read.metallicFactor, 0.25F);
-    EXPECT_EQ(read.roughnessFactor, 0.75F);
-    EXPECT_EQ(read.normalScale, -2.0F);
-    EXPECT_EQ(read.occlusionStrength, 0.5F);
-    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-        const bool isCore = slot <= static_cast<std::size_t>(TextureSlot::Emissive);
+    EXPECT_EQ(read["alphaCutoff"], 0.25F);
+    EXPECT_EQ(read["baseColorFactor"], (std::array{0.5F, 0.25F, 0.125F, 0.75F}));
+    EXPECT_EQ(read["emissiveFactor"], (std::array{0.125F, 0.25F, 0.5F}));
+    EXPECT_EQ(read["emissiveStrength"], 3e9F);
+    EXPECT_EQ(read["metallicFactor"], 0.25F);
+    EXPECT_EQ(read["roughnessFactor"], 0.75F);
+    EXPECT_EQ(read["normalScale"], -2.0F);
+    EXPECT_EQ(read["occlusionStrength"], 0.5F);
+    for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
+        const bool isCore =
+            slot <= static_cast<std::size_t>(builtinMaterialModel().findTexture("emissiveTexture"));
         EXPECT_EQ(read.textures[slot].texture, isCore ? 0 : -1);
     }
-    EXPECT_EQ(read.texture(TextureSlot::BaseColor).texCoord, 1);
-    EXPECT_EQ(read.texture(TextureSlot::Occlusion).texCoord, 1);
-    const TextureTransform& transform = read.texture(TextureSlot::Normal).transform;
+    EXPECT_EQ(read.texture("baseColorTexture").texCoord, 1);
+    EXPECT_EQ(read.texture("occlusionTexture").texCoord, 1);
+    const TextureTransform& transform = read.texture("normalTexture").transform;
     EXPECT_EQ(transform.offset, (std::array{0.5F, -1.0F}));
     EXPECT_EQ(transform.rotation, 3.0F);
     EXPECT_EQ(transform.scale, (std::array{2.0F, 0.5F}));
@@ -105,9 +106,9 @@ TEST(GltfMaterials, ClampsFactorsWithAWarning) {
     builder.append("materials", Json::parse(R"({"pbrMetallicRoughness": {"metallicFactor": 1.5,
         "roughnessFactor": -1, "baseColorFactor": [2, 0, 0, 1]}, "alphaMode": "GLASS"})"));
     const Scene scene = mustImport(builder);
-    EXPECT_EQ(scene.materials.at(0).metallicFactor, 1.0F);
-    EXPECT_EQ(scene.materials.at(0).roughnessFactor, 0.0F);
-    EXPECT_EQ(scene.materials.at(0).baseColorFactor[0], 1.0F);
+    EXPECT_EQ(scene.materials.at(0)["metallicFactor"], 1.0F);
+    EXPECT_EQ(scene.materials.at(0)["roughnessFactor"], 0.0F);
+    EXPECT_EQ(scene.materials.at(0)["baseColorFactor"][0], 1.0F);
     EXPECT_EQ(countWarnings(scene, "material-range"), 3U);
     EXPECT_EQ(countWarnings(scene, "alpha-mode"), 1U);
     EXPECT_TRUE(findWarning(scene, "material-range")
@@ -136,7 +137,7 @@ TEST(GltfMaterials, LeavesOutUvSetsBeyondTheSecond) {
     GltfBuilder builder = texturedMaterial();
     builder.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 2;
     const Scene scene = mustImport(builder);
-    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+    EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
     EXPECT_EQ(countWarnings(scene, "texture-uv-set"), 1U);
 }
 
@@ -147,7 +148,7 @@ TEST(GltfMaterials, NotesTexturesWithoutASource) {
     builder.append("textures", Json::object());
     builder.append("materials", Json::parse(R"({"normalTexture": {"index": 0}})"));
     const Scene scene = mustImport(builder);
-    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::Normal).texture, -1);
+    EXPECT_EQ(scene.materials.at(0).texture("normalTexture").texture, -1);
     EXPECT_EQ(findWarning(scene, "texture-source").severity, Severity::Note);
     EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
 }
@@ -204,10 +205,10 @@ TEST(GltfExtensions, WarnsOnceOfWhatIsUsedAndUnknown) {
 TEST(GltfExtensions, UsesTheFallbackOfTextures) {
     GltfBuilder builder = texturedMaterial();
     builder.root["textures"][0]["extensions"]["EXT_texture_avif"]["source"] = 1;
-    EXPECT_EQ(mustImport(builder).materials.at(0).texture(TextureSlot::BaseColor).texture, 0);
+    EXPECT_EQ(mustImport(builder).materials.at(0).texture("baseColorTexture").texture, 0);
     builder.root["textures"][0].erase("source");
     const Scene scene = mustImport(builder);
-    EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+    EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
     EXPECT_TRUE(scene.textures.empty());
     EXPECT_TRUE(scene.images.empty());
     EXPECT_NE(findWarning(scene, "texture-source").message.find("EXT_texture_avif"), std::string::npos);
@@ -221,7 +222,7 @@ TEST(GltfExtensions, LeavesSlotsOfUnreadableFormatsEmpty) {
         GltfBuilder builder = texturedMaterial();
         builder.root["images"][0] = image;
         const Scene scene = mustImport(builder, {.decodeImages = true});
-        EXPECT_EQ(scene.materials.at(0).texture(TextureSlot::BaseColor).texture, -1);
+        EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
         EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
     }
 }

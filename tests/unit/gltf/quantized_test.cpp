@@ -92,7 +92,7 @@ TEST(GltfQuantizedTextures, KeepTheirTransform) {
     primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<std::uint16_t>({0, 0, 4096, 0, 0, 2048}, 2);
     const Result<Scene> scene = import(builder);
     const Primitive& read = onlyPrimitive(scene);
-    const TextureInfo& info = scene->materials.at(0).texture(TextureSlot::BaseColor);
+    const TextureInfo& info = scene->materials.at(0).texture("baseColorTexture");
     EXPECT_TRUE(info.hasTransform);
     EXPECT_EQ(read.texCoords0.at(1)[0] * info.transform.scale[0] + info.transform.offset[0], 1.25F);
     EXPECT_EQ(read.texCoords0.at(2)[1] * info.transform.scale[1] + info.transform.offset[1], 1.5F);

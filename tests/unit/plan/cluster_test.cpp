@@ -2,6 +2,7 @@
 #include "plan/cluster.h"
 
 #include "plan/merge.h"
+#include "support/features.h"
 #include "unit/plan/weighted_keys.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ namespace {
 
 using namespace glint;
 
-constexpr FeatureMask kClusterBase = bit(Feature::Normals);
+const FeatureMask kClusterBase = bit("normals");
 
 // Calls use(partition) for every partition of n keys into at most `most` clusters.
 template <typename Use>
@@ -39,8 +40,8 @@ std::vector<WeightedKey> randomClusterKeys(std::mt19937& random, int count) {
     std::vector<WeightedKey> keys;
     for (int i = 0; i < count; ++i) {
         FeatureMask mask = kClusterBase;
-        for (const Feature feature : {Feature::Clearcoat, Feature::Sheen, Feature::BaseColorTexture,
-                                      Feature::NormalTexture, Feature::DoubleSided, Feature::Unlit}) {
+        for (const char* const feature :
+             {"clearcoat", "sheen", "baseColorTexture", "normalTexture", "doubleSided", "unlit"}) {
             mask |= random() % 3 == 0 ? bit(feature) : 0;
         }
         keys.push_back({mask, static_cast<double>(random() % 100)});
@@ -138,8 +139,8 @@ TEST(Cluster, TakesTheCheapestPairEachTime) {
 // Returns ascending keys with any features, whose hits span five orders of magnitude.
 std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
-    for (const FeatureInfo& info : featureTable()) {
-        known |= bit(info.feature);
+    for (const Feature& info : builtinMaterialModel().features) {
+        known |= info.mask();
     }
     const auto word = [&] { return FeatureMask{random()} << 32U | random(); };
     std::map<FeatureMask, double> weights;

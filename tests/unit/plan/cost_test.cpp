@@ -2,6 +2,7 @@
 #include "plan/cost.h"
 
 #include "plan/cost_constants.h"
+#include "support/features.h"
 
 #include <gtest/gtest.h>
 
@@ -17,12 +18,17 @@ using fitted::kInputBranch;
 using fitted::kLitInstructions;
 using fitted::kLobeBranch;
 
-constexpr FeatureMask kBase = bit(Feature::Normals);
+const FeatureMask kBase = bit("normals");
 
 // Returns the instructions of a feature's code, with its fetches.
-double instructionsOf(Feature feature) {
-    const auto* row = std::ranges::find(fitted::kFeatureCode, feature, &fitted::FeatureCode::feature);
-    return row == std::end(fitted::kFeatureCode) ? 0.0 : row->instructions + kFetchCost * row->fetches;
+const Feature& featureNamed(const char* name) {
+    const MaterialModel& model = builtinMaterialModel();
+    return model.features[static_cast<std::size_t>(model.findFeature(name))];
+}
+
+double instructionsOf(const char* name) {
+    const FeatureCost& cost = featureNamed(name).cost;
+    return cost.instructions + kFetchCost * cost.fetches;
 }
 
 double laneChance(double p) {
@@ -30,16 +36,16 @@ double laneChance(double p) {
 }
 
 TEST(Cost, OfOneKeyIsNothing) {
-    EXPECT_EQ(mergingCost(toSet({kBase | bit(Feature::Dispersion), 1.0})), 0.0);
+    EXPECT_EQ(mergingCost(toSet({kBase | bit("dispersion"), 1.0})), 0.0);
     EXPECT_EQ(mergingCost(toSet({kBase, 0.4}), toSet({kBase, 0.6})), 0.0);
 }
 
 TEST(Cost, IsThatOfTheFormula) {
     const KeySet plain = toSet({kBase, 0.6});
-    const KeySet coated = toSet({kBase | bit(Feature::Clearcoat) | bit(Feature::DoubleSided), 0.2});
+    const KeySet coated = toSet({kBase | bit("clearcoat") | bit("doubleSided"), 0.2});
     const double idle = laneChance(0.25) - 0.25;
     const double branches = kLobeBranch + kInputBranch;
-    const double code = instructionsOf(Feature::Clearcoat) + instructionsOf(Feature::DoubleSided);
+    const double code = instructionsOf("clearcoat") + instructionsOf("doubleSided");
     EXPECT_NEAR(mergingCost(plain, coated), 0.8 * (branches + idle * code), 1e-9);
     EXPECT_DOUBLE_EQ(mergingCost(plain, coated), mergingCost(unionOf(plain, coated)));
     EXPECT_DOUBLE_EQ(mergingCost(plain, coated), mergingCost(coated, plain));
@@ -47,19 +53,19 @@ TEST(Cost, IsThatOfTheFormula) {
 
 TEST(Cost, UnlitHitsWaitForLitOnes) {
     const KeySet lit = toSet({kBase, 0.1});
-    const KeySet unlit = toSet({bit(Feature::Unlit), 0.9});
-    const double normals = kInputBranch + instructionsOf(Feature::Normals) * (laneChance(0.1) - 0.1);
+    const KeySet unlit = toSet({bit("unlit"), 0.9});
+    const double normals = kInputBranch + instructionsOf("normals") * (laneChance(0.1) - 0.1);
     const double expected = kLobeBranch + normals + kLitInstructions * (laneChance(0.1) - 0.1) +
-                            instructionsOf(Feature::Unlit) * (laneChance(0.9) - 0.9);
+                            instructionsOf("unlit") * (laneChance(0.9) - 0.9);
     EXPECT_NEAR(mergingCost(lit, unlit), expected, 1e-9);
 }
 
 TEST(Cost, OfWhatNothingHitsIsNothing) {
-    EXPECT_EQ(mergingCost(toSet({kBase, 0.0}), toSet({bit(Feature::Unlit), 0.0})), 0.0);
+    EXPECT_EQ(mergingCost(toSet({kBase, 0.0}), toSet({bit("unlit"), 0.0})), 0.0);
 }
 
 TEST(Cost, OfAFetchCounts) {
-    const Feature texture = Feature::BaseColorTexture;
+    const char* const texture = "baseColorTexture";
     EXPECT_GT(instructionsOf(texture), kFetchCost);
     const KeySet set = unionOf(toSet({kBase, 0.5}), toSet({kBase | bit(texture), 0.5}));
     EXPECT_NEAR(mergingCost(set), kInputBranch + instructionsOf(texture) * (laneChance(0.5) - 0.5), 1e-9);
@@ -67,12 +73,12 @@ TEST(Cost, OfAFetchCounts) {
 
 // The parts add up to the whole. Features that no key or every key has cost nothing.
 TEST(Cost, OfACaseIsThatOfItsBranches) {
-    const FeatureMask coated = kBase | bit(Feature::Clearcoat) | bit(Feature::BaseColorTexture);
-    const KeySet set = unionOf(toSet({coated, 0.3}), toSet({kBase | bit(Feature::Sheen), 0.1}));
+    const FeatureMask coated = kBase | bit("clearcoat") | bit("baseColorTexture");
+    const KeySet set = unionOf(toSet({coated, 0.3}), toSet({kBase | bit("sheen"), 0.1}));
     double sum = 0.0;
-    for (const FeatureInfo& info : featureTable()) {
-        const double cost = branchCost(set, info.feature);
-        const bool isBranch = (set.any & ~set.always & bit(info.feature)) != 0;
+    for (const Feature& info : builtinMaterialModel().features) {
+        const double cost = branchCost(set, info);
+        const bool isBranch = (set.any & ~set.always & info.mask()) != 0;
         EXPECT_EQ(cost > 0.0, isBranch) << info.name;
         sum += cost;
     }
@@ -81,8 +87,8 @@ TEST(Cost, OfACaseIsThatOfItsBranches) {
 
 // If one of two keys gets more hits, sharing a case never becomes cheaper.
 TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
-    const FeatureMask masks[] = {kBase, bit(Feature::Unlit), kBase | bit(Feature::Clearcoat),
-                                 kBase | bit(Feature::Sheen) | bit(Feature::BaseColorTexture)};
+    const FeatureMask masks[] = {kBase, bit("unlit"), kBase | bit("clearcoat"),
+                                 kBase | bit("sheen") | bit("baseColorTexture")};
     for (const FeatureMask a : masks) {
         for (const FeatureMask b : masks) {
             double last = 0.0;
@@ -98,7 +104,7 @@ TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
 }
 
 TEST(Cost, SetsOfIndicesAreUnions) {
-    const std::vector<WeightedKey> keys{{kBase, 0.5}, {bit(Feature::Unlit), 0.2}, {kBase | 1ULL << 40U, 0.3}};
+    const std::vector<WeightedKey> keys{{kBase, 0.5}, {bit("unlit"), 0.2}, {kBase | 1ULL << 40U, 0.3}};
     const std::vector<int> some{0, 2};
     const KeySet set = toSet(some, keys);
     const KeySet expected = unionOf(toSet(keys[0]), toSet(keys[2]));
@@ -109,19 +115,18 @@ TEST(Cost, SetsOfIndicesAreUnions) {
 }
 
 TEST(Cost, EstimatesAddUp) {
-    const CodeEstimate unlit = estimateCode(bit(Feature::Unlit), 0);
+    const CodeEstimate unlit = estimateCode(bit("unlit"), 0);
     const CodeEstimate lit = estimateCode(0, 0);
     EXPECT_NEAR(lit.instructions - unlit.instructions, kLitInstructions, 1e-9);
-    const FeatureMask texture = bit(Feature::EmissiveTexture);
+    const FeatureMask texture = bit("emissiveTexture");
     const CodeEstimate always = estimateCode(texture, 0);
     EXPECT_EQ(always.fetches, 1.0);
     EXPECT_EQ(always.inputBranches + always.lobeBranches, 0);
-    const CodeEstimate sometimes = estimateCode(0, texture | bit(Feature::Sheen) | bit(Feature::Volume));
+    const CodeEstimate sometimes = estimateCode(0, texture | bit("sheen") | bit("volume"));
     EXPECT_EQ(sometimes.inputBranches, 1);
     EXPECT_EQ(sometimes.lobeBranches, 2);
     EXPECT_EQ(sometimes.fetches, 1.0);
-    EXPECT_NEAR(sometimes.instructions -
-                    estimateCode(texture | bit(Feature::Sheen) | bit(Feature::Volume), 0).instructions,
+    EXPECT_NEAR(sometimes.instructions - estimateCode(texture | bit("sheen") | bit("volume"), 0).instructions,
                 kInputBranch + 2.0 * kLobeBranch, 1e-9);
 }
 
@@ -129,23 +134,10 @@ TEST(Cost, MeasuredConstantsAreSane) {
     EXPECT_GT(kInputBranch, 0.0);
     EXPECT_GT(kLobeBranch, 0.0);
     EXPECT_GT(kLitInstructions, 100.0);
-    std::set<Feature> measured;
-    for (const fitted::FeatureCode& row : fitted::kFeatureCode) {
-        EXPECT_TRUE(measured.insert(row.feature).second) << "two rows of feature " << int(row.feature);
-        EXPECT_GE(row.instructions, 0.0);
-        EXPECT_LT(row.instructions, 2000.0) << "kRareShare counts on less";
-    }
-    for (const FeatureInfo& info : featureTable()) {
-        const bool isTexture = info.name.ends_with("Texture");
-        const auto* row =
-            std::ranges::find(fitted::kFeatureCode, info.feature, &fitted::FeatureCode::feature);
-        if (row == std::end(fitted::kFeatureCode)) {
-            // Rays test alpha before a case is reached, and an unlit shader is the base to which the others
-            // are compared.
-            EXPECT_TRUE(info.feature == Feature::AlphaMask || info.feature == Feature::Unlit) << info.name;
-            continue;
-        }
-        EXPECT_EQ(row->fetches, isTexture ? 1.0 : 0.0) << info.name;
+    for (const Feature& feature : builtinMaterialModel().features) {
+        EXPECT_GE(feature.cost.instructions, 0.0) << feature.name;
+        EXPECT_LT(feature.cost.instructions, 2000.0) << "kRareShare counts on less: " << feature.name;
+        EXPECT_EQ(feature.cost.fetches, feature.texture >= 0 ? 1.0 : 0.0) << feature.name;
     }
 }
 

@@ -1,6 +1,9 @@
 // Tests which effects a scene calls for.
 #include "plan/effects.h"
 
+#include "plan/plan.h"
+#include "support/features.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
@@ -18,31 +21,40 @@ constexpr SceneLights kDark{false};
 Material rough() {
     Material material;
     material.name = "Plaster";
-    material.metallicFactor = 0.0F;
+    material["metallicFactor"] = 0.0F;
     return material;
+}
+
+// A primitive with one UV set, so that textures can be read.
+PrimitiveInputs primitiveOf(int material) {
+    PrimitiveInputs primitive;
+    primitive.material = material;
+    primitive.hasTexCoords0 = true;
+    return primitive;
 }
 
 std::uint32_t effectsOf(const std::vector<Material>& materials, const SceneLights& lights = kLit,
                         const EffectRequest& request = kAuto) {
-    std::vector<const Material*> pointers;
-    pointers.reserve(materials.size());
-    for (const Material& material : materials) {
-        pointers.push_back(&material);
+    std::vector<PrimitiveInputs> primitives;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        primitives.push_back(primitiveOf(static_cast<int>(i)));
     }
-    return decideEffects(pointers, lights, request).effects;
+    return decideEffects(materials, primitives, lights, request).effects;
 }
 
 std::string reasonOf(const Material& material, Effect effect, const EffectRequest& request = kAuto,
                      const SceneLights& lights = kLit) {
-    const Material* const pointer = &material;
-    return decideEffects({&pointer, 1}, lights, request).decisions[effectNumber(effect)].reason;
+    const PrimitiveInputs primitive = primitiveOf(0);
+    return decideEffects({&material, 1}, {&primitive, 1}, lights, request)
+        .decisions[effectNumber(effect)]
+        .reason;
 }
 
 TEST(Effects, ShadowNeedsALightAndSomethingLit) {
     EXPECT_EQ(effectsOf({rough()}), kEffectShadow);
     EXPECT_EQ(effectsOf({rough()}, kDark), 0U);
     Material unlit = rough();
-    unlit.unlit = true;
+    unlit.give("KHR_materials_unlit");
     EXPECT_EQ(effectsOf({unlit}), 0U);
     EXPECT_EQ(effectsOf({unlit, rough()}), kEffectShadow);
     EXPECT_EQ(effectsOf({}), 0U);
@@ -52,66 +64,84 @@ TEST(Effects, ShadowNeedsALightAndSomethingLit) {
 
 TEST(Effects, ReflectionNeedsSomethingSmooth) {
     Material material = rough();
-    material.roughnessFactor = 0.31F;
+    material["roughnessFactor"] = 0.31F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     EXPECT_NE(effectsOf({material}, kLit, {true, 0, 0.31F}) & kEffectReflection, 0U);
-    material.roughnessFactor = 0.3F;
+    material["roughnessFactor"] = 0.3F;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
     EXPECT_EQ(reasonOf(material, kEffectReflection),
               "material \"Plaster\" has the roughness 0.3, at most 0.3");
     // Values decide: this material is smooth, but reflects nothing.
-    material.specular.factor = 0.0F;
+    material["specularFactor"] = 0.0F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
-    material.specular.factor = 0.01F;
+    material["specularFactor"] = 0.01F;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
 }
 
 TEST(Effects, ATextureMayBeSmootherThanItsFactor) {
     Material material = rough();
-    material.texture(TextureSlot::MetallicRoughness).texture = 0;
+    material.texture("metallicRoughnessTexture").texture = 0;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
+}
+
+// Planning of effects and of keys share one truth: a texture without UVs makes no part of a metal dielectric.
+TEST(Effects, ATextureThatCannotBeReadChangesNothing) {
+    Material material = rough();
+    material["metallicFactor"] = 1.0F;
+    material["transmissionFactor"] = 1.0F;
+    material.texture("metallicRoughnessTexture").texture = 0;
+    PrimitiveInputs primitive;
+    const auto effects = [&] {
+        return decideEffects({&material, 1}, {&primitive, 1}, kLit, kAuto).effects &
+               (kEffectRefraction | kEffectReflection);
+    };
+    EXPECT_EQ(effects(), 0U);
+    EXPECT_EQ(makeKey(material, primitive, {}) & bit("transmission"), 0U);
+    primitive.hasTexCoords0 = true;
+    EXPECT_EQ(effects(), kEffectRefraction | kEffectReflection);
+    EXPECT_NE(makeKey(material, primitive, {}) & bit("transmission"), 0U);
 }
 
 TEST(Effects, ACoatReflectsIfItCoversSomething) {
     Material material = rough();
-    material.clearcoat.given = true;
+    material.give("KHR_materials_clearcoat");
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
-    material.clearcoat.factor = 0.1F;
+    material["clearcoatFactor"] = 0.1F;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
-    material.clearcoat.roughnessFactor = 0.5F;
+    material["clearcoatRoughnessFactor"] = 0.5F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
-    material.texture(TextureSlot::ClearcoatRoughness).texture = 0;
+    material.texture("clearcoatRoughnessTexture").texture = 0;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
 }
 
 TEST(Effects, GlossinessIsRoughnessTurnedAround) {
     Material material = rough();
-    material.specularGlossiness.given = true;
-    material.specularGlossiness.glossinessFactor = 0.5F;
+    material.give("KHR_materials_pbrSpecularGlossiness");
+    material["glossinessFactor"] = 0.5F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     // Textures can only make it rougher.
-    material.texture(TextureSlot::MetallicRoughness).texture = 0;
+    material.texture("metallicRoughnessTexture").texture = 0;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
-    material.specularGlossiness.glossinessFactor = 0.8F;
+    material["glossinessFactor"] = 0.8F;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
-    material.specularGlossiness.specularFactor = {0.0F, 0.0F, 0.0F};
+    material["glossySpecularFactor"] = {0.0F, 0.0F, 0.0F};
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
 }
 
 TEST(Effects, RefractionNeedsLightThatPasses) {
     Material material = rough();
-    material.transmission.given = true;
+    material.give("KHR_materials_transmission");
     EXPECT_EQ(effectsOf({material}) & kEffectRefraction, 0U);
-    material.transmission.factor = 0.5F;
+    material["transmissionFactor"] = 0.5F;
     EXPECT_NE(effectsOf({material}) & kEffectRefraction, 0U);
     EXPECT_EQ(reasonOf(material, kEffectRefraction), "material \"Plaster\" transmits 0.5 of the light");
     Material metal = material;
-    metal.metallicFactor = 1.0F;
+    metal["metallicFactor"] = 1.0F;
     EXPECT_EQ(effectsOf({metal}) & kEffectRefraction, 0U);
     Material black = material;
-    black.baseColorFactor = {0.0F, 0.0F, 0.0F, 1.0F};
+    black["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 1.0F};
     EXPECT_EQ(effectsOf({black}) & kEffectRefraction, 0U);
-    material.unlit = true;
+    material.give("KHR_materials_unlit");
     EXPECT_EQ(effectsOf({material}) & kEffectRefraction, 0U);
 }
 
@@ -124,8 +154,8 @@ TEST(Effects, RefinementsAreThereWhenNamed) {
 
 TEST(Effects, WhatIsAskedForIsThereEvenIfUnusable) {
     const Material material = rough();
-    const Material* const pointer = &material;
-    const EffectPlan plan = decideEffects({&pointer, 1}, kDark, {false, kEffectRefraction});
+    const PrimitiveInputs primitive = primitiveOf(0);
+    const EffectPlan plan = decideEffects({&material, 1}, {&primitive, 1}, kDark, {false, kEffectRefraction});
     EXPECT_EQ(plan.effects, kEffectRefraction);
     ASSERT_EQ(plan.decisions.size(), kEffectCount);
     const EffectDecision& decision = plan.decisions[effectNumber(kEffectRefraction)];

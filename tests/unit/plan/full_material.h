@@ -26,36 +26,57 @@ inline PrimitiveInputs fullPrimitive() {
 }
 
 inline void setLobes(Material& material) {
-    material.ior = {true, 1.33F};
-    material.specular = {true, 0.5F, {0.5F, 1.0F, 1.5F}};
-    material.clearcoat = {true, 0.5F, 0.25F, 0.75F};
-    material.sheen = {true, {0.5F, 0.25F, 0.125F}, 0.5F};
-    material.anisotropy = {true, 0.5F, 1.0F};
-    material.iridescence = {true, 1.0F, 1.3F, 100.0F, 400.0F};
-    material.transmission = {true, 0.5F};
-    material.diffuseTransmission = {true, 0.5F, {1.0F, 0.5F, 0.25F}};
-    material.volume = {true, 0.1F, 2.0F, {0.5F, 0.25F, 0.125F}};
-    material.dispersion = {true, 0.3F};
+    material.give("KHR_materials_ior");
+    material["ior"] = 1.33F;
+    material.give("KHR_materials_specular");
+    material["specularFactor"] = 0.5F;
+    material["specularColorFactor"] = {0.5F, 1.0F, 1.5F};
+    material.give("KHR_materials_clearcoat");
+    material["clearcoatFactor"] = 0.5F;
+    material["clearcoatRoughnessFactor"] = 0.25F;
+    material["clearcoatNormalScale"] = 0.75F;
+    material.give("KHR_materials_sheen");
+    material["sheenColorFactor"] = {0.5F, 0.25F, 0.125F};
+    material["sheenRoughnessFactor"] = 0.5F;
+    material.give("KHR_materials_anisotropy");
+    material["anisotropyStrength"] = 0.5F;
+    material["anisotropyRotation"] = 1.0F;
+    material.give("KHR_materials_iridescence");
+    material["iridescenceFactor"] = 1.0F;
+    material["iridescenceIor"] = 1.3F;
+    material["iridescenceThicknessMinimum"] = 100.0F;
+    material["iridescenceThicknessMaximum"] = 400.0F;
+    material.give("KHR_materials_transmission");
+    material["transmissionFactor"] = 0.5F;
+    material.give("KHR_materials_diffuse_transmission");
+    material["diffuseTransmissionFactor"] = 0.5F;
+    material["diffuseTransmissionColorFactor"] = {1.0F, 0.5F, 0.25F};
+    material.give("KHR_materials_volume");
+    material["thicknessFactor"] = 0.1F;
+    material["attenuationDistance"] = 2.0F;
+    material["attenuationColor"] = {0.5F, 0.25F, 0.125F};
+    material.give("KHR_materials_dispersion");
+    material["dispersion"] = 0.3F;
 }
 
 // Returns a material with every feature except Unlit and SpecularGlossiness, which exclude others, and
 // ClearcoatSharesNormal.
 inline Material fullMaterial() {
     Material material;
-    material.metallicFactor = 0.5F;
-    material.roughnessFactor = 0.5F;
-    material.emissiveFactor = {1.0F, 0.5F, 0.25F};
-    material.emissiveStrength = 4.0F;
-    material.hasEmissiveStrength = true;
+    material["metallicFactor"] = 0.5F;
+    material["roughnessFactor"] = 0.5F;
+    material["emissiveFactor"] = {1.0F, 0.5F, 0.25F};
+    material["emissiveStrength"] = 4.0F;
+    material.give("KHR_materials_emissive_strength");
     material.doubleSided = true;
     material.alphaMode = AlphaMode::Mask;
     setLobes(material);
-    for (int slot = 0; slot < static_cast<int>(kTextureSlots); ++slot) {
+    for (int slot = 0; slot < static_cast<int>(builtinMaterialModel().textures.size()); ++slot) {
         material.textures[slot].texture = slot;
     }
-    material.texture(TextureSlot::Occlusion).texCoord = 1;
-    material.texture(TextureSlot::BaseColor).transform.rotation = 0.5F;
-    material.texture(TextureSlot::BaseColor).hasTransform = true;
+    material.texture("occlusionTexture").texCoord = 1;
+    material.texture("baseColorTexture").transform.rotation = 0.5F;
+    material.texture("baseColorTexture").hasTransform = true;
     return material;
 }
 

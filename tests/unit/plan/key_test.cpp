@@ -1,5 +1,6 @@
 // Tests canonical keys: a key has a feature if its value matters; otherwise the feature is dropped with a
 // reason.
+#include "support/features.h"
 #include "unit/plan/full_material.h"
 
 #include <gtest/gtest.h>
@@ -16,10 +17,10 @@ using namespace glint::testing;
 TEST(FeatureTable, IsConsistent) {
     FeatureMask seen = 0;
     std::vector<std::string_view> names;
-    for (const FeatureInfo& info : featureTable()) {
-        EXPECT_EQ(seen & bit(info.feature), 0U) << info.name << " shares its bit";
-        seen |= bit(info.feature);
-        for (const std::string_view text : {info.name, info.shortName, info.macro, info.gltf, info.neutral}) {
+    for (const Feature& info : builtinMaterialModel().features) {
+        EXPECT_EQ(seen & info.mask(), 0U) << info.name << " shares its bit";
+        seen |= info.mask();
+        for (const std::string_view text : {info.name, info.shortName, info.macro, info.gltf}) {
             EXPECT_FALSE(text.empty()) << info.name;
         }
         EXPECT_TRUE(info.macro.starts_with("GLINT_")) << info.macro;
@@ -27,24 +28,27 @@ TEST(FeatureTable, IsConsistent) {
             EXPECT_NE(other, info.name);
         }
         names.push_back(info.name);
-        EXPECT_NE(featureDefines().find(std::string(info.macro) + " 0x"), std::string::npos);
+        EXPECT_NE(builtinMaterialModel().featureDefines().find(std::string(info.macro) + " 0x"),
+                  std::string::npos);
     }
-    EXPECT_EQ(featureNames(seen).size(), featureTable().size());
+    EXPECT_EQ(builtinMaterialModel().names(seen).size(), builtinMaterialModel().features.size());
 }
 
 TEST(FeatureTable, DefinesNumberBitsWithinTheirWord) {
-    EXPECT_NE(featureDefines().find("#define GLINT_UNLIT 0x1u\n"), std::string::npos);
-    EXPECT_NE(featureDefines().find("#define GLINT_BASE_COLOR_TEXTURE 0x1u\n"), std::string::npos);
-    EXPECT_NE(featureDefines().find("#define GLINT_METALLIC_ROUGHNESS_TEXTURE 0x2u\n"), std::string::npos);
+    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_UNLIT 0x1u\n"), std::string::npos);
+    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_BASE_COLOR_TEXTURE 0x1u\n"),
+              std::string::npos);
+    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_METALLIC_ROUGHNESS_TEXTURE 0x2u\n"),
+              std::string::npos);
 }
 
 TEST(Key, HasEveryFeatureThatMatters) {
     Dropped dropped;
     const FeatureMask key = makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
-    for (const FeatureInfo& info : featureTable()) {
-        const bool excluded = info.feature == Feature::Unlit || info.feature == Feature::SpecularGlossiness ||
-                              info.feature == Feature::ClearcoatSharesNormal;
-        EXPECT_EQ((key & bit(info.feature)) != 0, !excluded) << info.name;
+    for (const Feature& info : builtinMaterialModel().features) {
+        const bool excluded =
+            info.name == "unlit" || info.name == "specularGlossiness" || info.name == "clearcoatSharesNormal";
+        EXPECT_EQ((key & info.mask()) != 0, !excluded) << info.name;
     }
     EXPECT_TRUE(dropped.empty());
 }
@@ -60,7 +64,7 @@ TEST(Key, OfTheDefaultMaterialIsEmpty) {
 struct NeutralCase {
     std::string feature;
     std::function<void(Material&, PrimitiveInputs&)> neutralise;
-    Feature gone;
+    const char* gone;
 };
 
 class NeutralValue : public ::testing::TestWithParam<NeutralCase> {};
@@ -76,7 +80,7 @@ TEST_P(NeutralValue, LeavesTheKeyWithAReason) {
 }
 
 void clearBase(Material& material) {
-    material.baseColorFactor = {0.0F, 0.0F, 0.0F, 1.0F};
+    material["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 1.0F};
     material.alphaMode = AlphaMode::Opaque;
 }
 
@@ -84,76 +88,74 @@ INSTANTIATE_TEST_SUITE_P(
     All, NeutralValue,
     ::testing::Values(
         NeutralCase{"baseColorTexture", [](Material& m, PrimitiveInputs&) { clearBase(m); },
-                    Feature::BaseColorTexture},
+                    "baseColorTexture"},
         NeutralCase{"baseColorTexture",
                     [](Material&, PrimitiveInputs& p) {
                         p.hasTexCoords0 = false;
                         p.hasTexCoords1 = false;
                     },
-                    Feature::BaseColorTexture},
+                    "baseColorTexture"},
         NeutralCase{"baseColorTexture",
-                    [](Material& m, PrimitiveInputs&) { m.texture(TextureSlot::BaseColor).texCoord = 2; },
-                    Feature::BaseColorTexture},
+                    [](Material& m, PrimitiveInputs&) { m.texture("baseColorTexture").texCoord = 2; },
+                    "baseColorTexture"},
         NeutralCase{"metallicRoughnessTexture",
                     [](Material& m, PrimitiveInputs&) {
-                        m.metallicFactor = 0.0F;
-                        m.roughnessFactor = 0.0F;
+                        m["metallicFactor"] = 0.0F;
+                        m["roughnessFactor"] = 0.0F;
                     },
-                    Feature::MetallicRoughnessTexture},
-        NeutralCase{"normalTexture", [](Material& m, PrimitiveInputs&) { m.normalScale = 0.0F; },
-                    Feature::NormalTexture},
+                    "metallicRoughnessTexture"},
+        NeutralCase{"normalTexture", [](Material& m, PrimitiveInputs&) { m["normalScale"] = 0.0F; },
+                    "normalTexture"},
         NeutralCase{"tangents",
                     [](Material& m, PrimitiveInputs&) {
-                        m.normalScale = 0.0F;
-                        m.clearcoat.normalScale = 0.0F;
-                        m.anisotropy.strength = 0.0F;
+                        m["normalScale"] = 0.0F;
+                        m["clearcoatNormalScale"] = 0.0F;
+                        m["anisotropyStrength"] = 0.0F;
                     },
-                    Feature::Tangents},
-        NeutralCase{"tangents", [](Material&, PrimitiveInputs& p) { p.hasNormals = false; },
-                    Feature::Tangents},
-        NeutralCase{"occlusionTexture", [](Material& m, PrimitiveInputs&) { m.occlusionStrength = 0.0F; },
-                    Feature::OcclusionTexture},
+                    "tangents"},
+        NeutralCase{"tangents", [](Material&, PrimitiveInputs& p) { p.hasNormals = false; }, "tangents"},
+        NeutralCase{"occlusionTexture", [](Material& m, PrimitiveInputs&) { m["occlusionStrength"] = 0.0F; },
+                    "occlusionTexture"},
         NeutralCase{"emissiveTexture",
                     [](Material& m, PrimitiveInputs&) {
-                        m.emissiveFactor = {0.0F, 0.0F, 0.0F};
+                        m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
                     },
-                    Feature::EmissiveTexture},
-        NeutralCase{"emissiveTexture", [](Material& m, PrimitiveInputs&) { m.emissiveStrength = 0.0F; },
-                    Feature::EmissiveTexture},
-        NeutralCase{"emissiveStrength", [](Material& m, PrimitiveInputs&) { m.emissiveStrength = 1.0F; },
-                    Feature::EmissiveStrength},
+                    "emissiveTexture"},
+        NeutralCase{"emissiveTexture", [](Material& m, PrimitiveInputs&) { m["emissiveStrength"] = 0.0F; },
+                    "emissiveTexture"},
+        NeutralCase{"emissiveStrength", [](Material& m, PrimitiveInputs&) { m["emissiveStrength"] = 1.0F; },
+                    "emissiveStrength"},
         NeutralCase{"emissiveStrength",
                     [](Material& m, PrimitiveInputs&) {
-                        m.emissiveFactor = {0.0F, 0.0F, 0.0F};
+                        m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
                     },
-                    Feature::EmissiveStrength},
+                    "emissiveStrength"},
         NeutralCase{
             "textureTransform",
-            [](Material& m, PrimitiveInputs&) { m.texture(TextureSlot::BaseColor).transform.rotation = 0; },
-            Feature::TextureTransform},
+            [](Material& m, PrimitiveInputs&) { m.texture("baseColorTexture").transform.rotation = 0; },
+            "textureTransform"},
         NeutralCase{"textureTransform", [](Material& m, PrimitiveInputs&) { clearBase(m); },
-                    Feature::TextureTransform},
+                    "textureTransform"},
         NeutralCase{"vertexColor", [](Material&, PrimitiveInputs& p) { p.colors = ColorContent::White; },
-                    Feature::VertexColor},
-        NeutralCase{"vertexColor", [](Material& m, PrimitiveInputs&) { clearBase(m); }, Feature::VertexColor},
-        NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m.alphaCutoff = 0.0F; },
-                    Feature::AlphaMask},
+                    "vertexColor"},
+        NeutralCase{"vertexColor", [](Material& m, PrimitiveInputs&) { clearBase(m); }, "vertexColor"},
+        NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m["alphaCutoff"] = 0.0F; }, "alphaMask"},
         NeutralCase{"alphaMask",
                     [](Material& m, PrimitiveInputs& p) {
-                        m.texture(TextureSlot::BaseColor).texture = -1;
+                        m.texture("baseColorTexture").texture = -1;
                         p.colors = ColorContent::None;
                     },
-                    Feature::AlphaMask},
+                    "alphaMask"},
         NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m.alphaMode = AlphaMode::Blend; },
-                    Feature::AlphaMask}));
+                    "alphaMask"}));
 
 // Only a base that is part metal, part dielectric pays for both.
 TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
     const auto hasBoth = [](float metallic, bool textured) {
         Material material;
-        material.metallicFactor = metallic;
-        material.texture(TextureSlot::MetallicRoughness).texture = textured ? 0 : -1;
-        return (makeKey(material, fullPrimitive(), kTested) & bit(Feature::PartialMetal)) != 0;
+        material["metallicFactor"] = metallic;
+        material.texture("metallicRoughnessTexture").texture = textured ? 0 : -1;
+        return (makeKey(material, fullPrimitive(), kTested) & bit("partialMetal")) != 0;
     };
     EXPECT_FALSE(hasBoth(0.0F, false));
     EXPECT_FALSE(hasBoth(0.0F, true));
@@ -163,9 +165,9 @@ TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
     EXPECT_TRUE(hasBoth(1.0F, true));
 
     Material glossy;
-    glossy.metallicFactor = 0.5F;
-    glossy.specularGlossiness.given = true;
-    EXPECT_EQ(makeKey(glossy, fullPrimitive(), kTested) & bit(Feature::PartialMetal), 0U);
+    glossy["metallicFactor"] = 0.5F;
+    glossy.give("KHR_materials_pbrSpecularGlossiness");
+    EXPECT_EQ(makeKey(glossy, fullPrimitive(), kTested) & bit("partialMetal"), 0U);
 }
 
 TEST(Key, RaysMeetAlphaMasksThatCanFail) {
@@ -175,31 +177,30 @@ TEST(Key, RaysMeetAlphaMasksThatCanFail) {
     EXPECT_FALSE(masked());
     material.alphaMode = AlphaMode::Mask;
     EXPECT_TRUE(masked());
-    material.alphaCutoff = 0.0F;
+    material["alphaCutoff"] = 0.0F;
     EXPECT_FALSE(masked());
-    material.alphaCutoff = 0.5F;
+    material["alphaCutoff"] = 0.5F;
     material.alphaMode = AlphaMode::Blend;
     EXPECT_FALSE(masked());
 }
 
 TEST(Key, AStrengthOfZeroIsNotNeutralForALightSource) {
     Material material = fullMaterial();
-    material.emissiveStrength = 0.0F;
-    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit(Feature::EmissiveStrength), 0U);
+    material["emissiveStrength"] = 0.0F;
+    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit("emissiveStrength"), 0U);
 }
 
 TEST(Key, OfAnUnlitMaterialReadsTheBaseColorAlone) {
     Material material = fullMaterial();
-    material.unlit = true;
+    material.give("KHR_materials_unlit");
     Dropped dropped;
     const FeatureMask key = makeKey(material, fullPrimitive(), kTested, &dropped);
-    const FeatureMask expected = bit(Feature::Unlit) | bit(Feature::BaseColorTexture) |
-                                 bit(Feature::TexCoord0) | bit(Feature::TextureTransform) |
-                                 bit(Feature::VertexColor) | bit(Feature::AlphaMask);
+    const FeatureMask expected = bit("unlit") | bit("baseColorTexture") | bit("texCoord0") |
+                                 bit("textureTransform") | bit("vertexColor") | bit("alphaMask");
     EXPECT_EQ(key, expected);
-    for (const FeatureInfo& info : featureTable()) {
-        const bool lost = (makeKey(fullMaterial(), fullPrimitive(), kTested) & ~key & bit(info.feature)) != 0;
-        if (lost && info.feature != Feature::TexCoord1) {
+    for (const Feature& info : builtinMaterialModel().features) {
+        const bool lost = (makeKey(fullMaterial(), fullPrimitive(), kTested) & ~key & info.mask()) != 0;
+        if (lost && info.name != "texCoord1") {
             EXPECT_FALSE(reasonFor(dropped, std::string(info.name)).empty()) << info.name;
         }
     }
@@ -208,7 +209,7 @@ TEST(Key, OfAnUnlitMaterialReadsTheBaseColorAlone) {
 TEST(Key, ForcedOpaqueDropsAlphaModeAndSaysSo) {
     Dropped dropped;
     const FeatureMask key = makeKey(fullMaterial(), fullPrimitive(), {AlphaPolicy::Opaque}, &dropped);
-    EXPECT_EQ(key & bit(Feature::AlphaMask), 0U);
+    EXPECT_EQ(key & bit("alphaMask"), 0U);
     EXPECT_NE(reasonFor(dropped, "alphaMask").find("--alpha opaque"), std::string::npos);
 }
 
@@ -216,10 +217,10 @@ TEST(Key, IgnoresNamesAndConstantValues) {
     Material a = fullMaterial();
     Material b = fullMaterial();
     b.name = "another";
-    b.baseColorFactor = {0.1F, 0.2F, 0.3F, 0.4F};
-    b.roughnessFactor = 0.25F;
-    b.alphaCutoff = 0.7F;
-    b.texture(TextureSlot::Normal).texture = 17;
+    b["baseColorFactor"] = {0.1F, 0.2F, 0.3F, 0.4F};
+    b["roughnessFactor"] = 0.25F;
+    b["alphaCutoff"] = 0.7F;
+    b.texture("normalTexture").texture = 17;
     EXPECT_EQ(makeKey(a, fullPrimitive(), kTested), makeKey(b, fullPrimitive(), kTested));
 }
 
@@ -233,11 +234,11 @@ TEST(Key, NamesExtensionsThatAreNotShaded) {
 
 TEST(Key, ReadsOnlyTheUvSetsOfLiveTextures) {
     Material material;
-    material.texture(TextureSlot::BaseColor).texture = 0;
-    material.texture(TextureSlot::BaseColor).texCoord = 1;
+    material.texture("baseColorTexture").texture = 0;
+    material.texture("baseColorTexture").texCoord = 1;
     const FeatureMask key = makeKey(material, fullPrimitive(), kTested);
-    EXPECT_EQ(key & bit(Feature::TexCoord0), 0U);
-    EXPECT_NE(key & bit(Feature::TexCoord1), 0U);
+    EXPECT_EQ(key & bit("texCoord0"), 0U);
+    EXPECT_NE(key & bit("texCoord1"), 0U);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace {
@@ -30,27 +31,27 @@ FeatureMask keyAfter(const Change& change, Dropped& dropped) {
 }
 
 FeatureMask bitOf(const std::string& name) {
-    for (const FeatureInfo& info : featureTable()) {
+    for (const Feature& info : builtinMaterialModel().features) {
         if (info.name == name) {
-            return bit(info.feature);
+            return info.mask();
         }
     }
     ADD_FAILURE() << name;
     return 0;
 }
 
-void clearTexture(Material& material, TextureSlot slot) {
+void clearTexture(Material& material, const char* slot) {
     material.texture(slot) = {};
 }
 
 void makeMetal(Material& material) {
-    material.metallicFactor = 1.0F;
-    clearTexture(material, TextureSlot::MetallicRoughness);
+    material["metallicFactor"] = 1.0F;
+    clearTexture(material, "metallicRoughnessTexture");
 }
 
 // Makes the material fully metallic except for a texture.
 void makeTexturedMetal(Material& material, PrimitiveInputs&) {
-    material.metallicFactor = 1.0F;
+    material["metallicFactor"] = 1.0F;
 }
 
 Pair metal(const std::string& feature) {
@@ -59,64 +60,68 @@ Pair metal(const std::string& feature) {
 
 std::vector<Pair> lobes() {
     return {
-        {"ior", "Default", [](Material& m, PrimitiveInputs&) { m.ior.ior = 1.5F; },
-         [](Material& m, PrimitiveInputs&) { m.ior.ior = 0.0F; }},
+        {"ior", "Default", [](Material& m, PrimitiveInputs&) { m["ior"] = 1.5F; },
+         [](Material& m, PrimitiveInputs&) { m["ior"] = 0.0F; }},
         metal("ior"),
         {"specular", "Plain",
          [](Material& m, PrimitiveInputs&) {
-             m.specular = {true, 1.0F, {1.0F, 1.0F, 1.0F}};
-             clearTexture(m, TextureSlot::Specular);
-             clearTexture(m, TextureSlot::SpecularColor);
+             m.give("KHR_materials_specular");
+             m["specularFactor"] = 1.0F;
+             m["specularColorFactor"] = {1.0F, 1.0F, 1.0F};
+             clearTexture(m, "specularTexture");
+             clearTexture(m, "specularColorTexture");
          },
          [](Material& m, PrimitiveInputs&) {
-             m.specular = {true, 1.0F, {1.0F, 1.0F, 1.0F}};
-             clearTexture(m, TextureSlot::Specular);
+             m.give("KHR_materials_specular");
+             m["specularFactor"] = 1.0F;
+             m["specularColorFactor"] = {1.0F, 1.0F, 1.0F};
+             clearTexture(m, "specularTexture");
          }},
-        {"specularTexture", "Factor", [](Material& m, PrimitiveInputs&) { m.specular.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.specular.factor = 1.0F; }},
-        {"specularColorTexture", "Factor", [](Material& m, PrimitiveInputs&) { m.specular.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.specular.factor = 1.0F; }},
+        {"specularTexture", "Factor", [](Material& m, PrimitiveInputs&) { m["specularFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["specularFactor"] = 1.0F; }},
+        {"specularColorTexture", "Factor", [](Material& m, PrimitiveInputs&) { m["specularFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["specularFactor"] = 1.0F; }},
         {"specularColorTexture", "Color",
          [](Material& m, PrimitiveInputs&) {
-             m.specular.colorFactor = {0.0F, 0.0F, 0.0F};
+             m["specularColorFactor"] = {0.0F, 0.0F, 0.0F};
          },
          [](Material& m, PrimitiveInputs&) {
-             m.specular.colorFactor = {0.0F, 0.0F, 0.1F};
+             m["specularColorFactor"] = {0.0F, 0.0F, 0.1F};
          }},
         metal("specular"),
-        {"clearcoat", "Factor", [](Material& m, PrimitiveInputs&) { m.clearcoat.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.factor = 0.01F; }},
-        {"clearcoatTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m.clearcoat.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.roughnessFactor = 0.0F; }},
+        {"clearcoat", "Factor", [](Material& m, PrimitiveInputs&) { m["clearcoatFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["clearcoatFactor"] = 0.01F; }},
+        {"clearcoatTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m["clearcoatFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["clearcoatRoughnessFactor"] = 0.0F; }},
         {"clearcoatRoughnessTexture", "Factor",
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.roughnessFactor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.roughnessFactor = 1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["clearcoatRoughnessFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["clearcoatRoughnessFactor"] = 1.0F; }},
         {"clearcoatNormalTexture", "Scale",
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.normalScale = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.clearcoat.normalScale = -1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["clearcoatNormalScale"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["clearcoatNormalScale"] = -1.0F; }},
         {"sheen", "Black",
          [](Material& m, PrimitiveInputs&) {
-             m.sheen.colorFactor = {0.0F, 0.0F, 0.0F};
+             m["sheenColorFactor"] = {0.0F, 0.0F, 0.0F};
          },
          [](Material& m, PrimitiveInputs&) {
-             m.sheen.colorFactor = {0.0F, 0.0F, 0.1F};
+             m["sheenColorFactor"] = {0.0F, 0.0F, 0.1F};
          }},
         {"sheenColorTexture", "Lobe",
          [](Material& m, PrimitiveInputs&) {
-             m.sheen.colorFactor = {0.0F, 0.0F, 0.0F};
+             m["sheenColorFactor"] = {0.0F, 0.0F, 0.0F};
          },
-         [](Material& m, PrimitiveInputs&) { m.sheen.roughnessFactor = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["sheenRoughnessFactor"] = 0.0F; }},
         {"sheenRoughnessTexture", "Factor",
-         [](Material& m, PrimitiveInputs&) { m.sheen.roughnessFactor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.sheen.roughnessFactor = 0.1F; }},
-        {"anisotropy", "Strength", [](Material& m, PrimitiveInputs&) { m.anisotropy.strength = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.anisotropy.rotation = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["sheenRoughnessFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["sheenRoughnessFactor"] = 0.1F; }},
+        {"anisotropy", "Strength", [](Material& m, PrimitiveInputs&) { m["anisotropyStrength"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["anisotropyRotation"] = 0.0F; }},
         {"anisotropy", "Rough",
          [](Material& m, PrimitiveInputs&) {
-             m.roughnessFactor = 1.0F;
-             clearTexture(m, TextureSlot::MetallicRoughness);
+             m["roughnessFactor"] = 1.0F;
+             clearTexture(m, "metallicRoughnessTexture");
          },
-         [](Material& m, PrimitiveInputs&) { m.roughnessFactor = 1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["roughnessFactor"] = 1.0F; }},
         {"anisotropy", "Direction",
          [](Material&, PrimitiveInputs& p) {
              p.hasTangents = false;
@@ -127,99 +132,105 @@ std::vector<Pair> lobes() {
              p.hasTexCoords0 = false;
              p.hasTexCoords1 = false;
          }},
-        {"anisotropyTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m.anisotropy.strength = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.anisotropy.strength = 1.0F; }},
-        {"iridescence", "Factor", [](Material& m, PrimitiveInputs&) { m.iridescence.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.iridescence.factor = 0.1F; }},
-        {"iridescence", "Air", [](Material& m, PrimitiveInputs&) { m.iridescence.ior = 1.0F; },
-         [](Material& m, PrimitiveInputs&) { m.iridescence.ior = 1.1F; }},
+        {"anisotropyTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m["anisotropyStrength"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["anisotropyStrength"] = 1.0F; }},
+        {"iridescence", "Factor", [](Material& m, PrimitiveInputs&) { m["iridescenceFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["iridescenceFactor"] = 0.1F; }},
+        {"iridescence", "Air", [](Material& m, PrimitiveInputs&) { m["iridescenceIor"] = 1.0F; },
+         [](Material& m, PrimitiveInputs&) { m["iridescenceIor"] = 1.1F; }},
         {"iridescence", "ThicknessWithTexture",
          [](Material& m, PrimitiveInputs&) {
-             m.iridescence.thicknessMinimum = 0.0F;
-             m.iridescence.thicknessMaximum = 0.0F;
+             m["iridescenceThicknessMinimum"] = 0.0F;
+             m["iridescenceThicknessMaximum"] = 0.0F;
          },
-         [](Material& m, PrimitiveInputs&) { m.iridescence.thicknessMaximum = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["iridescenceThicknessMaximum"] = 0.0F; }},
         // Without its texture, the film has the largest thickness.
         {"iridescence", "ThicknessWithoutTexture",
          [](Material& m, PrimitiveInputs&) {
-             m.iridescence.thicknessMaximum = 0.0F;
-             clearTexture(m, TextureSlot::IridescenceThickness);
+             m["iridescenceThicknessMaximum"] = 0.0F;
+             clearTexture(m, "iridescenceThicknessTexture");
          },
          [](Material& m, PrimitiveInputs&) {
-             m.iridescence.thicknessMinimum = 0.0F;
-             clearTexture(m, TextureSlot::IridescenceThickness);
+             m["iridescenceThicknessMinimum"] = 0.0F;
+             clearTexture(m, "iridescenceThicknessTexture");
          }},
-        {"iridescenceTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m.iridescence.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.iridescence.factor = 0.5F; }},
+        {"iridescenceTexture", "Lobe", [](Material& m, PrimitiveInputs&) { m["iridescenceFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["iridescenceFactor"] = 0.5F; }},
         {"iridescenceThicknessTexture", "Same",
-         [](Material& m, PrimitiveInputs&) { m.iridescence.thicknessMinimum = 400.0F; },
-         [](Material& m, PrimitiveInputs&) { m.iridescence.thicknessMinimum = 500.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["iridescenceThicknessMinimum"] = 400.0F; },
+         [](Material& m, PrimitiveInputs&) { m["iridescenceThicknessMinimum"] = 500.0F; }},
     };
 }
 
 std::vector<Pair> transmittingLobes() {
-    const Change opaque = [](Material& m, PrimitiveInputs&) { m.transmission.factor = 0.0F; };
+    const Change opaque = [](Material& m, PrimitiveInputs&) { m["transmissionFactor"] = 0.0F; };
     return {
         {"transmission", "Factor", opaque,
-         [](Material& m, PrimitiveInputs&) { m.transmission.factor = 1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["transmissionFactor"] = 1.0F; }},
         metal("transmission"),
         {"transmissionTexture", "Lobe", opaque,
-         [](Material& m, PrimitiveInputs&) { m.diffuseTransmission.factor = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["diffuseTransmissionFactor"] = 0.0F; }},
         {"diffuseTransmission", "Factor",
-         [](Material& m, PrimitiveInputs&) { m.diffuseTransmission.factor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.diffuseTransmission.factor = 1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["diffuseTransmissionFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["diffuseTransmissionFactor"] = 1.0F; }},
         metal("diffuseTransmission"),
         {"diffuseTransmission", "NothingLeft",
          [](Material& m, PrimitiveInputs&) {
-             m.transmission.factor = 1.0F;
-             clearTexture(m, TextureSlot::Transmission);
+             m["transmissionFactor"] = 1.0F;
+             clearTexture(m, "transmissionTexture");
          },
-         [](Material& m, PrimitiveInputs&) { m.transmission.factor = 1.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["transmissionFactor"] = 1.0F; }},
         {"diffuseTransmissionTexture", "Lobe",
-         [](Material& m, PrimitiveInputs&) { m.diffuseTransmission.factor = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["diffuseTransmissionFactor"] = 0.0F; },
          [](Material& m, PrimitiveInputs&) {
-             m.diffuseTransmission.colorFactor = {0.0F, 0.0F, 0.0F};
+             m["diffuseTransmissionColorFactor"] = {0.0F, 0.0F, 0.0F};
          }},
         {"diffuseTransmissionColorTexture", "Black",
          [](Material& m, PrimitiveInputs&) {
-             m.diffuseTransmission.colorFactor = {0.0F, 0.0F, 0.0F};
+             m["diffuseTransmissionColorFactor"] = {0.0F, 0.0F, 0.0F};
          },
          [](Material& m, PrimitiveInputs&) {
-             m.diffuseTransmission.colorFactor = {0.1F, 0.0F, 0.0F};
+             m["diffuseTransmissionColorFactor"] = {0.1F, 0.0F, 0.0F};
          }},
-        {"volume", "ThinWalled", [](Material& m, PrimitiveInputs&) { m.volume.thicknessFactor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.volume.thicknessFactor = 1e-3F; }},
+        {"volume", "ThinWalled", [](Material& m, PrimitiveInputs&) { m["thicknessFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["thicknessFactor"] = 1e-3F; }},
         {"volume", "Opaque",
          [](Material& m, PrimitiveInputs&) {
-             m.transmission.factor = 0.0F;
-             m.diffuseTransmission.factor = 0.0F;
+             m["transmissionFactor"] = 0.0F;
+             m["diffuseTransmissionFactor"] = 0.0F;
          },
          opaque},
         metal("volume"),
         {"attenuation", "White",
          [](Material& m, PrimitiveInputs&) {
-             m.volume.attenuationColor = {1.0F, 1.0F, 1.0F};
+             m["attenuationColor"] = {1.0F, 1.0F, 1.0F};
          },
          [](Material& m, PrimitiveInputs&) {
-             m.volume.attenuationColor = {1.0F, 1.0F, 0.9F};
+             m["attenuationColor"] = {1.0F, 1.0F, 0.9F};
          }},
         {"attenuation", "Infinite",
-         [](Material& m, PrimitiveInputs&) { m.volume.attenuationDistance = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.volume.attenuationDistance = 1e30F; }},
-        {"attenuation", "NoVolume", [](Material& m, PrimitiveInputs&) { m.volume.thicknessFactor = 0.0F; },
+         [](Material& m, PrimitiveInputs&) {
+             m["attenuationDistance"] = std::numeric_limits<float>::infinity();
+         },
+         [](Material& m, PrimitiveInputs&) { m["attenuationDistance"] = 1e30F; }},
+        {"attenuation", "NoVolume", [](Material& m, PrimitiveInputs&) { m["thicknessFactor"] = 0.0F; },
          opaque},
         metal("attenuation"),
         {"thicknessTexture", "NothingAbsorbs",
-         [](Material& m, PrimitiveInputs&) { m.volume.attenuationDistance = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.dispersion.dispersion = 0.0F; }},
-        {"dispersion", "Zero", [](Material& m, PrimitiveInputs&) { m.dispersion.dispersion = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.dispersion.dispersion = 1e-3F; }},
-        {"dispersion", "NothingRefracts", [](Material& m, PrimitiveInputs&) { m.ior.ior = 1.0F; },
-         [](Material& m, PrimitiveInputs&) { m.ior.ior = 1.5F; }},
-        {"dispersion", "NoVolume", [](Material& m, PrimitiveInputs&) { m.volume.thicknessFactor = 0.0F; },
-         [](Material& m, PrimitiveInputs&) { m.volume.attenuationDistance = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) {
+             m["attenuationDistance"] = std::numeric_limits<float>::infinity();
+         },
+         [](Material& m, PrimitiveInputs&) { m["dispersion"] = 0.0F; }},
+        {"dispersion", "Zero", [](Material& m, PrimitiveInputs&) { m["dispersion"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) { m["dispersion"] = 1e-3F; }},
+        {"dispersion", "NothingRefracts", [](Material& m, PrimitiveInputs&) { m["ior"] = 1.0F; },
+         [](Material& m, PrimitiveInputs&) { m["ior"] = 1.5F; }},
+        {"dispersion", "NoVolume", [](Material& m, PrimitiveInputs&) { m["thicknessFactor"] = 0.0F; },
+         [](Material& m, PrimitiveInputs&) {
+             m["attenuationDistance"] = std::numeric_limits<float>::infinity();
+         }},
         {"dispersion", "NoTransmission", opaque,
-         [](Material& m, PrimitiveInputs&) { m.diffuseTransmission.factor = 0.0F; }},
+         [](Material& m, PrimitiveInputs&) { m["diffuseTransmissionFactor"] = 0.0F; }},
         metal("dispersion"),
     };
 }

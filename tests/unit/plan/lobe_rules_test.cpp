@@ -1,4 +1,5 @@
 // Tests how lobes and their inputs depend on each other, and on the lobes that hits keep.
+#include "support/features.h"
 #include "unit/plan/full_material.h"
 
 #include <gtest/gtest.h>
@@ -12,130 +13,132 @@ using namespace glint::testing;
 
 TEST(LobeKey, ValuesDecideWhateverTheFileGives) {
     Material material;
-    material.clearcoat.factor = 1.0F;
-    material.ior.ior = 2.0F;
-    material.metallicFactor = 0.0F;
+    material["clearcoatFactor"] = 1.0F;
+    material["ior"] = 2.0F;
+    material["metallicFactor"] = 0.0F;
     Dropped dropped;
-    EXPECT_EQ(makeKey(material, {}, {}, &dropped), bit(Feature::Clearcoat) | bit(Feature::Ior));
+    EXPECT_EQ(makeKey(material, {}, {}, &dropped), bit("clearcoat") | bit("ior"));
     EXPECT_TRUE(dropped.empty());
 }
 
 TEST(LobeKey, SpecularStaysWhereItsFactorIsZero) {
     Material material = fullMaterial();
-    material.specular.factor = 0.0F;
-    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit(Feature::Specular), 0U);
+    material["specularFactor"] = 0.0F;
+    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit("specular"), 0U);
 }
 
 TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
     Material material = fullMaterial();
-    material.specularGlossiness.given = true;
+    material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
     const FeatureMask key = makeKey(material, fullPrimitive(), kTested, &dropped);
-    EXPECT_EQ(key & kLobeMask, bit(Feature::SpecularGlossiness));
-    for (const std::string_view lobe : featureNames(kLobeMask)) {
+    EXPECT_EQ(key & kLobeMask, bit("specularGlossiness"));
+    for (const std::string_view lobe : builtinMaterialModel().names(kLobeMask)) {
         const bool is = lobe == "unlit" || lobe == "specularGlossiness";
         EXPECT_EQ(reasonFor(dropped, std::string(lobe)).empty(), is) << lobe;
     }
-    for (const Feature kept : {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture,
-                               Feature::NormalTexture, Feature::EmissiveStrength, Feature::Tangents}) {
+    for (const char* const kept :
+         {"baseColorTexture", "metallicRoughnessTexture", "normalTexture", "emissiveStrength", "tangents"}) {
         EXPECT_NE(key & bit(kept), 0U);
     }
 }
 
 TEST(LobeKey, SpecularGlossinessTextureIsNeutralWhereBothFactorsAreZero) {
     Material material = fullMaterial();
-    material.specularGlossiness = {true, {0.0F, 0.0F, 0.0F}, 0.0F};
+    material.give("KHR_materials_pbrSpecularGlossiness");
+    material["glossySpecularFactor"] = {0.0F, 0.0F, 0.0F};
+    material["glossinessFactor"] = 0.0F;
     const auto reads = [&] {
-        return (makeKey(material, fullPrimitive(), kTested) & bit(Feature::MetallicRoughnessTexture)) != 0;
+        return (makeKey(material, fullPrimitive(), kTested) & bit("metallicRoughnessTexture")) != 0;
     };
     EXPECT_FALSE(reads());
-    material.specularGlossiness.glossinessFactor = 0.5F;
+    material["glossinessFactor"] = 0.5F;
     EXPECT_TRUE(reads());
     // The factors of the other workflow have no effect.
-    material.metallicFactor = 0.0F;
-    material.roughnessFactor = 0.0F;
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.0F;
     EXPECT_TRUE(reads());
 }
 
 TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
     Material material = fullMaterial();
-    material.unlit = true;
-    material.specularGlossiness.given = true;
+    material.give("KHR_materials_unlit");
+    material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
-    EXPECT_EQ(makeKey(material, fullPrimitive(), kTested, &dropped) & kLobeMask, bit(Feature::Unlit));
+    EXPECT_EQ(makeKey(material, fullPrimitive(), kTested, &dropped) & kLobeMask, bit("unlit"));
     EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
 }
 
 // If the coat's normal texture equals the base's in every detail, it is read once.
 TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
-    const FeatureMask shares = bit(Feature::ClearcoatSharesNormal);
-    const FeatureMask own = bit(Feature::ClearcoatNormalTexture);
+    const FeatureMask shares = bit("clearcoatSharesNormal");
+    const FeatureMask own = bit("clearcoatNormalTexture");
     Material equal = fullMaterial();
-    equal.texture(TextureSlot::ClearcoatNormal) = equal.texture(TextureSlot::Normal);
-    equal.clearcoat.normalScale = equal.normalScale;
-    const auto keyOf = [](const Material& material) {
+    equal.texture("clearcoatNormalTexture") = equal.texture("normalTexture");
+    equal["clearcoatNormalScale"] = float{equal["normalScale"]};
+    const auto keyOf = [&](const Material& material) {
         return makeKey(material, fullPrimitive(), kTested) & (shares | own);
     };
     EXPECT_EQ(keyOf(equal), shares);
     EXPECT_EQ(keyOf(fullMaterial()), own);
     Material other = equal;
-    other.texture(TextureSlot::ClearcoatNormal).texCoord = 1;
+    other.texture("clearcoatNormalTexture").texCoord = 1;
     EXPECT_EQ(keyOf(other), own);
     other = equal;
-    other.texture(TextureSlot::ClearcoatNormal).transform.offset[1] = 0.5F;
+    other.texture("clearcoatNormalTexture").transform.offset[1] = 0.5F;
     EXPECT_EQ(keyOf(other), own);
     other = equal;
-    other.clearcoat.normalScale = 0.5F;
+    other["clearcoatNormalScale"] = 0.5F;
     EXPECT_EQ(keyOf(other), own);
     // The base reads no texture, because its scale is 0; the coat's scale is then 0 too.
     other = equal;
-    other.normalScale = 0.0F;
+    other["normalScale"] = 0.0F;
     EXPECT_EQ(keyOf(other), own);
-    other.clearcoat.normalScale = 0.0F;
+    other["clearcoatNormalScale"] = 0.0F;
     EXPECT_EQ(keyOf(other), 0U);
 }
 
 TEST(LobeKey, TangentsServeEachOfTheirReaders) {
     const auto hasTangents = [](const Material& material) {
-        return (makeKey(material, fullPrimitive(), {}) & bit(Feature::Tangents)) != 0;
+        return (makeKey(material, fullPrimitive(), {}) & bit("tangents")) != 0;
     };
     Material material;
     EXPECT_FALSE(hasTangents(material));
-    material.anisotropy.strength = 1.0F;
-    material.roughnessFactor = 0.5F;
+    material["anisotropyStrength"] = 1.0F;
+    material["roughnessFactor"] = 0.5F;
     EXPECT_TRUE(hasTangents(material));
     material = {};
-    material.clearcoat.factor = 1.0F;
+    material["clearcoatFactor"] = 1.0F;
     EXPECT_FALSE(hasTangents(material));
-    material.texture(TextureSlot::ClearcoatNormal).texture = 0;
+    material.texture("clearcoatNormalTexture").texture = 0;
     EXPECT_TRUE(hasTangents(material));
 }
 
 TEST(LobeKey, AnisotropyWithoutTangentsReadsTextureCoordinates) {
     Material material;
-    material.anisotropy.strength = 1.0F;
-    material.roughnessFactor = 0.5F;
+    material["anisotropyStrength"] = 1.0F;
+    material["roughnessFactor"] = 0.5F;
     PrimitiveInputs primitive = fullPrimitive();
-    const FeatureMask sets = bit(Feature::TexCoord0) | bit(Feature::TexCoord1);
+    const FeatureMask sets = bit("texCoord0") | bit("texCoord1");
     EXPECT_EQ(makeKey(material, primitive, {}) & sets, 0U);
     primitive.hasTangents = false;
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord0));
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord0"));
     primitive.hasTexCoords0 = false;
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord1"));
     // The frame uses the set of a texture.
     primitive.hasTexCoords0 = true;
-    material.texture(TextureSlot::Anisotropy) = {0, 1, {}, false};
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit(Feature::TexCoord1));
+    material.texture("anisotropyTexture") = {0, 1, {}, false};
+    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord1"));
 }
 
 TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
-    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
         Material material = fullMaterial();
         for (TextureInfo& info : material.textures) {
             info.transform = {};
             info.texCoord = 0;
         }
-        const FeatureMask both = bit(Feature::TexCoord1) | bit(Feature::TextureTransform);
+        const FeatureMask both = bit("texCoord1") | bit("textureTransform");
         EXPECT_EQ(makeKey(material, fullPrimitive(), kTested) & both, 0U) << slot;
         material.textures[slot].texCoord = 1;
         material.textures[slot].transform.scale[0] = 2.0F;
@@ -144,9 +147,9 @@ TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
 }
 
 TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
-    for (const FeatureInfo& info : featureTable()) {
-        const FeatureMask lobe = bit(info.feature) & kLobeMask;
-        if (lobe == 0 || info.feature == Feature::Unlit || info.feature == Feature::SpecularGlossiness) {
+    for (const Feature& info : builtinMaterialModel().features) {
+        const FeatureMask lobe = info.mask() & kLobeMask;
+        if (lobe == 0 || info.name == "unlit" || info.name == "specularGlossiness") {
             continue;
         }
         Dropped dropped;
@@ -156,7 +159,7 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
         EXPECT_EQ(kept & lobe, 0U) << info.name;
         EXPECT_EQ(kept & ~whole, 0U) << info.name;
         EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
-        for (const std::string_view name : featureNames(whole & ~kept)) {
+        for (const std::string_view name : builtinMaterialModel().names(whole & ~kept)) {
             EXPECT_NE(reasonFor(dropped, std::string(name)).find("--hit-lobes"), std::string::npos) << name;
         }
     }
@@ -166,17 +169,16 @@ TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
     const KeyOptions none{AlphaPolicy::Tested, 0};
     const FeatureMask core = makeKey(fullMaterial(), fullPrimitive(), none);
     EXPECT_EQ(core & kLobeMask, 0U);
-    for (const Feature texture :
-         {Feature::BaseColorTexture, Feature::MetallicRoughnessTexture, Feature::NormalTexture,
-          Feature::OcclusionTexture, Feature::EmissiveTexture}) {
+    for (const char* const texture : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
+                                      "occlusionTexture", "emissiveTexture"}) {
         EXPECT_NE(core & bit(texture), 0U);
     }
-    EXPECT_EQ(core & (bit(Feature::ClearcoatTexture) | bit(Feature::ThicknessTexture)), 0U);
+    EXPECT_EQ(core & (bit("clearcoatTexture") | bit("thicknessTexture")), 0U);
     Material other = fullMaterial();
-    other.specularGlossiness.given = true;
-    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit(Feature::SpecularGlossiness));
-    other.unlit = true;
-    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit(Feature::Unlit));
+    other.give("KHR_materials_pbrSpecularGlossiness");
+    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit("specularGlossiness"));
+    other.give("KHR_materials_unlit");
+    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit("unlit"));
 }
 
 }  // namespace

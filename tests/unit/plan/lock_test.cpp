@@ -2,6 +2,7 @@
 #include "plan/lock.h"
 
 #include "plan/lock_text.h"
+#include "support/features.h"
 
 #include <gtest/gtest.h>
 
@@ -18,10 +19,10 @@ namespace {
 using namespace glint;
 
 constexpr unsigned kLockSeed = 20250621;
-constexpr FeatureMask kLockNormals = bit(Feature::Normals);
-constexpr FeatureMask kUnlit = bit(Feature::Unlit);
-constexpr FeatureMask kLockTextured = kLockNormals | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
-constexpr FeatureMask kLockCoated = kLockNormals | bit(Feature::Clearcoat);
+const FeatureMask kLockNormals = bit("normals");
+const FeatureMask kUnlit = bit("unlit");
+const FeatureMask kLockTextured = kLockNormals | bit("baseColorTexture") | bit("texCoord0");
+const FeatureMask kLockCoated = kLockNormals | bit("clearcoat");
 constexpr MergePolicy kLockPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
                                          MergePolicy::Auto, MergePolicy::Profile};
 
@@ -34,12 +35,14 @@ struct Piece {
 Piece randomPiece(std::mt19937& random) {
     Piece piece;
     const auto chance = [&] { return (random() & 3U) == 0; };
-    piece.material.unlit = chance();
-    piece.material.clearcoat.factor = chance() ? 1.0F : 0.0F;
-    piece.material.sheen.colorFactor[0] = chance() ? 1.0F : 0.0F;
-    piece.material.texture(TextureSlot::BaseColor).texture = chance() ? 0 : -1;
-    piece.material.texture(TextureSlot::Emissive).texture = chance() ? 0 : -1;
-    piece.material.emissiveFactor = {1.0F, 1.0F, 1.0F};
+    if (chance()) {
+        piece.material.give("KHR_materials_unlit");
+    }
+    piece.material["clearcoatFactor"] = chance() ? 1.0F : 0.0F;
+    piece.material["sheenColorFactor"][0] = chance() ? 1.0F : 0.0F;
+    piece.material.texture("baseColorTexture").texture = chance() ? 0 : -1;
+    piece.material.texture("emissiveTexture").texture = chance() ? 0 : -1;
+    piece.material["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
     piece.inputs.hasNormals = !chance();
     piece.inputs.hasTexCoords0 = true;
     piece.inputs.expectedHits = static_cast<double>(1 + random() % 1000);
@@ -193,12 +196,12 @@ Piece plain() {
 }
 Piece textured() {
     Piece piece = plain();
-    piece.material.texture(TextureSlot::BaseColor).texture = 0;
+    piece.material.texture("baseColorTexture").texture = 0;
     return piece;
 }
 Piece coated() {
     Piece piece = plain();
-    piece.material.clearcoat.factor = 1.0F;
+    piece.material["clearcoatFactor"] = 1.0F;
     return piece;
 }
 
@@ -277,8 +280,8 @@ LockTextError failed(const std::string& text) {
 
 LockedIds randomIds(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
-    for (const FeatureInfo& info : featureTable()) {
-        known |= bit(info.feature);
+    for (const Feature& info : builtinMaterialModel().features) {
+        known |= info.mask();
     }
     LockedIds ids;
     while (ids.size() < count) {

@@ -2,6 +2,7 @@
 #include "plan/merge.h"
 
 #include "plan/cluster.h"
+#include "support/features.h"
 #include "unit/plan/weighted_keys.h"
 
 #include <gtest/gtest.h>
@@ -17,16 +18,15 @@ namespace {
 using namespace glint;
 
 constexpr unsigned kMergeSeed = 20250317;
-constexpr FeatureMask kMergeBase = bit(Feature::Normals);
-constexpr FeatureMask kMergeTextured = kMergeBase | bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
-constexpr FeatureMask kMergeCoated = kMergeTextured | bit(Feature::Clearcoat);
-constexpr FeatureMask kDispersing =
-    kMergeBase | bit(Feature::Transmission) | bit(Feature::Volume) | bit(Feature::Dispersion);
+const FeatureMask kMergeBase = bit("normals");
+const FeatureMask kMergeTextured = kMergeBase | bit("baseColorTexture") | bit("texCoord0");
+const FeatureMask kMergeCoated = kMergeTextured | bit("clearcoat");
+const FeatureMask kDispersing = kMergeBase | bit("transmission") | bit("volume") | bit("dispersion");
 
 std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
     FeatureMask known = 0;
-    for (const FeatureInfo& info : featureTable()) {
-        known |= bit(info.feature);
+    for (const Feature& info : builtinMaterialModel().features) {
+        known |= info.mask();
     }
     std::map<FeatureMask, double> weights;
     while (weights.size() < count) {
@@ -117,7 +117,7 @@ TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
 }
 
 TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
-    const FeatureMask doubleSided = kMergeCoated | bit(Feature::DoubleSided);
+    const FeatureMask doubleSided = kMergeCoated | bit("doubleSided");
     const auto casesWith = [&](double weight) {
         const std::vector<WeightedKey> keys =
             glint::testing::toKeys({{kMergeTextured, 1000.0}, {kMergeCoated, weight}, {doubleSided, weight}});
@@ -152,15 +152,15 @@ TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
 
 TEST(Merge, RareKeysAreTheRest) {
     std::map<FeatureMask, double> weights{{kMergeTextured, 600.0}, {kMergeCoated, 400.0}};
-    for (const Feature feature : {Feature::Sheen, Feature::Anisotropy, Feature::Iridescence}) {
+    for (const char* const feature : {"sheen", "anisotropy", "iridescence"}) {
         weights[kMergeBase | bit(feature)] = 1.0;
     }
     const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
     EXPECT_EQ(cases.size(), 3U);
     const auto reasons = reasonsByMask(keys, cases);
-    EXPECT_EQ(reasons.at(kMergeBase | bit(Feature::Sheen)), CaseReason::Rest);
-    EXPECT_EQ(reasons.at(kMergeBase | bit(Feature::Iridescence)), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeBase | bit("sheen")), CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeBase | bit("iridescence")), CaseReason::Rest);
     EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Own);
     EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::Own);
 }
@@ -187,21 +187,21 @@ TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
 }
 
 TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
-    const FeatureMask sheen = kMergeBase | bit(Feature::Sheen);
+    const FeatureMask sheen = kMergeBase | bit("sheen");
     const std::vector<WeightedKey> keys =
         glint::testing::toKeys({{kMergeBase, 500.0},
                                 {kMergeTextured, 460.0},
-                                {kMergeTextured | bit(Feature::TextureTransform), 20.0},
-                                {kMergeTextured | bit(Feature::VertexColor), 18.0},
+                                {kMergeTextured | bit("textureTransform"), 20.0},
+                                {kMergeTextured | bit("vertexColor"), 18.0},
                                 {kMergeCoated, 0.0},
                                 {sheen, 0.0},
-                                {sheen | bit(Feature::DoubleSided), 2.0}});
+                                {sheen | bit("doubleSided"), 2.0}});
     const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
     const auto reasons = reasonsByMask(keys, cases);
     EXPECT_EQ(reasons.at(kMergeBase), CaseReason::Hot);
     EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Hot);
-    EXPECT_EQ(reasons.at(kMergeTextured | bit(Feature::TextureTransform)), CaseReason::Cold);
-    EXPECT_EQ(reasons.at(sheen | bit(Feature::DoubleSided)), CaseReason::Cold);
+    EXPECT_EQ(reasons.at(kMergeTextured | bit("textureTransform")), CaseReason::Cold);
+    EXPECT_EQ(reasons.at(sheen | bit("doubleSided")), CaseReason::Cold);
     EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::NeverHit);
     EXPECT_EQ(reasons.at(sheen), CaseReason::NeverHit);
     // There are two hot keys, at most two families of cold keys, and one case for the others.

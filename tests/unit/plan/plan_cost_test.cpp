@@ -22,12 +22,14 @@ struct Scene {
         for (int i = 0; i < count; ++i) {
             Material material;
             material.doubleSided = random() % 2 == 0;
-            material.clearcoat.given = true;
-            material.clearcoat.factor = random() % 3 == 0 ? 1.0F : 0.0F;
-            material.unlit = random() % 5 == 0;
-            material.hasEmissiveStrength = true;
-            material.emissiveStrength = random() % 4 == 0 ? 2.0F : 1.0F;
-            material.emissiveFactor = {1.0F, 1.0F, 1.0F};
+            material.give("KHR_materials_clearcoat");
+            material["clearcoatFactor"] = random() % 3 == 0 ? 1.0F : 0.0F;
+            if (random() % 5 == 0) {
+                material.give("KHR_materials_unlit");
+            }
+            material.give("KHR_materials_emissive_strength");
+            material["emissiveStrength"] = random() % 4 == 0 ? 2.0F : 1.0F;
+            material["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
             materials.push_back(material);
             PrimitiveInputs primitive;
             primitive.material = i;

@@ -1,9 +1,12 @@
 // Tests keys, cases and IDs of hand-made scenes under each merge policy.
 #include "plan/plan.h"
 
+#include "support/features.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -11,8 +14,8 @@ namespace {
 
 using namespace glint;
 
-constexpr FeatureMask kNormals = bit(Feature::Normals);
-constexpr FeatureMask kTextured = bit(Feature::BaseColorTexture) | bit(Feature::TexCoord0);
+const FeatureMask kNormals = bit("normals");
+const FeatureMask kTextured = bit("baseColorTexture") | bit("texCoord0");
 
 // Materials: 0 plain, 1 plain with other values, 2 textured, 3 unlit, 4 unlit and textured.
 struct SmallScene {
@@ -20,11 +23,11 @@ struct SmallScene {
     std::vector<PrimitiveInputs> primitives;
 
     SmallScene() {
-        materials[1].roughnessFactor = 0.2F;
-        materials[2].texture(TextureSlot::BaseColor).texture = 0;
-        materials[3].unlit = true;
-        materials[4].unlit = true;
-        materials[4].texture(TextureSlot::BaseColor).texture = 0;
+        materials[1]["roughnessFactor"] = 0.2F;
+        materials[2].texture("baseColorTexture").texture = 0;
+        materials[3].give("KHR_materials_unlit");
+        materials[4].give("KHR_materials_unlit");
+        materials[4].texture("baseColorTexture").texture = 0;
         for (int material = 0; material < 5; ++material) {
             PrimitiveInputs primitive;
             primitive.primitive = material;
@@ -47,7 +50,7 @@ struct SmallScene {
 TEST(Plan, GivesEachPermutationAKey) {
     const Plan plan = SmallScene().plan(MergePolicy::None);
     ASSERT_EQ(plan.keys.size(), 5U);
-    const FeatureMask unlit = bit(Feature::Unlit);
+    const FeatureMask unlit = bit("unlit");
     EXPECT_EQ(plan.keys[0].mask, 0U);
     EXPECT_EQ(plan.keys[1].mask, unlit);
     EXPECT_EQ(plan.keys[2].mask, kTextured | unlit);
@@ -79,7 +82,7 @@ TEST(Plan, FamilyMergesKeysWithTheSameLobes) {
     EXPECT_EQ(plan.cases[0].always, 0U);
     EXPECT_EQ(plan.cases[0].sometimes, kTextured | kNormals);
     EXPECT_EQ(plan.cases[0].materials, (std::vector<int>{0, 1, 2}));
-    EXPECT_EQ(plan.cases[1].always, bit(Feature::Unlit));
+    EXPECT_EQ(plan.cases[1].always, bit("unlit"));
     EXPECT_EQ(plan.cases[1].sometimes, kTextured);
     EXPECT_EQ(plan.cases[1].keys, (std::vector<int>{1, 2}));
 }
@@ -88,7 +91,7 @@ TEST(Plan, AllMakesOneCase) {
     const Plan plan = SmallScene().plan(MergePolicy::All);
     ASSERT_EQ(plan.cases.size(), 1U);
     EXPECT_EQ(plan.cases[0].always, 0U);
-    EXPECT_EQ(plan.cases[0].sometimes, bit(Feature::Unlit) | kTextured | kNormals);
+    EXPECT_EQ(plan.cases[0].sometimes, bit("unlit") | kTextured | kNormals);
     EXPECT_EQ(plan.cases[0].keys.size(), 5U);
     EXPECT_EQ(plan.always, plan.cases[0].always);
     EXPECT_EQ(plan.sometimes, plan.cases[0].sometimes);
@@ -210,25 +213,29 @@ Material randomMaterial(std::mt19937& random) {
         info.texCoord = coin() ? 1 : 0;
         info.transform.rotation = coin() ? 1.0F : 0.0F;
     }
-    material.unlit = coin();
+    if (coin()) {
+        material.give("KHR_materials_unlit");
+    }
     material.doubleSided = coin();
     material.alphaMode = coin() ? AlphaMode::Mask : AlphaMode::Opaque;
-    material.emissiveFactor[0] = coin() ? 1.0F : 0.0F;
-    material.emissiveStrength = coin() ? 2.0F : 1.0F;
-    material.specularGlossiness.given = random() % 8 == 0;
-    material.metallicFactor = coin() ? 1.0F : 0.5F;
-    material.ior.ior = coin() ? 1.0F : 1.5F;
-    material.clearcoat.factor = coin() ? 1.0F : 0.0F;
-    material.sheen.colorFactor[1] = coin() ? 1.0F : 0.0F;
-    material.anisotropy.strength = coin() ? 1.0F : 0.0F;
-    material.iridescence.factor = coin() ? 1.0F : 0.0F;
-    material.specular.factor = coin() ? 1.0F : 0.5F;
-    material.transmission.factor = coin() ? 1.0F : 0.0F;
-    material.diffuseTransmission.factor = coin() ? 1.0F : 0.0F;
-    material.volume.thicknessFactor = coin() ? 1.0F : 0.0F;
-    material.volume.attenuationDistance = coin() ? 1.0F : 0.0F;
-    material.volume.attenuationColor[2] = coin() ? 1.0F : 0.0F;
-    material.dispersion.dispersion = coin() ? 1.0F : 0.0F;
+    material["emissiveFactor"][0] = coin() ? 1.0F : 0.0F;
+    material["emissiveStrength"] = coin() ? 2.0F : 1.0F;
+    if (random() % 8 == 0) {
+        material.give("KHR_materials_pbrSpecularGlossiness");
+    }
+    material["metallicFactor"] = coin() ? 1.0F : 0.5F;
+    material["ior"] = coin() ? 1.0F : 1.5F;
+    material["clearcoatFactor"] = coin() ? 1.0F : 0.0F;
+    material["sheenColorFactor"][1] = coin() ? 1.0F : 0.0F;
+    material["anisotropyStrength"] = coin() ? 1.0F : 0.0F;
+    material["iridescenceFactor"] = coin() ? 1.0F : 0.0F;
+    material["specularFactor"] = coin() ? 1.0F : 0.5F;
+    material["transmissionFactor"] = coin() ? 1.0F : 0.0F;
+    material["diffuseTransmissionFactor"] = coin() ? 1.0F : 0.0F;
+    material["thicknessFactor"] = coin() ? 1.0F : 0.0F;
+    material["attenuationDistance"] = coin() ? 1.0F : std::numeric_limits<float>::infinity();
+    material["attenuationColor"][2] = coin() ? 1.0F : 0.0F;
+    material["dispersion"] = coin() ? 1.0F : 0.0F;
     return material;
 }
 
@@ -313,16 +320,16 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
 
 TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
     SmallScene scene;
-    scene.materials[1].clearcoat.factor = 1.0F;
+    scene.materials[1]["clearcoatFactor"] = 1.0F;
     const Plan all = scene.plan(MergePolicy::Family);
     PlanOptions options{{}, MergePolicy::Family};
-    options.keys.keptLobes = bit(Feature::Ior);
+    options.keys.keptLobes = bit("ior");
     const Plan few = makePlan(scene.materials, scene.primitives, options);
     EXPECT_EQ(all.cases.size(), 3U);
     // The base models stay, so unlit is a separate case.
     EXPECT_EQ(few.cases.size(), 2U);
-    EXPECT_EQ((few.always | few.sometimes) & bit(Feature::Clearcoat), 0U);
-    EXPECT_NE(few.primarySometimes & bit(Feature::Clearcoat), 0U);
+    EXPECT_EQ((few.always | few.sometimes) & bit("clearcoat"), 0U);
+    EXPECT_NE(few.primarySometimes & bit("clearcoat"), 0U);
     EXPECT_EQ(all.primarySometimes, few.primarySometimes);
     EXPECT_EQ(all.sometimes, all.primarySometimes);
     const auto coat = std::ranges::find(few.dropped, "clearcoat", &DroppedFeature::feature);

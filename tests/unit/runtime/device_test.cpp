@@ -1,9 +1,9 @@
 // Tests contexts, uploads and what upload refuses.
-#include "acceleration.h"
 #include "device_fixture.h"
-#include "gpu_scene_state.h"
 #include "host_device.h"
 #include "interop/scene.h"
+#include "scene/acceleration.h"
+#include "scene/gpu_scene_state.h"
 
 #include <functional>
 #include <limits>

@@ -1,8 +1,8 @@
 // Tests environment maps on the host: which are accepted, sizes, importance, diffuse light, 16-bit floats.
-#include "half_float.h"
-#include "map_filter.h"
 #include "sample_maps.h"
-#include "sky_harmonics.h"
+#include "scene/half_float.h"
+#include "sky/map_filter.h"
+#include "sky/sky_harmonics.h"
 
 #include <gtest/gtest.h>
 

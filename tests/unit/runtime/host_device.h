@@ -1,7 +1,7 @@
 // An instance and a device that the test owns, as a host application would.
 #pragma once
 
-#include "vulkan_table.h"
+#include "context/vulkan_table.h"
 
 #include <glint/context.h>
 

@@ -1,8 +1,8 @@
 // Tests orders for drivers that halve the leaves they are given: the trees that result, without a device.
-#include "leaf_order.h"
+#include "scene/leaf_order.h"
 
+#include "scene/traversal_order.h"
 #include "support/halved_tree.h"
-#include "traversal_order.h"
 
 #include <gtest/gtest.h>
 

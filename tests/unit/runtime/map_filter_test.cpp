@@ -1,5 +1,5 @@
 // Tests what rough surfaces see of an environment map.
-#include "map_filter.h"
+#include "sky/map_filter.h"
 
 #include "sample_maps.h"
 

@@ -1,6 +1,6 @@
 #include "package_builder.h"
 
-#include "interop_hash.h"
+#include "package/interop_hash.h"
 
 #include <xxhash.h>
 
@@ -178,6 +178,8 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.effects = kEffects;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;
+    header.materialTextureOffset = offsetof(TestMaterial, textures);
+    header.materialTextureCount = 2;
     return writer.finish(header);
 }
 

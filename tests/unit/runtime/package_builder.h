@@ -4,9 +4,12 @@
 #include "interop/scene.h"
 #include "support/temporary_folder.h"
 
+#include <glint/package.h>
 #include <glint/package_modules.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,6 +38,19 @@ struct SceneSpec {
     std::uint32_t samplers = 0;
 };
 
+// The record of a material, as tests/unit/runtime/shaders/generated/material_record.glsl has it.
+struct TestMaterial {
+    float roughnessFactor = 0.0F;
+    gpu::TextureRecord textures[2] = {};
+};
+
+// Returns a record of a loaded package.
+inline TestMaterial materialAt(const MaterialTable& table, std::size_t index) {
+    TestMaterial material;
+    std::memcpy(static_cast<void*>(&material), &table.bytes[index * table.recordBytes], sizeof material);
+    return material;
+}
+
 // Tests may break every member on purpose; serialize() writes what it finds.
 struct PackageSpec {
     std::uint32_t version = package::kVersion;
@@ -45,7 +61,7 @@ struct PackageSpec {
     std::uint32_t caseCount = 0;
     std::uint32_t interopHash = 0;
     std::vector<ModuleSpec> modules;
-    std::vector<gpu::MaterialRecord> materials;
+    std::vector<TestMaterial> materials;
     std::vector<package::PrimitiveEntry> primitives;
     std::vector<package::TextureEntry> textures;
     std::vector<package::SamplerEntry> samplers;

@@ -94,7 +94,7 @@ TEST(PackageMemory, IsThePackageOfTheFolder) {
     ASSERT_EQ(fromMemory->sceneCount(), 1U);
     const PackageScene scene = fromMemory->scene(0);
     EXPECT_EQ(scene.name, fromFolder->scene(0).name);
-    EXPECT_EQ(bytesOf(scene.materials), bytesOf(fromFolder->scene(0).materials));
+    EXPECT_EQ(bytesOf(scene.materials.bytes), bytesOf(fromFolder->scene(0).materials.bytes));
     EXPECT_EQ(bytesOf(scene.primitives), bytesOf(fromFolder->scene(0).primitives));
     EXPECT_EQ(bytesOf(scene.textures), bytesOf(fromFolder->scene(0).textures));
     EXPECT_EQ(bytesOf(scene.samplers), bytesOf(fromFolder->scene(0).samplers));

@@ -1,6 +1,6 @@
 // The loader accepts what a compiler writes, and nothing else.
+#include "package/package_state.h"
 #include "package_builder.h"
-#include "package_state.h"
 
 #include <glint/package.h>
 
@@ -77,7 +77,7 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_EQ(package.string(package.cases()[1].name), "Textured");
     ASSERT_EQ(package.sceneCount(), 1U);
     const PackageScene scene = package.scene(0);
-    EXPECT_EQ(scene.materials[0].textures[0].textureIndex, 1U);
+    EXPECT_EQ(test::materialAt(scene.materials, 0).textures[0].textureIndex, 1U);
     EXPECT_EQ(package.spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).size(), 5U);
     EXPECT_EQ(package.spirv({ModuleRole::ShadeCase, 0, package::kTracerRayQuery}).data(),
               package.spirv({ModuleRole::ShadeCase, 1, package::kTracerRayQuery}).data());
@@ -106,7 +106,7 @@ TEST_F(PackageTest, ScenesHaveTheirOwnTables) {
     EXPECT_FALSE(package->findScene("three"));
     const PackageScene two = package->scene(1);
     ASSERT_EQ(two.materials.size(), 2U);
-    EXPECT_EQ(two.materials[0].roughnessFactor, 0.25F);
+    EXPECT_EQ(test::materialAt(two.materials, 0).roughnessFactor, 0.25F);
     ASSERT_NE(two.findPrimitive(0, 1), nullptr);
     EXPECT_EQ(two.findPrimitive(0, 1)->materialIndex, 1U);
 }
@@ -288,9 +288,9 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
     const std::pair<const char*, std::function<void(PackageSpec&)>> breaks[] = {
         {"shader ID", [](PackageSpec& s) { s.primitives[0].shaderId = 1; }},
         {"material", [](PackageSpec& s) { s.primitives[0].materialIndex = 1; }},
-        {"texture", [](PackageSpec& s) { s.materials[0].textures[4].textureIndex = 2; }},
-        {"sampler", [](PackageSpec& s) { s.materials[0].textures[4].samplerIndex = 1; }},
-        {"UV set", [](PackageSpec& s) { s.materials[0].textures[4].texCoord = 2; }},
+        {"texture", [](PackageSpec& s) { s.materials[0].textures[1].textureIndex = 2; }},
+        {"sampler", [](PackageSpec& s) { s.materials[0].textures[1].samplerIndex = 1; }},
+        {"UV set", [](PackageSpec& s) { s.materials[0].textures[1].texCoord = 2; }},
         {"colour space", [](PackageSpec& s) { s.textures[0].srgb = 2; }},
         {"wrap", [](PackageSpec& s) { s.samplers[0].wrapV = 3; }},
         {"filter", [](PackageSpec& s) { s.samplers[0].mip = 2; }},

@@ -1,7 +1,7 @@
 // Tests that data which a driver stored for pipelines is told from anything else before the driver gets it.
-#include "pipeline_cache.h"
+#include "renderer/pipeline_cache.h"
 
-#include "context_state.h"
+#include "context/context_state.h"
 #include "device_fixture.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Tests jobs on several threads: results and errors must not depend on which job was first.
-#include "pipeline_jobs.h"
+#include "renderer/pipeline_jobs.h"
 
 #include <gtest/gtest.h>
 

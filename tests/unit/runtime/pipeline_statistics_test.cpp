@@ -1,10 +1,10 @@
 // Tests reading what a driver reports about a pipeline, with a made-up driver, because few real ones report
 // anything.
-#include "pipeline_statistics.h"
+#include "renderer/pipeline_statistics.h"
 
 #include "device_fixture.h"
-#include "pipelines.h"
-#include "renderer_state.h"
+#include "renderer/pipelines.h"
+#include "renderer/renderer_state.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,12 +1,14 @@
 // Tests what the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
-#include "camera.h"
-#include "draw_batches.h"
-#include "instance_math.h"
-#include "plan/features.h"
-#include "requirements.h"
-#include "scene_checks.h"
-#include "scene_materials.h"
-#include "vulkan_error.h"
+#include "context/requirements.h"
+#include "context/vulkan_error.h"
+#include "plan/material_model.h"
+#include "renderer/camera.h"
+#include "renderer/draw_batches.h"
+#include "scene/instance_math.h"
+#include "scene/scene_checks.h"
+#include "scene/scene_materials.h"
+#include "support/features.h"
+#include "unit/runtime/package_builder.h"
 
 #include <gtest/gtest.h>
 
@@ -62,36 +64,43 @@ TEST(DrawBatchTest, InstancesThatFollowEachOtherAreJoined) {
 
 // Textures and samplers are the package's, whatever the host's record says.
 TEST(SceneMaterialTest, TakesValuesAndKeepsTextures) {
-    std::vector<gpu::MaterialRecord> records(3);
-    records[2].textures[4].textureIndex = 7;
-    records[2].textures[4].texels = {64.0F, 32.0F};
-    gpu::MaterialRecord given{};
+    std::vector<test::TestMaterial> records(3);
+    records[2].textures[1].textureIndex = 7;
+    records[2].textures[1].texels = {64.0F, 32.0F};
+    const std::span<std::uint8_t> all(reinterpret_cast<std::uint8_t*>(records.data()),
+                                      records.size() * sizeof(test::TestMaterial));
+    const MaterialTable table{all, sizeof(test::TestMaterial), offsetof(test::TestMaterial, textures), 2};
+    test::TestMaterial given{};
     given.roughnessFactor = 0.25F;
-    given.textures[4].textureIndex = 99;
-    given.textures[4].rowU = {1.0F, 2.0F, 3.0F};
+    given.textures[1].textureIndex = 99;
+    given.textures[1].rowU = {1.0F, 2.0F, 3.0F};
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(&given), sizeof(given));
     const std::array views{MaterialView{2, bytes}};
-    Result<std::vector<ChangingMaterial>> changing = replaceMaterials(views, records);
+    Result<std::vector<ChangingMaterial>> changing = replaceMaterials(views, table, all);
     ASSERT_TRUE(changing.ok());
     EXPECT_EQ(records[2].roughnessFactor, 0.25F);
-    EXPECT_EQ(records[2].textures[4].textureIndex, 7U);
-    EXPECT_EQ(records[2].textures[4].texels.x, 64.0F);
-    EXPECT_EQ(records[2].textures[4].rowU.z, 3.0F);
+    EXPECT_EQ(records[2].textures[1].textureIndex, 7U);
+    EXPECT_EQ(records[2].textures[1].texels.x, 64.0F);
+    EXPECT_EQ(records[2].textures[1].rowU.z, 3.0F);
     given.roughnessFactor = 0.5F;
-    ASSERT_TRUE(takeMaterials(views, *changing).ok());
-    EXPECT_EQ((*changing)[0].record.roughnessFactor, 0.5F);
+    ASSERT_TRUE(takeMaterials(views, table, *changing).ok());
+    const MaterialTable taken{(*changing)[0].record, sizeof(test::TestMaterial), table.textureOffset, 2};
+    EXPECT_EQ(test::materialAt(taken, 0).roughnessFactor, 0.5F);
     for (const std::vector<MaterialView>& wrong :
          {std::vector<MaterialView>{{3, bytes}}, {{2, bytes.first(8)}}, {{1, bytes}, {1, bytes}}}) {
-        EXPECT_EQ(replaceMaterials(wrong, records).error().id, "scene-material");
-        EXPECT_EQ(takeMaterials(wrong, *changing).error().id, "scene-material");
+        EXPECT_EQ(replaceMaterials(wrong, table, all).error().id, "scene-material");
+        EXPECT_EQ(takeMaterials(wrong, table, *changing).error().id, "scene-material");
     }
 }
 
-static_assert(kInputTexCoord0 == bit(Feature::TexCoord0) >> 32);
-static_assert(kInputTexCoord1 == bit(Feature::TexCoord1) >> 32);
-static_assert(kInputVertexColor == bit(Feature::VertexColor) >> 32);
-static_assert(kInputNormals == bit(Feature::Normals) >> 32);
-static_assert(kInputTangents == bit(Feature::Tangents) >> 32);
+// The runtime knows these bits of a key, because it fills the geometry records.
+TEST(FeatureBits, AreThoseOfTheDeclarations) {
+    EXPECT_EQ(kInputTexCoord0, bit("texCoord0") >> 32U);
+    EXPECT_EQ(kInputTexCoord1, bit("texCoord1") >> 32U);
+    EXPECT_EQ(kInputVertexColor, bit("vertexColor") >> 32U);
+    EXPECT_EQ(kInputNormals, bit("normals") >> 32U);
+    EXPECT_EQ(kInputTangents, bit("tangents") >> 32U);
+}
 
 double dot(const gpu::vec4& row, const std::array<double, 3>& p) {
     return row.x * p[0] + row.y * p[1] + row.z * p[2] + row.w;

@@ -1,8 +1,8 @@
 // Maps that the tests of environments share.
 #pragma once
 
-#include "map_distribution.h"
-#include "radiance_map.h"
+#include "sky/map_distribution.h"
+#include "sky/radiance_map.h"
 
 #include <array>
 #include <cmath>

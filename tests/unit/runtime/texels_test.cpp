@@ -1,5 +1,5 @@
 // Conversions of 16-bit texels.
-#include "texels.h"
+#include "scene/texels.h"
 
 #include <gtest/gtest.h>
 

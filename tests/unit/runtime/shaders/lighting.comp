@@ -15,7 +15,7 @@ void main() {
     vec4 radiance = vec4(0.0);
     if (surface.x != kNoSurface) {
         GeometryRecord geometry = FRAME.geometries.data[surface.x];
-        TextureRecord record = FRAME.materials.data[geometry.materialIndex].textures[kTextureBaseColor];
+        TextureRecord record = FRAME.materials.data[geometry.materialIndex].textures[kBaseColorTexture];
         vec4 texel = textureLod(sampler2D(sceneTextures[nonuniformEXT(record.textureIndex)],
                                           sceneSamplers[nonuniformEXT(record.samplerIndex)]),
                                 vec2(0.5), 1.0);

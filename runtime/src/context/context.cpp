@@ -1,0 +1,290 @@
+#include "context/context_state.h"
+#include "context/requirements.h"
+#include "context/vulkan_error.h"
+
+#include <glint/package_modules.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace glint {
+
+void ValidationLog::add(std::string message) {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back(std::move(message));
+}
+
+std::vector<std::string> ValidationLog::messages() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+}
+
+Context::State::~State() {
+    if (handles.device != VK_NULL_HANDLE) {
+        if (pipelineCache != VK_NULL_HANDLE) {
+            vk.DestroyPipelineCache(handles.device, pipelineCache, nullptr);
+        }
+        if (ownsDevice && vk.DestroyDevice != nullptr) {
+            vk.DestroyDevice(handles.device, nullptr);
+        }
+    }
+    if (ownsInstance) {
+        if (messenger != VK_NULL_HANDLE) {
+            instance.DestroyDebugUtilsMessengerEXT(handles.instance, messenger, nullptr);
+        }
+        instance.DestroyInstance(handles.instance, nullptr);
+    }
+}
+
+namespace {
+
+// This keeps textures sharp down to a cosine of 1 / 16.
+constexpr float kMaxAnisotropy = 16.0F;
+
+// Fills the limit `multiprocessors`. Error "vulkan-call".
+Status queryMultiprocessors(Context::State& state) {
+    DeviceReport report;
+    if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
+        return status;
+    }
+    if (hasExtension(report, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME)) {
+        VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{};
+        builtins.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV;
+        VkPhysicalDeviceProperties2 properties{};
+        properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+        properties.pNext = &builtins;
+        state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
+        state.limits.multiprocessors = builtins.shaderSMCount;
+    }
+    return okStatus();
+}
+
+void queryLimits(Context::State& state) {
+    DeviceLimits& limits = state.limits;
+    limits.accelerationStructure.sType =
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceVulkan13Properties vulkan13{};
+    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;
+    vulkan13.pNext = &limits.accelerationStructure;
+    if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
+        limits.rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
+        limits.accelerationStructure.pNext = &limits.rayPipeline;
+    }
+    VkPhysicalDeviceVulkan12Properties vulkan12{};
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+    vulkan12.pNext = &vulkan13;
+    VkPhysicalDeviceVulkan11Properties vulkan11{};
+    vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
+    vulkan11.pNext = &vulkan12;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &vulkan11;
+    state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
+    limits.accelerationStructure.pNext = nullptr;
+    limits.core = properties.properties.limits;
+    limits.maxAllocationBytes = vulkan11.maxMemoryAllocationSize;
+    limits.maxBufferBytes = vulkan13.maxBufferSize;
+    limits.maxTextures = vulkan12.maxPerStageDescriptorUpdateAfterBindSampledImages;
+    limits.maxSamplers = vulkan12.maxPerStageDescriptorUpdateAfterBindSamplers;
+    // Mesa's lavapipe (25.0) has the feature, but with explicit gradients it reads the level of the longer
+    // one.
+    if (state.handles.samplerAnisotropy && vulkan12.driverID != VK_DRIVER_ID_MESA_LLVMPIPE) {
+        limits.samplerAnisotropy = std::min(kMaxAnisotropy, limits.core.maxSamplerAnisotropy);
+    }
+    limits.deviceType = properties.properties.deviceType;
+    limits.subgroupSize = vulkan11.subgroupSize;
+    limits.subgroupOperations = vulkan11.subgroupSupportedOperations;
+    limits.deviceName = properties.properties.deviceName;
+    limits.driverName = std::string(vulkan12.driverName) + " " + vulkan12.driverInfo;
+    limits.cacheOwner = {properties.properties.vendorID,
+                         properties.properties.deviceID,
+                         vulkan12.driverID,
+                         properties.properties.driverVersion,
+                         {}};
+    std::ranges::copy(properties.properties.pipelineCacheUUID, limits.cacheOwner.cacheUuid.begin());
+    state.instance.GetPhysicalDeviceMemoryProperties(state.handles.physicalDevice, &limits.memory);
+    constexpr VkFormatFeatureFlags kTexture = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+                                              VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+                                              VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    VkFormatProperties wide{};
+    state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
+                                                     VK_FORMAT_R16G16B16A16_UNORM, &wide);
+    limits.wideTextures = (wide.optimalTilingFeatures & kTexture) == kTexture;
+    VkFormatProperties floats{};
+    state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
+                                                     VK_FORMAT_R32G32B32A32_SFLOAT, &floats);
+    limits.filteredFloats =
+        (floats.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+}
+
+Status checkQueueFamily(Context::State& state) {
+    std::uint32_t count = 0;
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
+                                                          families.data());
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    const std::uint32_t family = state.handles.queueFamily;
+    if (family >= count || (families[family].queueFlags & kNeeded) != kNeeded) {
+        return makeError("context-queue", "",
+                         "queue family " + std::to_string(family) + " has no graphics and compute",
+                         "pass a queue of a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT");
+    }
+    state.limits.timestampValidBits = families[family].timestampValidBits;
+    return okStatus();
+}
+
+std::string tracerNames(std::uint32_t tracers) {
+    std::vector<std::string> names;
+    for (const package::Tracer tracer : package::kTracers) {
+        if ((tracers & tracer) != 0) {
+            names.emplace_back(nameOf(tracer));
+        }
+    }
+    return joinNames(names);
+}
+
+Status checkHandles(const DeviceHandles& handles) {
+    const std::pair<bool, const char*> needed[] = {
+        {handles.instance != VK_NULL_HANDLE, "instance"},
+        {handles.physicalDevice != VK_NULL_HANDLE, "physicalDevice"},
+        {handles.device != VK_NULL_HANDLE, "device"},
+        {handles.queue != VK_NULL_HANDLE, "queue"}};
+    for (const auto& [present, name] : needed) {
+        if (!present) {
+            return makeError("context-handles", "", std::string("DeviceHandles::") + name + " is null",
+                             "fill every handle before Context::adopt()");
+        }
+    }
+    if (handles.tracers == 0 || handles.tracers > package::kAllTracers) {
+        return makeError("context-handles", "", "DeviceHandles::tracers is no set of tracers",
+                         "give the tracers that the device was created with");
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Status finishContext(Context::State& state) {
+    Result<DeviceTable> table =
+        loadDeviceTable(state.instance, state.handles.device, state.handles.debugUtils);
+    if (!table) {
+        return table.error();
+    }
+    state.vk = *table;
+    if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
+        if (Status status = loadRayPipelineFunctions(state.instance, state.handles.device, state.vk);
+            !status) {
+            return status;
+        }
+    }
+    if (state.handles.pipelineStatistics) {
+        if (Status status = loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk);
+            !status) {
+            return status;
+        }
+    }
+    queryLimits(state);
+    if (Status status = queryMultiprocessors(state); !status) {
+        return status;
+    }
+    if (Status status = checkQueueFamily(state); !status) {
+        return status;
+    }
+    VkPipelineCacheCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    const VkResult result =
+        state.vk.CreatePipelineCache(state.handles.device, &info, nullptr, &state.pipelineCache);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineCache", result);
+    }
+    return okStatus();
+}
+
+VkShaderStageFlags passStages(const Context::State& state) {
+    constexpr VkShaderStageFlags kRayStages =
+        VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
+        VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR;
+    const bool rayPipeline = (state.handles.tracers & package::kTracerRayPipeline) != 0;
+    return VK_SHADER_STAGE_COMPUTE_BIT | (rayPipeline ? kRayStages : 0U);
+}
+
+Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
+    if (Status status = checkHandles(handles); !status) {
+        return status.error();
+    }
+    auto state = std::make_unique<State>();
+    DeviceHandles complete = handles;
+    if (complete.getInstanceProcAddr == nullptr) {
+        Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
+        if (!library) {
+            return library.error();
+        }
+        state->library = *library;
+        complete.getInstanceProcAddr = state->library->getInstanceProcAddr();
+    }
+    Result<InstanceTable> instance = loadInstanceTable(complete.getInstanceProcAddr, complete.instance);
+    if (!instance) {
+        return instance.error();
+    }
+    state->instance = *instance;
+    state->handles = complete;
+    DeviceReport report;
+    if (Status status = queryDevice(state->instance, complete.physicalDevice, report); !status) {
+        return status.error();
+    }
+    if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
+        return makeError("device-features", "", "the device lacks " + joinNames(missing),
+                         "update the driver or use another device");
+    }
+    if (const std::uint32_t absent = complete.tracers & ~tracersOf(report); absent != 0) {
+        return makeError("device-features", "",
+                         "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
+                         "create the device with some of deviceTracers()");
+    }
+    constexpr const char* kStatistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    if (complete.pipelineStatistics && !hasExtension(report, kStatistics)) {
+        return makeError(
+            "device-features", "",
+            std::string("DeviceHandles::pipelineStatistics is set, and the device lacks ") + kStatistics,
+            "leave it false");
+    }
+    if (Status status = finishContext(*state); !status) {
+        return status.error();
+    }
+    return std::unique_ptr<Context>(new Context(std::move(state)));
+}
+
+Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Context::~Context() = default;
+
+const DeviceHandles& Context::handles() const {
+    return state_->handles;
+}
+
+std::string Context::deviceName() const {
+    return state_->limits.deviceName;
+}
+
+std::string Context::driverName() const {
+    return state_->limits.driverName;
+}
+
+VkPhysicalDeviceType Context::deviceType() const {
+    return state_->limits.deviceType;
+}
+
+std::uint32_t Context::subgroupSize() const {
+    return state_->limits.subgroupSize;
+}
+
+std::vector<std::string> Context::validationMessages() const {
+    return state_->log.messages();
+}
+
+Context::State& Context::state() {
+    return *state_;
+}
+
+}  // namespace glint

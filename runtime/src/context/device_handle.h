@@ -1,0 +1,64 @@
+// Types that own device objects.
+#pragma once
+
+#include "context/context_state.h"
+
+#include <utility>
+
+namespace glint {
+
+// A device object that the function `Destroy` of the table destroys. The Context must outlive it.
+template <typename Handle, auto Destroy>
+class DeviceHandle {
+public:
+    DeviceHandle() = default;
+    DeviceHandle(Context::State& context, Handle handle) : context_(&context), handle_(handle) {}
+    ~DeviceHandle() {
+        reset();
+    }
+    DeviceHandle(DeviceHandle&& other) noexcept
+        : context_(other.context_), handle_(std::exchange(other.handle_, VK_NULL_HANDLE)) {}
+    DeviceHandle& operator=(DeviceHandle&& other) noexcept {
+        if (this != &other) {
+            reset();
+            context_ = other.context_;
+            handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
+        }
+        return *this;
+    }
+    DeviceHandle(const DeviceHandle&) = delete;
+    DeviceHandle& operator=(const DeviceHandle&) = delete;
+
+    Handle get() const {
+        return handle_;
+    }
+
+private:
+    void reset() {
+        if (handle_ != VK_NULL_HANDLE) {
+            (context_->vk.*Destroy)(context_->handles.device, handle_, nullptr);
+            handle_ = VK_NULL_HANDLE;
+        }
+    }
+
+    Context::State* context_ = nullptr;
+    Handle handle_ = VK_NULL_HANDLE;
+};
+
+using UniqueBuffer = DeviceHandle<VkBuffer, &DeviceTable::DestroyBuffer>;
+using UniqueImage = DeviceHandle<VkImage, &DeviceTable::DestroyImage>;
+using UniqueImageView = DeviceHandle<VkImageView, &DeviceTable::DestroyImageView>;
+using UniqueSampler = DeviceHandle<VkSampler, &DeviceTable::DestroySampler>;
+using UniqueMemory = DeviceHandle<VkDeviceMemory, &DeviceTable::FreeMemory>;
+using UniqueSetLayout = DeviceHandle<VkDescriptorSetLayout, &DeviceTable::DestroyDescriptorSetLayout>;
+using UniqueDescriptorPool = DeviceHandle<VkDescriptorPool, &DeviceTable::DestroyDescriptorPool>;
+using UniqueShaderModule = DeviceHandle<VkShaderModule, &DeviceTable::DestroyShaderModule>;
+using UniquePipelineLayout = DeviceHandle<VkPipelineLayout, &DeviceTable::DestroyPipelineLayout>;
+using UniquePipeline = DeviceHandle<VkPipeline, &DeviceTable::DestroyPipeline>;
+using UniqueCommandPool = DeviceHandle<VkCommandPool, &DeviceTable::DestroyCommandPool>;
+using UniqueFence = DeviceHandle<VkFence, &DeviceTable::DestroyFence>;
+using UniqueQueryPool = DeviceHandle<VkQueryPool, &DeviceTable::DestroyQueryPool>;
+using UniqueAccelerationStructure =
+    DeviceHandle<VkAccelerationStructureKHR, &DeviceTable::DestroyAccelerationStructureKHR>;
+
+}  // namespace glint

@@ -1,0 +1,296 @@
+// A headless device that Glint makes: the instance, validation, and the choice of the physical device.
+#include "context/context_state.h"
+#include "context/requirements.h"
+#include "context/vulkan_error.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL collectMessage(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,
+                                              VkDebugUtilsMessageTypeFlagsEXT /*types*/,
+                                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* log) {
+    const char* text = data->pMessage != nullptr ? data->pMessage : "(no text)";
+    static_cast<ValidationLog*>(log)->add(text);
+    return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
+    VkDebugUtilsMessengerCreateInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    // GENERAL is left out, because its messages from the loader are about other drivers' files.
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    info.pfnUserCallback = collectMessage;
+    info.pUserData = &log;
+    return info;
+}
+
+bool hasLayer(const GlobalTable& table, const char* name) {
+    std::uint32_t count = 0;
+    if (table.EnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) {
+        return false;
+    }
+    std::vector<VkLayerProperties> layers(count);
+    if (table.EnumerateInstanceLayerProperties(&count, layers.data()) < VK_SUCCESS) {
+        return false;
+    }
+    layers.resize(count);
+    return std::ranges::any_of(
+        layers, [name](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+}
+
+bool hasInstanceExtension(const GlobalTable& table, const char* name) {
+    std::uint32_t count = 0;
+    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) {
+        return false;
+    }
+    std::vector<VkExtensionProperties> extensions(count);
+    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()) < VK_SUCCESS) {
+        return false;
+    }
+    extensions.resize(count);
+    return std::ranges::any_of(extensions, [name](const VkExtensionProperties& extension) {
+        return std::strcmp(extension.extensionName, name) == 0;
+    });
+}
+
+// Creates the instance and, with validation, the messenger.
+Status createInstance(const GlobalTable& table, Validation validation, Context::State& state) {
+    std::vector<const char*> extensions;
+    std::vector<const char*> layers;
+    const bool labels = hasInstanceExtension(table, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (validation != Validation::Off) {
+        if (!hasLayer(table, kValidationLayer) || !labels) {
+            return makeError(
+                "validation-layer", "",
+                std::string("validation was asked for, and ") + kValidationLayer + " is not installed",
+                "install vulkan-validationlayers or turn validation off");
+        }
+        layers.push_back(kValidationLayer);
+    }
+    if (validation == Validation::Synchronization) {
+        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);  // an extension of the layer
+    }
+    if (labels) {
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
+
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.pApplicationName = "glint";
+    application.apiVersion = DeviceRequirements::kApiVersion;
+
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(state.log);
+    constexpr VkValidationFeatureEnableEXT kEnabled =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT validationFeatures{};
+    validationFeatures.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    validationFeatures.pNext = &messenger;
+    validationFeatures.enabledValidationFeatureCount = 1;
+    validationFeatures.pEnabledValidationFeatures = &kEnabled;
+
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+    info.enabledLayerCount = static_cast<std::uint32_t>(layers.size());
+    info.ppEnabledLayerNames = layers.data();
+    if (validation == Validation::On) {
+        info.pNext = &messenger;
+    } else if (validation == Validation::Synchronization) {
+        info.pNext = &validationFeatures;
+    }
+    VkResult result = table.CreateInstance(&info, nullptr, &state.handles.instance);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
+        return makeError("device-missing", "", "there is no Vulkan driver on this machine",
+                         "install a driver, for instance mesa-vulkan-drivers");
+    }
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateInstance", result);
+    }
+    Result<InstanceTable> functions = loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance);
+    if (!functions) {
+        return functions.error();
+    }
+    state.instance = *functions;
+    state.ownsInstance = true;
+    state.handles.debugUtils = labels;
+    if (validation != Validation::Off) {
+        result = state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger, nullptr,
+                                                             &state.messenger);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkCreateDebugUtilsMessengerEXT", result);
+        }
+    }
+    return okStatus();
+}
+
+Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& state) {
+    std::uint32_t count = 0;
+    VkResult result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, nullptr);
+    std::vector<VkPhysicalDevice> devices(count);
+    if (result == VK_SUCCESS && count > 0) {
+        result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, devices.data());
+        devices.resize(count);
+    }
+    if (result != VK_SUCCESS && result != VK_INCOMPLETE) {
+        return vulkanError("vkEnumeratePhysicalDevices", result);
+    }
+    if (devices.empty()) {
+        return makeError("device-missing", "", "there is no Vulkan device on this machine",
+                         "install a driver, for instance mesa-vulkan-drivers");
+    }
+    return devices;
+}
+
+// Returns the first device that has that name and all features. The error says for each device what is wrong
+// with it. Leaves in `tracers` those that the chosen device supports.
+Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const HeadlessOptions& options,
+                                      std::uint32_t& tracers) {
+    const std::string& wanted = options.deviceName;
+    Result<std::vector<VkPhysicalDevice>> devices = enumerateDevices(state);
+    if (!devices) {
+        return devices.error();
+    }
+    std::vector<std::string> names;
+    std::vector<std::string> complaints;
+    for (VkPhysicalDevice device : *devices) {
+        VkPhysicalDeviceProperties properties{};
+        state.instance.GetPhysicalDeviceProperties(device, &properties);
+        const std::string name = properties.deviceName;
+        names.push_back(name);
+        if (name.find(wanted) == std::string::npos) {
+            continue;
+        }
+        DeviceReport report;
+        if (Status status = queryDevice(state.instance, device, report); !status) {
+            return status.error();
+        }
+        std::vector<std::string> missing = missingFrom(report);
+        const std::uint32_t common = tracersOf(report) & tracers;
+        if (missing.empty() && common == 0) {
+            missing.emplace_back("the tracers that were asked for");
+        }
+        if (options.positionFetch && !hasExtension(report, kPositionFetchExtension)) {
+            missing.emplace_back(kPositionFetchExtension);
+        }
+        if (options.shaderFloat16 && report.features.vulkan12.shaderFloat16 == VK_FALSE) {
+            missing.emplace_back("shaderFloat16, which --precision 16 needs");
+        }
+        if (missing.empty()) {
+            tracers = common;
+            return device;
+        }
+        complaints.push_back(name + " lacks " + joinNames(missing));
+    }
+    if (complaints.empty()) {
+        return makeError("device-missing", "", "no Vulkan device has a name with \"" + wanted + "\"",
+                         "the devices are: " + joinNames(names));
+    }
+    std::string message = "no Vulkan device can run Glint";
+    for (const std::string& complaint : complaints) {
+        message += ": " + complaint;
+    }
+    return makeError("device-features", "", message, "update the driver or use another device");
+}
+
+std::uint32_t chooseQueueFamily(const Context::State& state) {
+    std::uint32_t count = 0;
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
+                                                          families.data());
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    const auto found = std::ranges::find_if(families, [](const VkQueueFamilyProperties& family) {
+        return (family.queueFlags & kNeeded) == kNeeded;
+    });
+    // chooseDevice() has checked that there is such a family.
+    return static_cast<std::uint32_t>(found - families.begin());
+}
+
+Status createDevice(Context::State& state) {
+    DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
+                                    state.handles.shaderFloat16, state.handles.pipelineStatistics);
+    VkPhysicalDeviceFeatures2 available{};
+    available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
+    requirements.features.features.samplerAnisotropy = available.features.samplerAnisotropy;
+    state.handles.samplerAnisotropy = available.features.samplerAnisotropy == VK_TRUE;
+    state.handles.queueFamily = chooseQueueFamily(state);
+    const float priority = 1.0F;
+    VkDeviceQueueCreateInfo queue{};
+    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue.queueFamilyIndex = state.handles.queueFamily;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    VkDeviceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    info.pNext = &requirements.features;
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
+    info.ppEnabledExtensionNames = requirements.extensions.data();
+    const VkResult result =
+        state.instance.CreateDevice(state.handles.physicalDevice, &info, nullptr, &state.handles.device);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDevice", result);
+    }
+    state.ownsDevice = true;
+    if (Status status = finishContext(state); !status) {
+        return status;
+    }
+    state.vk.GetDeviceQueue(state.handles.device, state.handles.queueFamily, 0, &state.handles.queue);
+    return okStatus();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& options) {
+    auto state = std::make_unique<State>();
+    Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
+    if (!library) {
+        return library.error();
+    }
+    state->library = *library;
+    state->handles.getInstanceProcAddr = state->library->getInstanceProcAddr();
+    Result<GlobalTable> table = loadGlobalTable(state->handles.getInstanceProcAddr);
+    if (!table) {
+        return table.error();
+    }
+    if (Status status = createInstance(*table, options.validation, *state); !status) {
+        return status.error();
+    }
+    state->handles.tracers = options.tracers;
+    state->handles.positionFetch = options.positionFetch;
+    state->handles.shaderFloat16 = options.shaderFloat16;
+    Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
+    if (!device) {
+        return device.error();
+    }
+    state->handles.physicalDevice = *device;
+    if (options.pipelineStatistics) {
+        DeviceReport report;
+        if (Status status = queryDevice(state->instance, *device, report); !status) {
+            return status.error();
+        }
+        // A device that supports the extension supports its feature too (Vulkan 1.3 specification, "Feature
+        // Requirements").
+        state->handles.pipelineStatistics =
+            hasExtension(report, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    }
+    if (Status status = createDevice(*state); !status) {
+        return status.error();
+    }
+    return std::unique_ptr<Context>(new Context(std::move(state)));
+}
+
+}  // namespace glint

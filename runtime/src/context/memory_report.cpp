@@ -1,0 +1,124 @@
+#include "context/memory_report.h"
+
+#include "motion/deformer.h"
+#include "motion/scene_motion.h"
+#include "renderer/renderer_state.h"
+#include "scene/gpu_scene_state.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+namespace glint {
+namespace {
+
+void add(std::vector<MemoryItem>& items, MemoryItem item) {
+    const auto known = std::ranges::find_if(items, [&](const MemoryItem& other) {
+        return other.name == item.name && other.use == item.use && other.isImage == item.isImage;
+    });
+    if (known == items.end()) {
+        items.push_back(std::move(item));
+        return;
+    }
+    known->count += item.count;
+    known->bytes += item.bytes;
+}
+
+// Names of the images by binding.
+constexpr std::string_view kImageNames[] = {"surface", "radiance", "accumulated", "residual", "position"};
+static_assert(std::size(kImageNames) == gpu::kFrameImageCount);
+
+}  // namespace
+
+void addTo(std::vector<MemoryItem>& items, std::string name, const Buffer& buffer) {
+    if (buffer.handle.get() != VK_NULL_HANDLE) {
+        add(items, {std::move(name), buffer.use, false, 1, buffer.bytes});
+    }
+}
+
+void addTo(std::vector<MemoryItem>& items, std::string name, const DeviceImage& image) {
+    if (image.handle.get() != VK_NULL_HANDLE) {
+        add(items, {std::move(name), MemoryUse::Device, true, 1, image.bytes});
+    }
+}
+
+std::vector<MemoryItem> Renderer::memory() const {
+    std::vector<MemoryItem> items;
+    const FrameResources& frame = state_->frame;
+    for (std::size_t binding = 0; binding < frame.images.size(); ++binding) {
+        addTo(items, std::string(kImageNames[binding]), frame.images[binding]);
+    }
+    addTo(items, "depth", frame.depth);
+    for (const auto& [name, buffer] : frame.buffers()) {
+        addTo(items, name, *buffer);
+    }
+    for (const Buffer& table : state_->pipelines.tables) {
+        addTo(items, "shader binding tables", table);
+    }
+    return items;
+}
+
+Renderer::Footprint Renderer::footprint() const {
+    Footprint footprint;
+    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
+    for (const MemoryItem& item : memory()) {
+        (item.isImage ? footprint.images : footprint.buffers) += item.count;
+        footprint.bytes += item.bytes;
+    }
+    footprint.allocatedBytes = state_->frame.pool.bytes() + state_->pipelines.pool.bytes();
+    return footprint;
+}
+
+namespace {
+
+void addMotion(std::vector<MemoryItem>& items, const SceneMotion& motion) {
+    if (motion.deformer != nullptr) {
+        motion.deformer->addMemory(items);
+    }
+    if (motion.blases != nullptr) {
+        motion.blases->addMemory(items);
+    }
+    addTo(items, "instances of the top level", motion.placedBuffer);
+    addTo(items, "scratch of structures", motion.tlasScratch.buffer);
+    addTo(items, "poses on their way", motion.staging);
+}
+
+}  // namespace
+
+std::vector<MemoryItem> GpuScene::memory() const {
+    std::vector<MemoryItem> items;
+    for (const GpuPrimitive& primitive : state_->primitives) {
+        addTo(items, "vertices and indices", primitive.buffer);
+    }
+    for (const Buffer& buffer : state_->deformed.buffers) {
+        addTo(items, "deformed vertices", buffer);
+    }
+    for (const DeviceImage& texture : state_->textures) {
+        addTo(items, "textures", texture);
+    }
+    for (const AccelerationStructure& blas : state_->blases) {
+        addTo(items, "bottom levels", blas.buffer);
+    }
+    addTo(items, "top level", state_->tlas.buffer);
+    addTo(items, "geometry records", state_->geometries);
+    addTo(items, "instance records", state_->instances);
+    addTo(items, "material records", state_->materials);
+    addTo(items, "light records", state_->lights);
+    if (state_->motion != nullptr) {
+        addMotion(items, *state_->motion);
+    }
+    return items;
+}
+
+std::uint64_t GpuScene::allocatedBytes() const {
+    const SceneMotion* const motion = state_->motion.get();
+    std::uint64_t bytes = state_->pool.bytes();
+    if (motion != nullptr) {
+        bytes +=
+            motion->pool.bytes() + (motion->deformer != nullptr ? motion->deformer->allocatedBytes() : 0);
+    }
+    return bytes;
+}
+
+}  // namespace glint

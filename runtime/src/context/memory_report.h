@@ -1,0 +1,18 @@
+// Collects the memory items that the public headers report.
+#pragma once
+
+#include "context/resources.h"
+
+#include <glint/memory_report.h>
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Adds a buffer or image to the items, or to the item of the same name. A resource without a handle adds
+// nothing.
+void addTo(std::vector<MemoryItem>& items, std::string name, const Buffer& buffer);
+void addTo(std::vector<MemoryItem>& items, std::string name, const DeviceImage& image);
+
+}  // namespace glint

@@ -1,0 +1,140 @@
+#include "context/readback.h"
+
+#include "renderer/pass_dependencies.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
+
+namespace glint {
+namespace {
+
+constexpr MemoryDependency kWriteToCopy{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
+                                        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+
+void recordCopy(const Renderer::State& state, VkCommandBuffer commands, std::uint32_t binding,
+                const Buffer& target) {
+    recordDependency(state.context, commands, kWriteToCopy);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {state.size.width, state.size.height, 1};
+    state.context.vk.CmdCopyImageToBuffer(commands, state.frame.images[binding].handle.get(),
+                                          VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
+    recordDependency(state.context, commands, kCopyToHost);
+}
+
+PixelPath pathOf(float path, std::uint32_t outcome) {
+    if (path == static_cast<float>(gpu::kPathScreen)) {
+        return PixelPath::Screen;
+    }
+    if (path == static_cast<float>(gpu::kPathHit)) {
+        return PixelPath::Hit;
+    }
+    if (path == static_cast<float>(gpu::kPathMiss)) {
+        return PixelPath::Miss;
+    }
+    return outcome == gpu::kRayNoSurface ? PixelPath::NoSurface : PixelPath::NoRay;
+}
+
+}  // namespace
+
+Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
+                                                         std::uint32_t binding) {
+    MemoryPool pool(state.context);
+    std::vector<std::array<float, 4>> pixels(std::size_t{state.size.width} * state.size.height);
+    const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
+    Result<Buffer> buffer =
+        createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
+    if (!buffer) {
+        return buffer.error();
+    }
+    Result<VkCommandBuffer> commands = runner.begin();
+    if (!commands) {
+        return commands.error();
+    }
+    recordCopy(state, *commands, binding, *buffer);
+    if (Status status = runner.submitAndWait(); !status) {
+        return status.error();
+    }
+    std::memcpy(pixels.data(), buffer->mapped, bytes);
+    return pixels;
+}
+
+Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
+                                                  const Buffer& buffer) {
+    MemoryPool pool(state.context);
+    Result<Buffer> target = createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         MemoryUse::Readback);
+    if (!target) {
+        return target.error();
+    }
+    Result<VkCommandBuffer> commands = runner.begin();
+    if (!commands) {
+        return commands.error();
+    }
+    recordDependency(state.context, *commands, kWriteToCopy);
+    const VkBufferCopy region{0, 0, buffer.bytes};
+    state.context.vk.CmdCopyBuffer(*commands, buffer.handle.get(), target->handle.get(), 1, &region);
+    recordDependency(state.context, *commands, kCopyToHost);
+    if (Status status = runner.submitAndWait(); !status) {
+        return status.error();
+    }
+    return std::vector<std::uint8_t>(target->mapped, target->mapped + buffer.bytes);
+}
+
+Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    // The last channel of the image is the distance along the camera's axis. It is 0 where there is no
+    // surface.
+    const auto radiance = readFrameImage(*state_, *runner, gpu::kBindingRadiance);
+    if (!radiance) {
+        return radiance.error();
+    }
+    std::vector<std::uint8_t> surfaces(radiance->size());
+    std::ranges::transform(*radiance, surfaces.begin(), [](const std::array<float, 4>& pixel) {
+        return static_cast<std::uint8_t>(pixel[3] != 0.0F ? 1 : 0);
+    });
+    return surfaces;
+}
+
+Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    if ((package::rayEffects(state_->size.effects) & effect) == 0) {
+        return makeError("effect-missing", "",
+                         "the package has no effect " + std::string(package::nameOf(effect)) + " with rays",
+                         "compile the package with that effect");
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    const auto samples = readFrameBuffer(*state_, *runner, state_->frame.samples);
+    if (!samples) {
+        return samples.error();
+    }
+    const auto radiance = readFrameBuffer(*state_, *runner, state_->frame.radiance);
+    if (!radiance) {
+        return radiance.error();
+    }
+    std::vector<PixelPath> paths(std::size_t{state_->size.width} * state_->size.height);
+    const std::size_t first = paths.size() * package::effectSlot(state_->size.effects, effect);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        gpu::EffectSample sample{};
+        std::memcpy(&sample, samples->data() + (first + i) * sizeof(sample), sizeof(sample));
+        gpu::vec4 found{};
+        std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));
+        paths[i] = pathOf(found.w, sample.outcome);
+    }
+    return paths;
+}
+
+}  // namespace glint

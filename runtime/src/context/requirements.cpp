@@ -1,0 +1,227 @@
+#include "context/requirements.h"
+
+#include "interop/frame.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr const char* kExtensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                       VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+
+// A feature's name, and the place of its bit in a DeviceRequirements.
+struct RequiredFeature {
+    const char* name;
+    VkBool32& (*bit)(DeviceRequirements&);
+};
+
+#define GLINT_FEATURE(member, name)                                                                    \
+    RequiredFeature {                                                                                  \
+#name, [](DeviceRequirements & requirements) -> VkBool32& { return requirements.member.name; } \
+    }
+
+constexpr RequiredFeature kFeatures[] = {
+    GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
+    GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
+    // Bucket keys of hits have one or two bytes.
+    GLINT_FEATURE(vulkan11, storageBuffer16BitAccess),
+    GLINT_FEATURE(vulkan12, storageBuffer8BitAccess),
+    GLINT_FEATURE(vulkan12, bufferDeviceAddress),
+    GLINT_FEATURE(vulkan12, scalarBlockLayout),
+    GLINT_FEATURE(vulkan12, runtimeDescriptorArray),
+    GLINT_FEATURE(vulkan12, shaderSampledImageArrayNonUniformIndexing),
+    GLINT_FEATURE(vulkan12, descriptorBindingPartiallyBound),
+    GLINT_FEATURE(vulkan12, descriptorBindingSampledImageUpdateAfterBind),
+    GLINT_FEATURE(vulkan12, descriptorBindingVariableDescriptorCount),
+    GLINT_FEATURE(vulkan12, hostQueryReset),
+    GLINT_FEATURE(vulkan13, dynamicRendering),
+    GLINT_FEATURE(vulkan13, synchronization2),
+    GLINT_FEATURE(accelerationStructure, accelerationStructure),
+};
+
+constexpr RequiredFeature kRayQueryFeatures[] = {GLINT_FEATURE(rayQuery, rayQuery)};
+// Lists of rays are dispatched by their length, which only the device knows.
+constexpr RequiredFeature kRayPipelineFeatures[] = {
+    GLINT_FEATURE(rayPipeline, rayTracingPipeline),
+    GLINT_FEATURE(rayPipeline, rayTracingPipelineTraceRaysIndirect)};
+
+#undef GLINT_FEATURE
+
+// The requirements of each tracer in addition to those of every device.
+struct TracerNeeds {
+    package::Tracer tracer;
+    const char* extension;
+    std::span<const RequiredFeature> features;
+};
+
+constexpr TracerNeeds kTracerNeeds[] = {
+    {package::kTracerRayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME, kRayQueryFeatures},
+    {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
+};
+
+// The accessors take a mutable chain, but nothing is written through them here.
+bool hasFeature(const DeviceReport& report, const RequiredFeature& feature) {
+    return feature.bit(const_cast<DeviceRequirements&>(report.features)) != VK_FALSE;
+}
+
+// Returns a text such as "VK_KHR_ray_query (rayQuery) or VK_KHR_…".
+std::string tracerChoices() {
+    std::string text;
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        std::vector<std::string> features;
+        for (const RequiredFeature& feature : needs.features) {
+            features.emplace_back(feature.name);
+        }
+        text +=
+            (text.empty() ? "" : " or ") + std::string(needs.extension) + " (" + joinNames(features) + ")";
+    }
+    return text;
+}
+
+std::string versionName(std::uint32_t version) {
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
+           std::to_string(VK_API_VERSION_MINOR(version));
+}
+
+// Numbers of the Vulkan registry, for headers that lack the names.
+constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000);
+
+}  // namespace
+
+DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf,
+                                       bool tellsOfPipelines)
+    : extensions(std::begin(kExtensions), std::end(kExtensions)),
+      features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
+      vulkan11{},
+      vulkan12{},
+      vulkan13{},
+      accelerationStructure{},
+      rayQuery{},
+      rayPipeline{},
+      positionFetch{},
+      pipelineExecutables{} {
+    vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
+    vulkan11.pNext = &vulkan12;
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    vulkan12.pNext = &vulkan13;
+    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    vulkan13.pNext = &accelerationStructure;
+    accelerationStructure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+    rayQuery.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+    rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+    if ((tracers & package::kTracerRayQuery) != 0) {
+        rayQuery.pNext = std::exchange(accelerationStructure.pNext, &rayQuery);
+    }
+    if ((tracers & package::kTracerRayPipeline) != 0) {
+        rayPipeline.pNext = std::exchange(accelerationStructure.pNext, &rayPipeline);
+    }
+    positionFetch.sType = kPositionFetchFeatures;
+    if (fetchesPositions) {
+        positionFetch.pNext = std::exchange(accelerationStructure.pNext, &positionFetch);
+        positionFetch.rayTracingPositionFetch = VK_TRUE;
+        extensions.push_back(kPositionFetchExtension);
+    }
+    pipelineExecutables.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
+    if (tellsOfPipelines) {
+        pipelineExecutables.pNext = std::exchange(accelerationStructure.pNext, &pipelineExecutables);
+        pipelineExecutables.pipelineExecutableInfo = VK_TRUE;
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    }
+    vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
+    // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.
+    vulkan12.descriptorIndexing = VK_TRUE;
+    for (const RequiredFeature& feature : kFeatures) {
+        feature.bit(*this) = VK_TRUE;
+    }
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        if ((tracers & needs.tracer) != 0) {
+            extensions.push_back(needs.extension);
+            for (const RequiredFeature& feature : needs.features) {
+                feature.bit(*this) = VK_TRUE;
+            }
+        }
+    }
+}
+
+bool hasExtension(const DeviceReport& report, const char* name) {
+    return std::ranges::find(report.extensions, name) != report.extensions.end();
+}
+
+void clearFeatures(DeviceReport& report) {
+    for (const RequiredFeature& feature : kFeatures) {
+        feature.bit(report.features) = VK_FALSE;
+    }
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        for (const RequiredFeature& feature : needs.features) {
+            feature.bit(report.features) = VK_FALSE;
+        }
+    }
+}
+
+std::uint32_t tracersOf(const DeviceReport& report) {
+    std::uint32_t tracers = 0;
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        const bool complete = std::ranges::all_of(
+            needs.features, [&](const RequiredFeature& feature) { return hasFeature(report, feature); });
+        if (complete && hasExtension(report, needs.extension)) {
+            tracers |= needs.tracer;
+        }
+    }
+    return tracers;
+}
+
+std::vector<std::string> missingFrom(const DeviceReport& report) {
+    std::vector<std::string> missing;
+    if (report.apiVersion < DeviceRequirements::kApiVersion) {
+        missing.push_back("Vulkan " + versionName(DeviceRequirements::kApiVersion) + " (the device has " +
+                          versionName(report.apiVersion) + ")");
+    }
+    for (const char* extension : kExtensions) {
+        if (!hasExtension(report, extension)) {
+            missing.emplace_back(extension);
+        }
+    }
+    for (const RequiredFeature& feature : kFeatures) {
+        if (!hasFeature(report, feature)) {
+            missing.emplace_back(feature.name);
+        }
+    }
+    if (tracersOf(report) == 0) {
+        missing.push_back(tracerChoices());
+    }
+    if ((report.subgroupStages & VK_SHADER_STAGE_COMPUTE_BIT) == 0) {
+        missing.emplace_back("subgroup operations in compute shaders");
+    }
+    if ((report.subgroupOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT) == 0) {
+        missing.emplace_back("VK_SUBGROUP_FEATURE_BALLOT_BIT");
+    }
+    if ((report.subgroupOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) == 0) {
+        missing.emplace_back("VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
+    }
+    if (report.maxPushConstantBytes < sizeof(gpu::PushConstants)) {
+        missing.push_back(std::to_string(sizeof(gpu::PushConstants)) + " bytes of push constants");
+    }
+    if (report.maxWorkgroupThreads < gpu::kScanGroupSize) {
+        missing.push_back("workgroups of " + std::to_string(gpu::kScanGroupSize) + " threads");
+    }
+    if (!report.hasQueue) {
+        missing.emplace_back("a queue family with graphics and compute");
+    }
+    return missing;
+}
+
+std::string joinNames(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) {
+            text += i + 1 == names.size() ? " and " : ", ";
+        }
+        text += names[i];
+    }
+    return text;
+}
+
+}  // namespace glint

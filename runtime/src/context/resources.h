@@ -1,0 +1,45 @@
+// Buffers and images that own their memory.
+#pragma once
+
+#include "context/memory.h"
+
+#include <cstdint>
+
+namespace glint {
+
+struct Buffer {
+    UniqueBuffer handle;
+    VkDeviceSize bytes = 0;
+    VkDeviceAddress address = 0;
+    std::uint8_t* mapped = nullptr;  // null for MemoryUse::Device
+    MemoryUse use = MemoryUse::Device;
+};
+
+// Creates a buffer of at least one byte, with a device address. `pool` must outlive it.
+Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                            VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device);
+
+struct DeviceImage {
+    UniqueImage handle;
+    UniqueImageView view;  // view of all mips
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D extent{};
+    std::uint32_t mips = 1;
+    VkDeviceSize bytes = 0;  // size in memory
+};
+
+struct ImageInfo {
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D extent{};
+    std::uint32_t mips = 1;
+    VkImageUsageFlags usage = 0;
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+};
+
+// Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it.
+Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);
+
+// Returns the range of layer 0 and all mips of an image.
+VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
+
+}  // namespace glint

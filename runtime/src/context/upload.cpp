@@ -1,0 +1,184 @@
+#include "context/upload.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace glint {
+namespace {
+
+// The staging buffer is large enough that submissions cost little time, and small enough for every
+// host-visible heap. It holds 32 rows of the largest image that a device may have (65536 pixels of 8 bytes).
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
+// Copies start at multiples of a texel, and of the alignment that devices prefer.
+constexpr VkDeviceSize kStagingAlignment = 256;
+
+constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
+constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
+constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                      VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+
+}  // namespace
+
+Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
+    std::unique_ptr<Uploader> uploader(new Uploader(context));
+    Result<Buffer> staging = createBuffer(context, uploader->pool_, kStagingBytes,
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
+    if (!staging) {
+        return staging.error();
+    }
+    uploader->staging_ = std::move(*staging);
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    uploader->runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+    return uploader;
+}
+
+Status Uploader::start() {
+    if (commands_ == VK_NULL_HANDLE) {
+        Result<VkCommandBuffer> commands = runner_->begin();
+        if (!commands) {
+            return commands.error();
+        }
+        commands_ = *commands;
+    }
+    return okStatus();
+}
+
+Status Uploader::finish() {
+    if (commands_ == VK_NULL_HANDLE) {
+        return okStatus();
+    }
+    recordDependency(
+        *context_, commands_,
+        {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+    commands_ = VK_NULL_HANDLE;
+    used_ = 0;
+    return runner_->submitAndWait();
+}
+
+Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
+    used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
+    if (used_ + unit > kStagingBytes) {
+        if (Status status = finish(); !status) {
+            return status.error();
+        }
+    }
+    if (Status status = start(); !status) {
+        return status.error();
+    }
+    const VkDeviceSize room = (kStagingBytes - used_) / unit * unit;
+    return std::min(wanted, room);
+}
+
+Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target,
+                              VkDeviceSize offset) {
+    while (!bytes.empty()) {
+        Result<VkDeviceSize> room = reserve(bytes.size(), 1);
+        if (!room) {
+            return room.error();
+        }
+        std::memcpy(staging_.mapped + used_, bytes.data(), *room);
+        const VkBufferCopy region{used_, offset, *room};
+        context_->vk.CmdCopyBuffer(commands_, staging_.handle.get(), target.handle.get(), 1, &region);
+        used_ += *room;
+        offset += *room;
+        bytes = bytes.subspan(*room);
+    }
+    return okStatus();
+}
+
+Status Uploader::startImage(const DeviceImage& target) {
+    if (Status status = start(); !status) {
+        return status;
+    }
+    recordTransition(
+        *context_, commands_,
+        {target.handle.get(),
+         VK_IMAGE_LAYOUT_UNDEFINED,
+         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+         {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+    return okStatus();
+}
+
+Status Uploader::copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
+                          const DeviceImage& target, std::uint32_t mip) {
+    const std::uint32_t width = std::max(target.extent.width >> mip, 1U);
+    const std::uint32_t height = std::max(target.extent.height >> mip, 1U);
+    const VkDeviceSize rowBytes = VkDeviceSize{texelBytes} * width;
+    std::uint32_t row = 0;
+    while (row < height) {
+        Result<VkDeviceSize> room = reserve(rowBytes * (height - row), rowBytes);
+        if (!room) {
+            return room.error();
+        }
+        const auto rows = static_cast<std::uint32_t>(*room / rowBytes);
+        std::memcpy(staging_.mapped + used_, texels.data() + row * rowBytes, *room);
+        VkBufferImageCopy region{};
+        region.bufferOffset = used_;
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        region.imageOffset = {0, static_cast<std::int32_t>(row), 0};
+        region.imageExtent = {width, rows, 1};
+        context_->vk.CmdCopyBufferToImage(commands_, staging_.handle.get(), target.handle.get(),
+                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        used_ += *room;
+        row += rows;
+    }
+    return okStatus();
+}
+
+Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
+                             const DeviceImage& target) {
+    if (Status status = startImage(target); !status) {
+        return status;
+    }
+    for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
+        if (Status status = copyRows(mips[mip], texelBytes, target, mip); !status) {
+            return status;
+        }
+    }
+    recordMips(target, static_cast<std::uint32_t>(mips.size()));
+    return okStatus();
+}
+
+void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
+    const VkImage image = target.handle.get();
+    const std::uint32_t last = given - 1;
+    auto width = static_cast<std::int32_t>(std::max(target.extent.width >> last, 1U));
+    auto height = static_cast<std::int32_t>(std::max(target.extent.height >> last, 1U));
+    for (std::uint32_t mip = given; mip < target.mips; ++mip) {
+        recordTransition(*context_, commands_,
+                         {image,
+                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                          {kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT, kBlitStages,
+                           VK_ACCESS_2_TRANSFER_READ_BIT},
+                          mip - 1,
+                          1});
+        VkImageBlit region{};
+        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        region.srcOffsets[1] = {width, height, 1};
+        width = std::max(width / 2, 1);
+        height = std::max(height / 2, 1);
+        region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        region.dstOffsets[1] = {width, height, 1};
+        context_->vk.CmdBlitImage(commands_, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
+                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+    }
+    const auto recordReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
+        if (count > 0) {
+            recordTransition(
+                *context_, commands_,
+                {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
+        }
+    };
+    // The mips that were blitted from have the source layout, and the others the target layout.
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
+    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);
+}
+
+}  // namespace glint

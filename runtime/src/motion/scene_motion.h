@@ -1,0 +1,73 @@
+// The part of a GpuScene that only moving scenes have: the staging memory for poses, structures that are
+// refitted, and the rules for their builds.
+#pragma once
+
+#include "context/timer.h"
+#include "motion/deformer.h"
+#include "motion/motion_bounds.h"
+#include "motion/motion_rules.h"
+#include "motion/refit.h"
+#include "scene/acceleration.h"
+#include "scene/geometry.h"
+
+#include <glint/renderer.h>
+
+#include <memory>
+#include <vector>
+
+namespace glint {
+
+// Members are destroyed in reverse order: the pool's memory last.
+struct SceneMotion {
+    SceneMotion(Context::State& context, Timer stretches) : pool(context), timer(std::move(stretches)) {}
+
+    MemoryPool pool;
+    // Null if no instance changes its shape.
+    std::unique_ptr<Deformer> deformer;
+    std::unique_ptr<RefittedBlases> blases;    // BLASes of parts that belong to one instance
+    std::vector<std::uint32_t> blasInstances;  // for each refitted BLAS, its instance
+    std::vector<BlasHistory> blasHistories;    // for each refitted BLAS
+
+    std::vector<PartInstance> partInstances;                 // instances of the top level, in their order
+    std::vector<VkAccelerationStructureInstanceKHR> placed;  // the same, as last sent to the device
+    Buffer placedBuffer;
+    TlasBuild tlasBuild;
+    Scratch tlasScratch;
+    TlasHistory tlasHistory;
+
+    // Properties of the scene's instances and lights, in their order.
+    std::vector<std::uint32_t> meshes;
+    std::vector<std::size_t> jointCounts;
+    std::vector<std::size_t> weightCounts;
+    std::vector<const MotionBounds*> bounds;  // point into boundsOfMeshes
+    std::vector<std::unique_ptr<MotionBounds>> boundsOfMeshes;
+    std::vector<std::uint32_t> lightTypes;
+
+    // The source of the copy to the device: instance records, light records, `placed` and records of changing
+    // materials, one after the other.
+    Buffer staging;
+    VkDeviceSize lightOffset = 0;
+    VkDeviceSize placedOffset = 0;
+    VkDeviceSize materialOffset = 0;
+
+    Timer timer;  // deform, bottom levels, top level
+    MotionStatistics statistics;
+    bool recorded = false;
+};
+
+// Makes state.motion and state.tlas for a scene with SceneView::moves, and waits for the device. It builds
+// the bottom levels of `refitted`, which are the layout's parts that belong to one instance, and the top
+// level at the scene's pose. `deformer` is null if no instance changes its shape.
+Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
+                    std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer);
+
+// These implement GpuScene::update() and GpuScene::motion().
+Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const MotionView& motion);
+Result<MotionStatistics> readMotion(const GpuScene::State& state);
+
+// Makes an instance of the top level.
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+                                              const std::array<float, 12>& objectToWorld,
+                                              VkDeviceAddress blas);
+
+}  // namespace glint

@@ -1,0 +1,147 @@
+#include "package/package_state.h"
+
+#include <glint/package.h>
+
+#include <algorithm>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+// A larger file is not a package's table: 256 MiB hold more than a million primitives and materials.
+constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
+
+}  // namespace
+
+Result<Package> Package::load(const std::filesystem::path& folder) {
+    return loadFrom(FolderFiles(folder));
+}
+
+Result<Package> Package::load(std::span<const package::EmbeddedFile> files) {
+    return loadFrom(MemoryFiles(files));
+}
+
+Result<Package> Package::loadFrom(const PackageFiles& files) {
+    Result<std::vector<std::uint8_t>> bytes =
+        files.read(package::kTablesFile, "package-missing", kMaxTablesBytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    auto state = std::make_unique<State>();
+    state->tables = std::move(*bytes);
+    const std::string where = files.where(package::kTablesFile);
+    if (Status status = readTables(*state, where); !status) {
+        return status.error();
+    }
+    if (Status status = checkTables(*state, where); !status) {
+        return status.error();
+    }
+    if (Status status = readModules(*state, files); !status) {
+        return status.error();
+    }
+    return Package(std::move(state));
+}
+
+Package::Package(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Package::Package(Package&&) noexcept = default;
+Package& Package::operator=(Package&&) noexcept = default;
+Package::~Package() = default;
+
+bool Package::supports(package::Strategy strategy) const {
+    return (state_->header.strategies & strategy) != 0;
+}
+
+bool Package::alphaTested() const {
+    return state_->header.alphaTested != 0;
+}
+
+package::PackageShape Package::shape() const {
+    return shapeOf(*state_);
+}
+
+package::HitRecordFormat Package::hitRecord() const {
+    return state_->header.hitRecord;
+}
+
+bool Package::environmentMap() const {
+    return state_->header.environmentMap != 0;
+}
+
+bool Package::positionFetch() const {
+    return state_->header.positionFetch != 0;
+}
+
+package::ShadingPrecision Package::precision() const {
+    return state_->header.precision;
+}
+
+std::uint32_t Package::caseCount() const {
+    return state_->header.caseCount;
+}
+
+std::uint32_t Package::bucketCount() const {
+    return 1 + state_->header.caseCount;
+}
+
+std::span<const package::CaseEntry> Package::cases() const {
+    return state_->cases;
+}
+
+std::span<const package::ModuleEntry> Package::modules() const {
+    return state_->modules;
+}
+
+std::uint32_t Package::sceneCount() const {
+    return static_cast<std::uint32_t>(state_->scenes.size());
+}
+
+PackageScene Package::scene(std::uint32_t index) const {
+    const package::SceneEntry& entry = state_->scenes[index];
+    return {string(entry.name), state_->materials.part(entry.firstMaterial, entry.materialCount),
+            state_->primitives.subspan(entry.firstPrimitive, entry.primitiveCount),
+            state_->textures.subspan(entry.firstTexture, entry.textureCount),
+            state_->samplers.subspan(entry.firstSampler, entry.samplerCount)};
+}
+
+std::optional<std::uint32_t> Package::findScene(std::string_view name) const {
+    for (std::uint32_t index = 0; index < sceneCount(); ++index) {
+        if (string(state_->scenes[index].name) == name) {
+            return index;
+        }
+    }
+    return std::nullopt;
+}
+
+std::string_view Package::string(package::StringRef ref) const {
+    const std::uint64_t end = std::uint64_t{ref.offset} + ref.length;
+    if (end > state_->strings.size()) {
+        return {};
+    }
+    return {state_->strings.data() + ref.offset, ref.length};
+}
+
+std::span<const std::uint32_t> Package::spirv(const package::ModuleKey& key) const {
+    const auto entry = std::ranges::find_if(state_->modules, [&](const package::ModuleEntry& candidate) {
+        return package::ModuleKey{candidate.role, candidate.index, candidate.tracer} == key;
+    });
+    if (entry == state_->modules.end()) {
+        return {};
+    }
+    const auto words = state_->spirv.find(string(entry->file));
+    return words == state_->spirv.end() ? std::span<const std::uint32_t>{} : words->second;
+}
+
+const package::PrimitiveEntry* PackageScene::findPrimitive(std::uint32_t mesh,
+                                                           std::uint32_t primitive) const {
+    const auto key = [](const package::PrimitiveEntry& entry) {
+        return std::tuple(entry.mesh, entry.primitive);
+    };
+    const auto found = std::ranges::lower_bound(primitives, std::tuple(mesh, primitive), std::less<>{}, key);
+    const bool same = found != primitives.end() && key(*found) == std::tuple(mesh, primitive);
+    return same ? &*found : nullptr;
+}
+
+}  // namespace glint

@@ -1,0 +1,289 @@
+// Checks that the elements of tables.bin agree with each other.
+#include "package/package_state.h"
+#include "scene/material_table.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <tuple>
+
+namespace glint {
+
+namespace {
+
+constexpr std::uint32_t kLastAlphaMode = 2;
+constexpr std::uint32_t kLastWrap = 2;
+
+Diagnostic altered(const std::string& where, std::string message) {
+    return makeError("package-altered", where, std::move(message),
+                     "compile the package again with `glint compile`");
+}
+
+bool inStrings(const Package::State& state, package::StringRef ref) {
+    return std::uint64_t{ref.offset} + ref.length <= state.strings.size();
+}
+
+std::string_view text(const Package::State& state, package::StringRef ref) {
+    return {state.strings.data() + ref.offset, ref.length};
+}
+
+std::string describe(const package::ModuleKey& key) {
+    const package::RoleInfo* const info = package::findRole(key.role);
+    if (info == nullptr) {
+        return "of the unknown role " + std::to_string(static_cast<std::uint32_t>(key.role));
+    }
+    std::string name(info->name);
+    if (info->repeated != package::Repeated::Once) {
+        name.append(" ").append(std::to_string(key.index));
+    }
+    if (key.tracer == package::kTracerRayPipeline) {
+        name.append(" of the ray pipeline");
+    }
+    return name;
+}
+
+Status checkFiles(const Package::State& state, const std::string& where) {
+    std::map<std::string_view, std::tuple<std::uint64_t, std::uint64_t>> files;
+    for (const package::ModuleEntry& module : state.modules) {
+        if (!inStrings(state, module.file)) {
+            return altered(where, "the file name of module " +
+                                      describe({module.role, module.index, module.tracer}) +
+                                      " is out of range");
+        }
+        const std::tuple contents(module.bytes, module.hash);
+        if (files.emplace(text(state, module.file), contents).first->second != contents) {
+            return altered(where, "two modules disagree on the contents of the file that they share");
+        }
+    }
+    return okStatus();
+}
+
+// The modules must match what the header says: none may be missing, and there may be no others.
+Status checkModules(const Package::State& state, const std::string& where) {
+    std::set<package::ModuleKey> present;
+    for (const package::ModuleEntry& module : state.modules) {
+        const package::ModuleKey key{module.role, module.index, module.tracer};
+        if (!present.insert(key).second) {
+            return altered(where, "module " + describe(key) + " is there twice");
+        }
+    }
+    const std::vector<package::ModuleKey> required = package::requiredModules(shapeOf(state));
+    for (const package::ModuleKey& key : required) {
+        if (present.erase(key) == 0) {
+            return altered(where, "the package lacks its module " + describe(key));
+        }
+    }
+    if (!present.empty()) {
+        return altered(where, "there is a module " + describe(*present.begin()) +
+                                  ", which the package's settings do not call for");
+    }
+    return checkFiles(state, where);
+}
+
+Status checkHeader(const Package::State& state, const std::string& where) {
+    const package::PackageHeader& header = state.header;
+    const auto outside = [&](const char* what, std::uint32_t value) {
+        return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
+    };
+    if (header.strategies == 0 || header.strategies > package::kAllStrategies) {
+        return outside("the set of strategies", header.strategies);
+    }
+    if (header.tracers == 0 || header.tracers > package::kAllTracers) {
+        return outside("the set of tracers", header.tracers);
+    }
+    if (header.effects > package::kAllEffects) {
+        return outside("the set of effects", header.effects);
+    }
+    if (header.alphaTested > 1) {
+        return outside("the alpha policy", header.alphaTested);
+    }
+    if (header.shadows > package::ShadowPlacement::Deferred) {
+        return outside("the placement of shadow rays", static_cast<std::uint32_t>(header.shadows));
+    }
+    if (header.hitRecord > package::HitRecordFormat::Packed) {
+        return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
+    }
+    if (header.positionFetch > 1) {
+        return outside("the source of positions", header.positionFetch);
+    }
+    if (header.precision > package::ShadingPrecision::Half) {
+        return outside("the precision of shading", static_cast<std::uint32_t>(header.precision));
+    }
+    if (header.deforms > 1) {
+        return outside("the kind of movement", header.deforms);
+    }
+    if (header.environmentMap > 1) {
+        return outside("the kind of sky", header.environmentMap);
+    }
+    return okStatus();
+}
+
+Status checkCases(const Package::State& state, const std::string& where) {
+    if (state.cases.size() != state.header.caseCount) {
+        return altered(where, "the header names " + std::to_string(state.header.caseCount) +
+                                  " cases, there are " + std::to_string(state.cases.size()));
+    }
+    for (const package::CaseEntry& entry : state.cases) {
+        if (!inStrings(state, entry.name)) {
+            return altered(where, "the name of a case is out of range");
+        }
+        if ((entry.always & entry.sometimes) != 0) {
+            return altered(where, "a case has a feature both always and sometimes");
+        }
+    }
+    return okStatus();
+}
+
+Status checkPrimitive(const Package::State& state, const package::SceneEntry& scene,
+                      const package::PrimitiveEntry& entry, const std::string& where) {
+    const std::string name =
+        "primitive " + std::to_string(entry.primitive) + " of mesh " + std::to_string(entry.mesh);
+    if (entry.shaderId >= state.header.caseCount) {
+        return altered(where, name + " has shader ID " + std::to_string(entry.shaderId) + " of " +
+                                  std::to_string(state.header.caseCount));
+    }
+    if (entry.materialIndex >= scene.materialCount) {
+        return altered(where, name + " has material " + std::to_string(entry.materialIndex) + " of " +
+                                  std::to_string(scene.materialCount));
+    }
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32 | entry.featureLobes;
+    const package::CaseEntry& shadedBy = state.cases[entry.shaderId];
+    if (shadedBy.keyCount == 0) {
+        return altered(where,
+                       name + " has shader ID " + std::to_string(entry.shaderId) + ", which is retired");
+    }
+    // The key may have features that its case does not know: lobes that primary surfaces have and hits do not
+    // keep.
+    if ((shadedBy.always & ~key) != 0) {
+        return altered(where, name + " lacks features that its case takes for granted");
+    }
+    constexpr std::uint32_t kKnownFlags =
+        gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided | gpu::kGeometryMasked;
+    if ((entry.geometryFlags & ~kKnownFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
+        return altered(where, name + " has unknown flags");
+    }
+    if ((entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 && state.header.alphaTested == 0) {
+        return altered(where, name + " is alpha tested, and the package is not");
+    }
+    return okStatus();
+}
+
+Status checkPrimitives(const Package::State& state, const package::SceneEntry& scene,
+                       const std::string& where) {
+    const auto key = [](const package::PrimitiveEntry& entry) {
+        return std::tuple(entry.mesh, entry.primitive);
+    };
+    const package::PrimitiveEntry* previous = nullptr;
+    for (const package::PrimitiveEntry& entry :
+         state.primitives.subspan(scene.firstPrimitive, scene.primitiveCount)) {
+        if (previous != nullptr && key(*previous) >= key(entry)) {
+            return altered(where, "the primitives are not in order");
+        }
+        previous = &entry;
+        if (Status status = checkPrimitive(state, scene, entry, where); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+Status checkMaterials(const Package::State& state, const package::SceneEntry& scene,
+                      const std::string& where) {
+    // A slot that no key reads holds zero, even if there is no texture zero.
+    const std::uint32_t textureEnd = std::max(scene.textureCount, 1U);
+    const std::uint32_t samplerEnd = std::max(scene.samplerCount, 1U);
+    const MaterialTable materials = state.materials.part(scene.firstMaterial, scene.materialCount);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        for (std::uint32_t slot = 0; slot < materials.textureCount; ++slot) {
+            const gpu::TextureRecord texture = textureAt(materials, i, slot);
+            if (texture.textureIndex >= textureEnd || texture.samplerIndex >= samplerEnd ||
+                texture.texCoord > 1) {
+                return altered(where, "material " + std::to_string(scene.firstMaterial + i) +
+                                          " refers to a texture, sampler or UV set that does not exist");
+            }
+        }
+    }
+    return okStatus();
+}
+
+// A range of a section. It follows the range of the scene before.
+struct SceneRange {
+    std::uint32_t package::SceneEntry::*first;
+    std::uint32_t package::SceneEntry::*count;
+    std::size_t total;
+};
+
+Status checkScenes(const Package::State& state, const std::string& where) {
+    using Entry = package::SceneEntry;
+    if (state.scenes.empty()) {
+        return altered(where, "there is no scene");
+    }
+    for (const SceneRange& range :
+         {SceneRange{&Entry::firstMaterial, &Entry::materialCount, state.materials.size()},
+          SceneRange{&Entry::firstPrimitive, &Entry::primitiveCount, state.primitives.size()},
+          SceneRange{&Entry::firstTexture, &Entry::textureCount, state.textures.size()},
+          SceneRange{&Entry::firstSampler, &Entry::samplerCount, state.samplers.size()}}) {
+        std::uint64_t end = 0;
+        for (const Entry& scene : state.scenes) {
+            if (scene.*range.first != end) {
+                return altered(where, "the scenes' parts of a section overlap or leave a gap");
+            }
+            end += scene.*range.count;
+        }
+        if (end != range.total) {
+            return altered(where, "the scenes' parts of a section are not the whole of it");
+        }
+    }
+    std::set<std::string_view> names;
+    for (const Entry& scene : state.scenes) {
+        if (!inStrings(state, scene.name) || !names.insert(text(state, scene.name)).second) {
+            return altered(where, "the name of a scene is out of range, or there twice");
+        }
+        for (const auto check : {checkPrimitives, checkMaterials}) {
+            if (Status status = check(state, scene, where); !status) {
+                return status;
+            }
+        }
+    }
+    return okStatus();
+}
+
+Status checkSamplers(const Package::State& state, const std::string& where) {
+    if (!std::ranges::all_of(state.textures, [](const auto& texture) { return texture.srgb <= 1; })) {
+        return altered(where, "a texture has an unknown colour space");
+    }
+    const auto known = [](const package::SamplerEntry& sampler) {
+        return sampler.wrapU <= kLastWrap && sampler.wrapV <= kLastWrap && sampler.magnification <= 1 &&
+               sampler.minification <= 1 && sampler.mip <= 1 && sampler.mipmapped <= 1;
+    };
+    if (!std::ranges::all_of(state.samplers, known)) {
+        return altered(where, "a sampler has an unknown mode");
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+package::PackageShape shapeOf(const Package::State& state) {
+    const package::PackageHeader& header = state.header;
+    package::PackageShape shape{header.strategies, header.tracers,          header.shadows,
+                                header.effects,    header.alphaTested != 0, header.caseCount};
+    for (std::uint32_t id = 0; id < state.cases.size(); ++id) {
+        if (state.cases[id].keyCount == 0) {
+            shape.retired.push_back(id);
+        }
+    }
+    shape.deforms = header.deforms != 0;
+    return shape;
+}
+
+Status checkTables(const Package::State& state, const std::string& where) {
+    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkSamplers}) {
+        if (Status status = check(state, where); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace glint

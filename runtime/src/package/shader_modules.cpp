@@ -1,0 +1,69 @@
+#include "package/shader_modules.h"
+
+#include "context/vulkan_error.h"
+
+namespace glint {
+
+Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words) {
+    VkShaderModuleCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    info.codeSize = words.size_bytes();
+    info.pCode = words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateShaderModule(context.handles.device, &info, nullptr, &module);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateShaderModule", result);
+    }
+    return UniqueShaderModule(context, module);
+}
+
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
+    VkPipelineShaderStageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage = stage;
+    info.module = module;
+    info.pName = "main";
+    return info;
+}
+
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout, PipelineCreation& creation) {
+    Result<UniqueShaderModule> module = createShaderModule(context, words);
+    if (!module) {
+        return module.error();
+    }
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.pNext = &feedback;
+    info.flags = creation.flags;
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
+    const VkSpecializationMapEntry entry{0, 0, sizeof(creation.threads)};
+    const VkSpecializationInfo specialization{1, &entry, sizeof(creation.threads), &creation.threads};
+    if (creation.threads > 0) {
+        info.stage.pSpecializationInfo = &specialization;
+    }
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,
+                                                              1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateComputePipelines", result);
+    }
+    return UniquePipeline(context, pipeline);
+}
+
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout) {
+    PipelineCreation creation;
+    return createComputePipeline(context, words, layout, creation);
+}
+
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation) {
+    VkPipelineCreationFeedbackCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO;
+    info.pPipelineCreationFeedback = &creation.feedback;
+    return info;
+}
+
+}  // namespace glint

@@ -1,0 +1,36 @@
+// Shader modules, and pipelines that have one module.
+#pragma once
+
+#include "context/device_handle.h"
+
+#include <cstdint>
+#include <span>
+
+namespace glint {
+
+// Makes a module from SPIR-V words. Error "vulkan-call".
+Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words);
+
+// Describes a stage whose entry point is "main".
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
+
+// Settings for making a pipeline, and the driver's feedback about it.
+struct PipelineCreation {
+    VkPipelineCreateFlags flags = 0;
+    // The number of threads in a compute shader's workgroup, if that is its constant 0. 0 means that the
+    // shader has no such constant.
+    std::uint32_t threads = 0;
+    VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
+};
+
+// Makes a compute pipeline from SPIR-V words. Error "vulkan-call".
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout, PipelineCreation& creation);
+Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
+                                             VkPipelineLayout layout);
+
+// Returns a structure for the chain of a pipeline's creation. The driver writes to `creation`, which must
+// outlive the structure.
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation);
+
+}  // namespace glint

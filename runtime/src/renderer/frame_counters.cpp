@@ -1,0 +1,114 @@
+// Reads the counters of a frame.
+#include "context/readback.h"
+#include "renderer/renderer_state.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace glint {
+
+namespace {
+
+using Counters = std::array<std::uint32_t, gpu::kCounterCount>;
+
+// The shaders' constants must equal those of the table.
+static_assert(gpu::kEffectShadow == package::kEffectShadow);
+static_assert(gpu::kEffectAmbientOcclusion == package::kEffectAmbientOcclusion);
+static_assert(gpu::kEffectReflection == package::kEffectReflection);
+static_assert(gpu::kEffectRefraction == package::kEffectRefraction);
+static_assert(gpu::kEffectIndirectDiffuse == package::kEffectIndirectDiffuse);
+static_assert(gpu::kEffectCount == package::kEffectCount);
+
+EffectCounters countersOf(const Counters& values, package::Effect effect) {
+    const auto count = [&](std::uint32_t kind) {
+        constexpr std::uint32_t kCountersOfCopy = gpu::kEffectCount * gpu::kCountsOfEffect;
+        std::uint32_t place =
+            gpu::kCounterEffects + gpu::kCountsOfEffect * package::effectNumber(effect) + kind;
+        std::uint32_t sum = 0;
+        for (std::uint32_t copy = 0; copy < gpu::kCounterCopies; ++copy, place += kCountersOfCopy) {
+            sum += values[place];
+        }
+        return sum;
+    };
+    EffectCounters counters;
+    counters.effect = effect;
+    counters.rays = count(gpu::kRaySent) + count(gpu::kRayEnded);
+    counters.hits = count(gpu::kCountHits);
+    counters.misses = count(gpu::kCountMisses);
+    counters.segments = count(gpu::kCountSegments);
+    counters.screenHits = count(gpu::kCountScreenHits);
+    counters.skippedSky = count(gpu::kRayNoSurface);
+    counters.skippedUnlit = count(gpu::kRayUnlit);
+    counters.skippedRough = count(gpu::kRayRough);
+    counters.skippedBlack = count(gpu::kRayBlack);
+    counters.skippedAbsent = count(gpu::kRayAbsent);
+    counters.skippedFaint = count(gpu::kRayFaint);
+    counters.skippedFacing = count(gpu::kRayFacing);
+    counters.skippedRange = count(gpu::kRayRange);
+    counters.skippedCone = count(gpu::kRayCone);
+    return counters;
+}
+
+// Adds the counters of a round that was read back at `bytes`.
+void addRound(const std::uint8_t* bytes, const FrameSize& size, std::uint32_t effects,
+              FrameCounters& counters) {
+    std::array<std::uint32_t, 2> lists{};
+    static_assert(sizeof(lists) == kRoundCounterBytes);
+    std::memcpy(lists.data(), bytes, sizeof(lists));
+    counters.rays += lists[gpu::kCounterRays];
+    counters.shadowRays += lists[gpu::kCounterShadowRays];
+    if (!size.ordered) {
+        return;
+    }
+    std::vector<std::uint32_t> counts(size.bucketCount);
+    std::memcpy(counts.data(), bytes + kRoundCounterBytes, counts.size() * sizeof(counts[0]));
+    counters.bucketCounts.resize(counts.size());
+    std::ranges::transform(counts, counters.bucketCounts, counters.bucketCounts.begin(), std::plus<>{});
+    for (EffectCounters& effect : counters.effects) {
+        if (effect.effect == effects) {
+            effect.bucketCounts = counts;
+        }
+    }
+}
+
+}  // namespace
+
+Diagnostic frameNotRecorded() {
+    return makeError("frame-not-recorded", "", "no frame has been recorded",
+                     "record a frame, submit it and wait for it first");
+}
+
+EffectCounters FrameCounters::of(package::Effect effect) const {
+    const auto found = std::ranges::find(effects, effect, &EffectCounters::effect);
+    EffectCounters none;
+    none.effect = effect;
+    return found == effects.end() ? none : *found;
+}
+
+Result<FrameCounters> Renderer::counters() {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    const std::uint8_t* const bytes = state_->frame.readback.mapped;
+    Counters values{};
+    std::memcpy(values.data(), bytes, sizeof(values));
+    FrameCounters counters;
+    for (const package::EffectInfo& info : package::kEffects) {
+        if ((state_->size.effects & info.effect) != 0) {
+            counters.effects.push_back(countersOf(values, info.effect));
+        }
+    }
+    counters.orderErrors = values[gpu::kCounterOrderErrors];
+    counters.unknownShader = values[gpu::kCounterUnknownShader];
+    counters.nonFinite = values[gpu::kCounterNonFinite];
+    for (std::uint32_t round = 0; round < state_->rounds.size(); ++round) {
+        addRound(bytes + readbackRound(state_->size, round), state_->size, state_->rounds[round], counters);
+    }
+    if (state_->size.ordered) {
+        counters.bucketCounts.resize(state_->size.bucketCount);
+    }
+    return counters;
+}
+
+}  // namespace glint

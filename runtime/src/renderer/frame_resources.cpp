@@ -1,0 +1,302 @@
+#include "renderer/frame_resources.h"
+
+#include "context/commands.h"
+#include "context/vulkan_error.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+VkDeviceSize listRays(const FrameSize& size) {
+    return VkDeviceSize{size.width} * size.height * size.batchCount;
+}
+
+namespace {
+
+// Returns the number of elements of the longest list. It is that of hits, where each bucket may leave all but
+// one slot of its last group empty.
+VkDeviceSize listSlots(const FrameSize& size) {
+    return listRays(size) + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+}
+
+// Returns the largest number of rays in a one-dimensional dispatch, as lists use. A dispatch over an image is
+// no wider, and its height is within the limits of images, which are below those of dispatches.
+std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
+    const std::uint64_t width =
+        std::uint64_t{limits.core.maxComputeWorkGroupCount[0]} * limits.core.maxComputeWorkGroupSize[0];
+    return std::min<std::uint64_t>(width, limits.rayPipeline.maxRayDispatchInvocationCount);
+}
+
+}  // namespace
+
+VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
+    const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
+    return kCounterBytes + round * (kRoundCounterBytes + buckets);
+}
+
+Status checkFrameSize(const Context::State& context, const FrameSize& size) {
+    const VkPhysicalDeviceLimits& limits = context.limits.core;
+    const std::uint32_t maxWidth = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
+    const std::uint32_t maxHeight = std::min(limits.maxImageDimension2D, limits.maxFramebufferHeight);
+    const std::string asked = std::to_string(size.width) + " x " + std::to_string(size.height);
+    if (size.width == 0 || size.height == 0 || size.width > maxWidth || size.height > maxHeight) {
+        return makeError("render-size", "", "an image of " + asked + " pixels cannot be rendered",
+                         "use 1 x 1 to " + std::to_string(maxWidth) + " x " + std::to_string(maxHeight));
+    }
+    const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
+    // There is a sample for every pixel and effect, and 32 bits number the samples.
+    if (samples > std::numeric_limits<std::uint32_t>::max() ||
+        samples * sizeof(gpu::EffectSample) > context.limits.maxBufferBytes) {
+        return makeError("render-size", "",
+                         "the rays of " + asked + " pixels do not fit a buffer of the device",
+                         "render a smaller image");
+    }
+    if (size.rayPipeline && listSlots(size) > maxRayDispatch(context.limits)) {
+        return makeError("render-size", "",
+                         "the rays of " + asked + " pixels are more than one dispatch of the device's ray " +
+                             "tracing pipelines holds, which is " +
+                             std::to_string(maxRayDispatch(context.limits)),
+                         "render a smaller image, or use the tracer ray-query");
+    }
+    return okStatus();
+}
+
+namespace {
+
+bool hasImage(const FrameSize& size, std::uint32_t binding) {
+    return binding != gpu::kBindingPosition || (size.effects & package::kEffectReflection) != 0;
+}
+
+Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        ImageInfo info;
+        info.extent = {size.width, size.height};
+        if (!hasImage(size, binding)) {
+            continue;
+        }
+        const bool surface = binding == gpu::kBindingSurface;
+        info.format = surface ? kSurfaceFormat : VK_FORMAT_R32G32B32A32_SFLOAT;
+        info.usage =
+            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        if (surface) {
+            info.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        }
+        if (binding == gpu::kBindingAccumulated) {
+            info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // the caller can draw it
+        }
+        Result<DeviceImage> image = createImage(context, frame.pool, info);
+        if (!image) {
+            return image.error();
+        }
+        frame.images[binding] = std::move(*image);
+    }
+    ImageInfo info;
+    info.extent = {size.width, size.height};
+    info.format = kDepthFormat;
+    info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    Result<DeviceImage> depth = createImage(context, frame.pool, info);
+    if (!depth) {
+        return depth.error();
+    }
+    frame.depth = std::move(*depth);
+    return okStatus();
+}
+
+Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    constexpr VkBufferUsageFlags kCleared =
+        kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    // These numbers are 0 if no effect sends rays.
+    const VkDeviceSize samples = VkDeviceSize{size.width} * size.height * size.sampleCount;
+    const VkDeviceSize rays = listRays(size);
+    const VkDeviceSize hits = size.ordered ? rays : 0;
+    const VkDeviceSize slots = size.ordered ? listSlots(size) : 0;
+    // There is one bit for each hit, in whole words.
+    const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
+    const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
+    // The keys end at the end of the last tile that may be read.
+    const VkDeviceSize keys =
+        hits > 0 ? hits + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
+    const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
+    const VkDeviceSize lists = rays > 0 ? 1 : 0;
+    const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
+    const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
+    const struct {
+        Buffer& target;
+        VkDeviceSize bytes;
+        VkBufferUsageFlags usage;
+        MemoryUse use;
+    } wanted[] = {
+        {frame.constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
+        {frame.samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
+        {frame.radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
+        {frame.rays, rays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+         MemoryUse::Device},
+        {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
+        {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
+        {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
+        {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
+        {frame.bucketCounts, bucketBytes, kCleared, MemoryUse::Device},
+        {frame.bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
+        {frame.bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
+        {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {frame.counters, kCounterBytes, kCleared, MemoryUse::Device},
+        {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+         MemoryUse::Readback},
+    };
+    for (const auto& entry : wanted) {
+        if (entry.bytes == 0) {
+            continue;
+        }
+        Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use);
+        if (!buffer) {
+            return buffer.error();
+        }
+        entry.target = std::move(*buffer);
+    }
+    return okStatus();
+}
+
+Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        if (hasImage(size, binding)) {
+            bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
+        }
+    }
+    std::vector<VkDescriptorPoolSize> poolSizes{
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, static_cast<std::uint32_t>(bindings.size())}};
+    if (size.environmentMap) {
+        constexpr VkDescriptorType kMap = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        bindings.push_back({gpu::kBindingEnvironment, kMap, 1, passStages(context), nullptr});
+        poolSizes.push_back({kMap, 1});
+    }
+    VkDescriptorSetLayoutCreateInfo layoutInfo{};
+    layoutInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    layoutInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
+    layoutInfo.pBindings = bindings.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    const VkDevice device = context.handles.device;
+    VkResult result = context.vk.CreateDescriptorSetLayout(device, &layoutInfo, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDescriptorSetLayout", result);
+    }
+    frame.setLayout = UniqueSetLayout(context, layout);
+
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = static_cast<std::uint32_t>(poolSizes.size());
+    poolInfo.pPoolSizes = poolSizes.data();
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDescriptorPool", result);
+    }
+    frame.descriptorPool = UniqueDescriptorPool(context, pool);
+
+    VkDescriptorSetAllocateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    setInfo.descriptorPool = pool;
+    setInfo.descriptorSetCount = 1;
+    setInfo.pSetLayouts = &layout;
+    result = context.vk.AllocateDescriptorSets(device, &setInfo, &frame.set);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkAllocateDescriptorSets", result);
+    }
+    return okStatus();
+}
+
+void fillSet(Context::State& context, const FrameResources& frame) {
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        if (frame.images[binding].handle.get() == VK_NULL_HANDLE) {
+            continue;
+        }
+        const VkDescriptorImageInfo image{VK_NULL_HANDLE, frame.images[binding].view.get(),
+                                          VK_IMAGE_LAYOUT_GENERAL};
+        VkWriteDescriptorSet write{};
+        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        write.dstSet = frame.set;
+        write.dstBinding = binding;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        write.pImageInfo = &image;
+        context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+    }
+}
+
+// Moves images into the layouts that they keep, and clears them to black.
+Status clearImages(Context::State& context, const FrameResources& frame) {
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    for (const DeviceImage& image : frame.images) {
+        if (image.handle.get() == VK_NULL_HANDLE) {
+            continue;
+        }
+        recordTransition(
+            context, *commands,
+            {image.handle.get(),
+             VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_GENERAL,
+             {VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+        const VkClearColorValue black{};
+        const VkImageSubresourceRange range = wholeImage();
+        context.vk.CmdClearColorImage(*commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, &black, 1,
+                                      &range);
+    }
+    ImageTransition depth;
+    depth.image = frame.depth.handle.get();
+    depth.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.dependency.toStages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    depth.dependency.toAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    depth.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    recordTransition(context, *commands, depth);
+    return runner->submitAndWait();
+}
+
+}  // namespace
+
+Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    if (Status status = createImages(context, size, frame); !status) {
+        return status;
+    }
+    if (Status status = createBuffers(context, size, frame); !status) {
+        return status;
+    }
+    if (Status status = createSet(context, size, frame); !status) {
+        return status;
+    }
+    fillSet(context, frame);
+    return clearImages(context, frame);
+}
+
+void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame) {
+    const VkDescriptorImageInfo map{environment.sampler.get(), environment.map.view.get(),
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = frame.set;
+    write.dstBinding = gpu::kBindingEnvironment;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &map;
+    context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+}
+
+}  // namespace glint

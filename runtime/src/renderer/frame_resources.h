@@ -1,0 +1,111 @@
+// The images and buffers of a frame, and descriptor set 1.
+#pragma once
+
+#include "context/resources.h"
+#include "interop/frame.h"
+#include "sky/environment_state.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace glint {
+
+inline constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32_UINT;
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+// The layout of what counters() reads: the counters first, then for each round of rays the counters of its
+// lists and its buckets.
+inline constexpr VkDeviceSize kCounterBytes = sizeof(std::uint32_t) * gpu::kCounterCount;
+inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
+
+// Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
+// need have no handle.
+struct FrameResources {
+    explicit FrameResources(Context::State& context) : pool(context) {}
+
+    MemoryPool pool;
+    std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL
+    DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
+    Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
+    Buffer samples;    // this buffer and those below serve all effects with rays
+    Buffer radiance;
+    Buffer rays;
+    Buffer hits;         // full or packed records; present if hits are ordered
+    Buffer orderedHits;  // like `hits`, in the order of the buckets
+    Buffer visitedHits;  // one bit for each hit; present if the order is checked
+    Buffer shadows;      // present if shadow rays are deferred
+    Buffer shadowDispatch;
+    Buffer bucketKeys;  // one key for each hit; ends at a whole tile
+    Buffer bucketCounts;
+    Buffer bucketBegins;
+    Buffer bucketCursors;
+    Buffer rayDispatch;
+    Buffer bucketDispatch;
+    Buffer counters;
+    Buffer readback;
+    UniqueSetLayout setLayout;
+    UniqueDescriptorPool descriptorPool;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+
+    // All buffers, with names for reports.
+    std::array<std::pair<const char*, const Buffer*>, 17> buffers() const {
+        return {{{"constants", &constants},
+                 {"samples", &samples},
+                 {"radiance of effects", &radiance},
+                 {"rays", &rays},
+                 {"hits", &hits},
+                 {"ordered hits", &orderedHits},
+                 {"visited hits", &visitedHits},
+                 {"shadow rays", &shadows},
+                 {"shadow dispatch", &shadowDispatch},
+                 {"bucket keys", &bucketKeys},
+                 {"bucket counts", &bucketCounts},
+                 {"bucket begins", &bucketBegins},
+                 {"bucket cursors", &bucketCursors},
+                 {"ray dispatch", &rayDispatch},
+                 {"bucket dispatch", &bucketDispatch},
+                 {"counters", &counters},
+                 {"read-back", &readback}}};
+    }
+};
+
+struct FrameSize {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t bucketCount = 0;
+    std::uint32_t effects = 0;  // Effect bits
+    // The number of samples of a pixel, and how many of them have their rays in the list at once.
+    std::uint32_t sampleCount = 0;
+    std::uint32_t batchCount = 0;
+    bool ordered = false;  // hits are stored and ordered by bucket
+    bool checksOrder = false;
+    std::uint32_t bucketAlignment = 1;
+    std::uint32_t hitBytes = sizeof(gpu::HitRecord);
+    std::uint32_t keyBytes = 1;  // size of the key of a hit's bucket
+    bool deferredShadows = false;
+    bool environmentMap = false;
+    bool rayPipeline = false;  // a ray tracing pipeline dispatches lists as rays
+
+    std::uint32_t roundCount() const {
+        return batchCount > 0 ? sampleCount / batchCount : 0;
+    }
+};
+
+// Returns the offset at which a round of rays is read back. For the number of rounds it returns the end.
+VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
+
+// Returns the largest number of rays in the list: one for each pixel and effect of a round.
+VkDeviceSize listRays(const FrameSize& size);
+
+// Error "render-size": the frame has no pixels, or more than the device supports.
+Status checkFrameSize(const Context::State& context, const FrameSize& size);
+
+// Makes all resources, clears the images and waits for the device.
+Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
+
+// Puts the environment into the frame's set. No commands that use the set may be in flight. Requires
+// FrameSize::environmentMap.
+void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame);
+
+}  // namespace glint

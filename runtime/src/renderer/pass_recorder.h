@@ -1,0 +1,60 @@
+// Records passes one after the other, each with its label and its timer.
+#pragma once
+
+#include "renderer/pass_dependencies.h"
+#include "renderer/renderer_state.h"
+
+#include <cstdint>
+#include <string>
+
+namespace glint {
+
+class PassRecorder {
+public:
+    PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing);
+
+    // Begins a stretch of several passes, which is timed if passes are not. Returns its number for
+    // endStretch().
+    std::uint32_t beginStretch(const PassLabel& label);
+    void endStretch(std::uint32_t stretch);
+
+    void barrier(const MemoryDependency& dependency);
+    // Binds the descriptor sets for every kind of pass except the raster pass.
+    void bindSets();
+    // Draws the scene into the G-buffer's visibility image.
+    void drawScene();
+    // Dispatches the pass over the pixels of the image.
+    void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
+    // Dispatches `groups` workgroups.
+    void dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups);
+    // Dispatches over a list whose length the device knows. `index` is the entry of the arguments.
+    void dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
+                      std::uint32_t index);
+    // Sets the bucket that the next dispatch shades.
+    void setBucket(std::uint32_t bucket);
+
+    const PassDependencies& dependencies() const {
+        return dependencies_;
+    }
+    VkCommandBuffer commands() const {
+        return commands_;
+    }
+
+private:
+    void beginPass(const PassLabel& label);
+    void endPass();
+    void bindSets(VkPipelineBindPoint point);
+    void bindPass(const PassPipeline& pass);
+    void push();
+    void beginRendering();
+
+    Renderer::State& state_;
+    const DeviceTable& vk_;
+    VkCommandBuffer commands_;
+    VkShaderStageFlags pushStages_;
+    PassDependencies dependencies_;
+    gpu::PushConstants pushed_{};
+    bool timesPasses_;
+};
+
+}  // namespace glint

@@ -1,0 +1,59 @@
+#include "renderer/pipeline_jobs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace glint {
+
+std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
+    const std::uint32_t most = wanted > 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(jobCount, 1, most));
+}
+
+Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
+                                                VkPipelineCreateFlags flags, std::uint32_t threads) {
+    // The longest job must not begin last, as the others would then wait for it.
+    std::vector<std::size_t> order(jobs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t job) { return jobs[job].wordCount; });
+
+    std::vector<std::optional<Result<UniquePipeline>>> results(jobs.size());
+    std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{flags, {}});
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        for (std::size_t taken = next++; taken < order.size(); taken = next++) {
+            const std::size_t job = order[taken];
+            results[job].emplace(jobs[job].make(creations[job]));
+        }
+    };
+    std::vector<std::thread> helpers;
+    for (std::uint32_t i = 1; i < threads; ++i) {
+        try {
+            helpers.emplace_back(work);
+        } catch (const std::system_error&) {
+            break;  // no more threads: the existing ones do all the work
+        }
+    }
+    work();
+    for (std::thread& helper : helpers) {
+        helper.join();
+    }
+
+    std::vector<MadePipeline> made;
+    made.reserve(jobs.size());
+    for (std::size_t job = 0; job < jobs.size(); ++job) {
+        Result<UniquePipeline>& result = *results[job];
+        if (!result) {
+            return result.error();
+        }
+        made.push_back({jobs[job].name, std::move(*result), creations[job].feedback});
+    }
+    return made;
+}
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+// Makes pipelines with several threads at once.
+#pragma once
+
+#include "package/shader_modules.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct PipelineJob {
+    std::string name;           // name of the pipeline, for reports
+    std::size_t wordCount = 0;  // words of its SPIR-V, which estimate the work
+    // Any thread may call this. It must use nothing that another job changes.
+    std::function<Result<UniquePipeline>(PipelineCreation& creation)> make;
+};
+
+struct MadePipeline {
+    std::string name;
+    UniquePipeline handle;
+    VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives no feedback
+};
+
+// Returns the number of threads for that many jobs, at most `wanted`. 0 asks for as many as the machine runs
+// at once.
+std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount);
+
+// Returns the pipelines in the order of their jobs. The largest job begins first. `threads` includes the
+// calling thread and must not be 0; if the system gives fewer threads, fewer are used. All jobs run. The
+// error is that of the first job that failed.
+Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
+                                                VkPipelineCreateFlags flags, std::uint32_t threads);
+
+}  // namespace glint

@@ -1,0 +1,16 @@
+// Reads what a driver reports about a pipeline.
+#pragma once
+
+#include "context/context_state.h"
+
+#include <glint/pipeline_statistics.h>
+
+#include <vector>
+
+namespace glint {
+
+// Requires DeviceHandles::pipelineStatistics and a pipeline that was made with
+// VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
+Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline);
+
+}  // namespace glint

@@ -1,0 +1,142 @@
+#include "renderer/ray_passes.h"
+
+#include <utility>
+
+namespace glint {
+namespace {
+
+using package::ModuleRole;
+
+SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index = 0) {
+    return package.spirv({role, index, package::kTracerRayPipeline});
+}
+
+// Returns the source of passes that only trace. Other passes shade what their rays find.
+RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> rayGeneration) {
+    RayPipelineSource source;
+    source.rayGeneration = std::move(rayGeneration);
+    source.miss = {rayWords(package, ModuleRole::TraceMiss)};
+    source.closestHit = {rayWords(package, ModuleRole::TraceClosestHit)};
+    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    return source;
+}
+
+// Returns the source of the strategy hit-shaders. Each geometry has a record, with the hit group of its
+// shader ID.
+RayPipelineSource hitShaderSource(const Package& package, std::span<const std::uint32_t> shaderIds) {
+    RayPipelineSource source;
+    source.rayGeneration = {rayWords(package, ModuleRole::HitTrace)};
+    // The miss indices are those of rays in the list and of shadow rays, in this order.
+    source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
+    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    std::map<std::uint32_t, std::uint32_t> groups;  // by shader ID; retired ones have none
+    std::map<const std::uint32_t*, std::uint32_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, ModuleRole::HitCase, shaderId);
+        if (words.empty()) {
+            continue;
+        }
+        const auto [known, fresh] =
+            byWords.emplace(words.data(), static_cast<std::uint32_t>(source.closestHit.size()));
+        if (fresh) {
+            source.closestHit.push_back(words);
+        }
+        groups[shaderId] = known->second;
+    }
+    const auto unknown = static_cast<std::uint32_t>(source.closestHit.size());
+    source.closestHit.push_back(rayWords(package, ModuleRole::HitUnknown));
+    for (const std::uint32_t shaderId : shaderIds) {
+        const auto group = groups.find(shaderId);
+        source.hitRecords.push_back(group != groups.end() ? group->second : unknown);
+    }
+    return source;
+}
+
+// Plans the cases that trace their own shadow rays. They share one pipeline, which has a ray generation
+// shader for each distinct module.
+RayPass planCases(const Package& package) {
+    RayPass pass;
+    pass.name = std::string(package::roleName(ModuleRole::ShadeCase));
+    pass.role = ModuleRole::ShadeCase;
+    std::vector<SpirvWords> shaders;
+    std::map<const std::uint32_t*, std::size_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
+        if (words.empty()) {
+            continue;
+        }
+        const auto [known, fresh] = byWords.emplace(words.data(), shaders.size());
+        if (fresh) {
+            shaders.push_back(words);
+        }
+        pass.shaderOfCase[shaderId] = known->second;
+    }
+    pass.source = tracingSource(package, std::move(shaders));
+    return pass;
+}
+
+}  // namespace
+
+std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
+                                   std::span<const std::uint32_t> shaderIds) {
+    std::vector<RayPass> passes;
+    bool tracesInCases = false;
+    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
+        const package::ShaderKind kind = package::findRole(key.role)->kind;
+        const bool generatesRays =
+            kind == package::ShaderKind::Tracing || kind == package::ShaderKind::RayGeneration;
+        if (key.tracer != package::kTracerRayPipeline || !generatesRays) {
+            continue;
+        }
+        if (key.role == ModuleRole::ShadeCase) {
+            tracesInCases = true;
+            continue;
+        }
+        RayPass pass;
+        pass.name = pipelineName(package, key);
+        pass.role = key.role;
+        pass.source = key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
+                                                       : tracingSource(package, {package.spirv(key)});
+        passes.push_back(std::move(pass));
+    }
+    if (tracesInCases) {
+        RayPass cases = planCases(package);
+        if (!cases.source.rayGeneration.empty()) {
+            passes.push_back(std::move(cases));
+        }
+    }
+    return passes;
+}
+
+std::size_t wordCount(const RayPipelineSource& source) {
+    std::size_t count = source.anyHit.size();
+    for (const auto* const stages : {&source.rayGeneration, &source.miss, &source.closestHit}) {
+        for (const SpirvWords words : *stages) {
+            count += words.size();
+        }
+    }
+    return count;
+}
+
+Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
+                  Pipelines& pipelines) {
+    Result<ShaderBindingTable> table = createTable(context, pipelines.pool, pipeline, pass.source);
+    if (!table) {
+        return table.error();
+    }
+    const auto passOf = [&](std::size_t shader) {
+        return PassPipeline{pipeline, true, table->rayGeneration[shader], table->miss, table->hit};
+    };
+    if (pass.role == ModuleRole::ShadeCase) {
+        pipelines.cases.resize(package.caseCount());
+        for (const auto& [shaderId, shader] : pass.shaderOfCase) {
+            pipelines.cases[shaderId] = passOf(shader);
+        }
+    } else {
+        pipelines.passes[pass.role] = passOf(0);
+    }
+    pipelines.tables.push_back(std::move(table->buffer));
+    return okStatus();
+}
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// The passes that a ray tracing pipeline runs.
+#pragma once
+
+#include "renderer/pipelines.h"
+#include "renderer/ray_pipelines.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// The parts of a ray tracing pipeline, and the pass that it serves.
+struct RayPass {
+    std::string name;  // for reports
+    package::ModuleRole role{};
+    RayPipelineSource source;
+    // For cases, which share a pipeline: the source's ray generation shader by shader ID. Retired shader IDs
+    // have none.
+    std::map<std::uint32_t, std::size_t> shaderOfCase;
+};
+
+// Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.
+// The sources point into the package.
+std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
+                                   std::span<const std::uint32_t> shaderIds);
+
+// Returns the number of SPIR-V words of all stages.
+std::size_t wordCount(const RayPipelineSource& source);
+
+// Makes the shader binding table of the pass and adds the pass to `pipelines`, which must own `pipeline`.
+// Errors: those of buffers and submissions, "vulkan-call".
+Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
+                  Pipelines& pipelines);
+
+}  // namespace glint

@@ -1,0 +1,230 @@
+#include "renderer/ray_pipelines.h"
+
+#include "context/memory.h"
+#include "context/upload.h"
+#include "context/vulkan_error.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace glint {
+namespace {
+
+// Stages and groups of a pipeline that is being made. Groups are in the order of the source: ray generation,
+// miss, hit.
+struct Parts {
+    std::vector<UniqueShaderModule> modules;
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    std::vector<VkRayTracingShaderGroupCreateInfoKHR> groups;
+};
+
+// Returns the index of the new stage.
+Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits stage, SpirvWords words,
+                               Parts& parts) {
+    Result<UniqueShaderModule> module = createShaderModule(context, words);
+    if (!module) {
+        return module.error();
+    }
+    parts.stages.push_back(stageOf(stage, module->get()));
+    parts.modules.push_back(std::move(*module));
+    return static_cast<std::uint32_t>(parts.stages.size() - 1);
+}
+
+VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR type) {
+    VkRayTracingShaderGroupCreateInfoKHR group{};
+    group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
+    group.type = type;
+    group.generalShader = VK_SHADER_UNUSED_KHR;
+    group.closestHitShader = VK_SHADER_UNUSED_KHR;
+    group.anyHitShader = VK_SHADER_UNUSED_KHR;
+    group.intersectionShader = VK_SHADER_UNUSED_KHR;
+    return group;
+}
+
+Status addGeneral(Context::State& context, VkShaderStageFlagBits stage,
+                  const std::vector<SpirvWords>& shaders, Parts& parts) {
+    for (const SpirvWords words : shaders) {
+        Result<std::uint32_t> index = addStage(context, stage, words, parts);
+        if (!index) {
+            return index.error();
+        }
+        VkRayTracingShaderGroupCreateInfoKHR group = emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR);
+        group.generalShader = *index;
+        parts.groups.push_back(group);
+    }
+    return okStatus();
+}
+
+Status addHitGroups(Context::State& context, const RayPipelineSource& source, Parts& parts) {
+    std::uint32_t anyHit = VK_SHADER_UNUSED_KHR;
+    if (!source.anyHit.empty()) {
+        Result<std::uint32_t> index =
+            addStage(context, VK_SHADER_STAGE_ANY_HIT_BIT_KHR, source.anyHit, parts);
+        if (!index) {
+            return index.error();
+        }
+        anyHit = *index;
+    }
+    for (const SpirvWords words : source.closestHit) {
+        Result<std::uint32_t> index = addStage(context, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, words, parts);
+        if (!index) {
+            return index.error();
+        }
+        VkRayTracingShaderGroupCreateInfoKHR group =
+            emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR);
+        group.closestHitShader = *index;
+        group.anyHitShader = anyHit;
+        parts.groups.push_back(group);
+    }
+    return okStatus();
+}
+
+Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source) {
+    Parts parts;
+    if (Status status = addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, source.rayGeneration, parts);
+        !status) {
+        return status.error();
+    }
+    if (Status status = addGeneral(context, VK_SHADER_STAGE_MISS_BIT_KHR, source.miss, parts); !status) {
+        return status.error();
+    }
+    if (Status status = addHitGroups(context, source, parts); !status) {
+        return status.error();
+    }
+    return parts;
+}
+
+// The offsets of a table's records from its start.
+struct TableLayout {
+    // By the limits of the specification, handles have 32 bytes, alignments are at most 32 and 64, and the
+    // largest stride is at least 4096. No stride is therefore above the device's limit.
+    VkDeviceSize handleBytes = 0;
+    VkDeviceSize stride = 0;               // stride of miss and hit records
+    VkDeviceSize rayGenerationStride = 0;  // each record begins a region
+    VkDeviceSize missOffset = 0;
+    VkDeviceSize hitOffset = 0;
+    VkDeviceSize bytes = 0;
+};
+
+TableLayout layOutTable(const Context::State& context, const RayPipelineSource& source) {
+    const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& limits = context.limits.rayPipeline;
+    TableLayout layout;
+    layout.handleBytes = limits.shaderGroupHandleSize;
+    layout.stride = alignUp(layout.handleBytes, limits.shaderGroupHandleAlignment);
+    layout.rayGenerationStride = alignUp(layout.stride, limits.shaderGroupBaseAlignment);
+    layout.missOffset = layout.rayGenerationStride * source.rayGeneration.size();
+    layout.hitOffset =
+        alignUp(layout.missOffset + layout.stride * source.miss.size(), limits.shaderGroupBaseAlignment);
+    layout.bytes = layout.hitOffset + layout.stride * std::max<std::size_t>(source.hitRecords.size(), 1);
+    return layout;
+}
+
+// Returns the table's bytes, made from the handles of all groups.
+std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const TableLayout& layout,
+                                    const std::vector<std::uint8_t>& handles) {
+    std::vector<std::uint8_t> bytes(layout.bytes);
+    const auto put = [&](VkDeviceSize offset, std::size_t group) {
+        std::memcpy(bytes.data() + offset, handles.data() + group * layout.handleBytes, layout.handleBytes);
+    };
+    const std::size_t firstMiss = source.rayGeneration.size();
+    const std::size_t firstHit = firstMiss + source.miss.size();
+    for (std::size_t i = 0; i < source.rayGeneration.size(); ++i) {
+        put(i * layout.rayGenerationStride, i);
+    }
+    for (std::size_t i = 0; i < source.miss.size(); ++i) {
+        put(layout.missOffset + i * layout.stride, firstMiss + i);
+    }
+    put(layout.hitOffset, firstHit);
+    for (std::size_t i = 0; i < source.hitRecords.size(); ++i) {
+        put(layout.hitOffset + i * layout.stride, firstHit + source.hitRecords[i]);
+    }
+    return bytes;
+}
+
+Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeline pipeline,
+                                               std::size_t groupCount) {
+    std::vector<std::uint8_t> handles(groupCount * context.limits.rayPipeline.shaderGroupHandleSize);
+    const VkResult result = context.vk.GetRayTracingShaderGroupHandlesKHR(
+        context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount), handles.size(),
+        handles.data());
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkGetRayTracingShaderGroupHandlesKHR", result);
+    }
+    return handles;
+}
+
+}  // namespace
+
+Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
+                                         const RayPipelineSource& source, PipelineCreation& creation) {
+    Result<Parts> parts = makeParts(context, source);
+    if (!parts) {
+        return parts.error();
+    }
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    VkRayTracingPipelineCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
+    info.pNext = &feedback;
+    info.flags = creation.flags;
+    info.stageCount = static_cast<std::uint32_t>(parts->stages.size());
+    info.pStages = parts->stages.data();
+    info.groupCount = static_cast<std::uint32_t>(parts->groups.size());
+    info.pGroups = parts->groups.data();
+    info.maxPipelineRayRecursionDepth = 1;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateRayTracingPipelinesKHR(
+        context.handles.device, VK_NULL_HANDLE, context.pipelineCache, 1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateRayTracingPipelinesKHR", result);
+    }
+    return UniquePipeline(context, pipeline);
+}
+
+Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
+                                       const RayPipelineSource& source) {
+    const std::size_t groupCount =
+        source.rayGeneration.size() + source.miss.size() + source.closestHit.size();
+    Result<std::vector<std::uint8_t>> handles = groupHandles(context, pipeline, groupCount);
+    if (!handles) {
+        return handles.error();
+    }
+    const TableLayout layout = layOutTable(context, source);
+    const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
+    // Vulkan does not guarantee this alignment for the buffer itself.
+    Result<Buffer> buffer =
+        createBuffer(context, pool, layout.bytes + alignment,
+                     VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    ShaderBindingTable table;
+    table.buffer = std::move(*buffer);
+    const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    const std::vector<std::uint8_t> bytes = fillTable(source, layout, *handles);
+    if (Status status = (*uploader)->copyToBuffer(bytes, table.buffer, start - table.buffer.address);
+        !status) {
+        return status.error();
+    }
+    if (Status status = (*uploader)->finish(); !status) {
+        return status.error();
+    }
+    for (std::size_t i = 0; i < source.rayGeneration.size(); ++i) {
+        table.rayGeneration.push_back(
+            {start + i * layout.rayGenerationStride, layout.rayGenerationStride, layout.rayGenerationStride});
+    }
+    table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};
+    table.hit = {start + layout.hitOffset, layout.stride, layout.bytes - layout.hitOffset};
+    if (source.hitRecords.empty()) {
+        // Instances have record offsets. With a stride of 0 all of them use the only record.
+        table.hit.stride = 0;
+    }
+    return table;
+}
+
+}  // namespace glint

@@ -1,0 +1,147 @@
+#include "renderer/renderer_choice.h"
+
+#include "renderer/tile_sort.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+namespace glint {
+namespace {
+
+std::string modulesFor(package::Strategy strategy) {
+    return "the package has no modules for the strategy " + std::string(nameOf(strategy));
+}
+
+Diagnostic notOne(const char* option) {
+    return makeError("renderer-options", "",
+                     std::string("RendererOptions::") + option + " is not one of its values", "choose one");
+}
+
+Result<package::Tracer> chooseTracer(const Context::State& context, const Package& package,
+                                     const RendererOptions& options) {
+    const std::uint32_t compiled = package::tracersOf(options.strategy, package.shape().tracers);
+    if (options.tracer) {
+        const package::Tracer tracer = *options.tracer;
+        if (tracer != package::kTracerRayQuery && tracer != package::kTracerRayPipeline) {
+            return notOne("tracer");
+        }
+        if ((compiled & tracer) == 0) {
+            return makeError("package-tracer", "",
+                             modulesFor(options.strategy) + " with the tracer " + std::string(nameOf(tracer)),
+                             "compile the package with that --tracer, or render with the one that it has");
+        }
+        if ((context.handles.tracers & tracer) == 0) {
+            return makeError("device-tracer", "",
+                             "the device lacks the tracer " + std::string(nameOf(tracer)),
+                             "use another device or the other tracer");
+        }
+        return tracer;
+    }
+    for (const package::Tracer tracer : package::kTracers) {
+        if ((compiled & context.handles.tracers & tracer) != 0) {
+            return tracer;
+        }
+    }
+    return makeError("device-tracer", "",
+                     "the device lacks the tracer that the package has for the strategy " +
+                         std::string(nameOf(options.strategy)),
+                     "compile the package with --tracer all");
+}
+
+// The choice follows measurements: docs/performance.md, "Ordering". On a CPU an atomic costs little more than
+// the work that would save one. On a GPU hits of one bucket wait for each other in memory, unless their
+// workgroup or subgroup adds them up first.
+package::Ordering orderingFor(const DeviceLimits& limits, std::uint32_t bucketCount) {
+    if (limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+        return package::Ordering::GlobalAtomics;
+    }
+    if (bucketCount > gpu::kMaxLocalBuckets) {
+        return package::Ordering::WaveBallot;
+    }
+    return sortsTiles(limits) ? package::Ordering::TileSort : package::Ordering::LocalHistogram;
+}
+
+bool isLocal(package::Ordering ordering) {
+    return ordering == package::Ordering::LocalHistogram || ordering == package::Ordering::TileSort;
+}
+
+Status checkOrdering(const DeviceLimits& limits, package::Ordering ordering, std::uint32_t bucketCount) {
+    if (ordering >= package::Ordering::Count) {
+        return notOne("ordering");
+    }
+    const std::string name(nameOf(ordering));
+    if (isLocal(ordering) && bucketCount > gpu::kMaxLocalBuckets) {
+        return makeError("renderer-options", "",
+                         "the ordering " + name + " holds " + std::to_string(gpu::kMaxLocalBuckets) +
+                             " buckets, the package has " + std::to_string(bucketCount),
+                         "use another ordering, or merge cases");
+    }
+    if (ordering == package::Ordering::TileSort && !sortsTiles(limits)) {
+        return makeError("renderer-options", "",
+                         "the ordering " + name + " takes " + std::to_string(gpu::kTileSharedBytes) +
+                             " bytes of shared memory, workgroups of " + std::to_string(gpu::kTileThreads) +
+                             " threads and subgroups of 4 to 64 that shuffle; the device has " +
+                             std::to_string(limits.core.maxComputeSharedMemorySize) + ", " +
+                             std::to_string(limits.core.maxComputeWorkGroupInvocations) + " and " +
+                             std::to_string(limits.subgroupSize),
+                         "use another ordering");
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount) {
+    return orderingFor(context.state().limits, bucketCount);
+}
+
+Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
+                                       const RendererOptions& options) {
+    const std::uint32_t strategy = options.strategy;
+    if (!std::has_single_bit(strategy) || strategy > package::kAllStrategies) {
+        return notOne("strategy");
+    }
+    if (!package.supports(options.strategy)) {
+        return makeError("package-strategy", "", modulesFor(options.strategy),
+                         "compile the package with that --strategy, or render with the one that it has");
+    }
+    Result<package::Tracer> tracer = chooseTracer(context, package, options);
+    if (!tracer) {
+        return tracer.error();
+    }
+    PipelineChoice choice;
+    choice.strategy = options.strategy;
+    choice.tracer = *tracer;
+    choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
+    choice.checksOrder = options.checkOrder;
+    choice.batchEffects = options.batchEffects;
+    if (Status status = checkOrdering(context.limits, choice.ordering, package.bucketCount()); !status) {
+        return status.error();
+    }
+    return choice;
+}
+
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options) {
+    FrameSize size;
+    size.width = options.width;
+    size.height = options.height;
+    size.bucketCount = package.bucketCount();
+    size.effects = package.shape().effects;
+    size.sampleCount = package::rayEffectCount(size.effects);
+    size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
+    size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
+    size.checksOrder = size.ordered && choice.checksOrder;
+    size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
+    size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
+                                                                            : sizeof(gpu::HitRecord);
+    // This agrees with hit/bucket_key.glsl.
+    size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
+    size.environmentMap = package.environmentMap();
+    size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&
+                           package.shape().shadows == package::ShadowPlacement::Deferred;
+    size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
+    return size;
+}
+
+}  // namespace glint

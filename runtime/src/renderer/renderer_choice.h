@@ -1,0 +1,19 @@
+// Chooses what a renderer runs from its options, its package and the device.
+#pragma once
+
+#include "renderer/frame_resources.h"
+#include "renderer/pipelines.h"
+
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+namespace glint {
+
+// Errors: "renderer-options" (not exactly one strategy, tracer or ordering), "package-strategy" and
+// "package-tracer" (the package lacks it), "device-tracer" and "device-ordering" (the device lacks it).
+Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
+                                       const RendererOptions& options);
+
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options);
+
+}  // namespace glint

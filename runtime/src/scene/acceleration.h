@@ -1,0 +1,84 @@
+// Functions that build acceleration structures.
+#pragma once
+
+#include "context/memory.h"
+#include "context/resources.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// Members are destroyed in reverse order: the structure before its buffer.
+struct AccelerationStructure {
+    Buffer buffer;
+    UniqueAccelerationStructure handle;
+    VkDeviceAddress address = 0;
+};
+
+// One geometry of a BLAS: a triangle list in device buffers.
+struct BlasGeometry {
+    VkDeviceAddress positions = 0;  // three floats each
+    VkDeviceAddress indices = 0;
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;  // must not be 0
+    bool opaque = true;
+};
+
+// The most that one BLAS may hold.
+struct BlasCapacity {
+    std::uint64_t triangles = 0;
+    std::uint64_t geometries = 0;
+};
+
+struct BlasInput {
+    std::vector<BlasGeometry> geometries;  // not empty; within blasCapacity()
+    bool dataAccess = false;               // shaders read the positions of hit triangles from this BLAS
+    bool updatable = false;                // built fast and refitted; not compacted
+};
+
+// Returns what one BLAS of this device may hold. It follows from the device's limits; also, no structure and
+// no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage buffers.
+BlasCapacity blasCapacity(const Context::State& context);
+
+struct BlasStatistics {
+    std::uint64_t bytes = 0;
+    std::uint64_t uncompactedBytes = 0;
+    double buildMs = 0.0;
+};
+
+// Builds and compacts all inputs and waits for the device. It works in batches that bound scratch and
+// transient memory. `pool` must outlive the result. Errors: those of buffers and submissions.
+Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
+                                                       std::span<const BlasInput> inputs,
+                                                       BlasStatistics& statistics);
+
+// Builds a TLAS and waits for the device. `instances` may be empty. Error "tlas-limit".
+Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
+                                        std::span<const VkAccelerationStructureInstanceKHR> instances,
+                                        double& buildMs);
+
+// A top level in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only.
+// `info` points at `geometry`, so it must be set again after a move.
+struct TlasBuild {
+    VkAccelerationStructureGeometryKHR geometry{};
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+};
+// Fills `build`. Error "tlas-limit".
+Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
+                    bool updatable, TlasBuild& build);
+
+// Creates a structure of `bytes` that is not built yet, for bottom and top levels.
+Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                              VkAccelerationStructureTypeKHR type);
+// A scratch buffer. `address` has the alignment that the device asks for.
+struct Scratch {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+};
+Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
+
+}  // namespace glint

@@ -1,0 +1,260 @@
+#include "scene/geometry.h"
+
+#include "scene/instance_math.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace glint {
+namespace {
+
+// Vectors of four floats get an alignment of their size, which suits every device.
+constexpr VkDeviceSize kAttributeAlignment = 16;
+constexpr VkDeviceSize kTriangleIndexBytes = 3 * sizeof(std::uint32_t);
+// Custom indices have 24 bits.
+constexpr std::size_t kMaxGeometries = std::size_t{1} << 24;
+
+struct AttributeUpload {
+    std::span<const std::uint8_t> bytes;
+    VkDeviceAddress GpuPrimitive::*address;
+    VkDeviceSize offset = 0;
+};
+
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+    return {{bytesOf(indices), &GpuPrimitive::indices},
+            {bytesOf(view.positions), &GpuPrimitive::positions},
+            {bytesOf(view.normals), &GpuPrimitive::normals},
+            {bytesOf(view.tangents), &GpuPrimitive::tangents},
+            {bytesOf(view.texCoords0), &GpuPrimitive::texCoords0},
+            {bytesOf(view.texCoords1), &GpuPrimitive::texCoords1},
+            {bytesOf(view.colors), &GpuPrimitive::colors}};
+}
+
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+    GpuPrimitive primitive;
+    primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
+    primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
+    if (primitive.triangleCount == 0) {
+        return primitive;
+    }
+    std::vector<AttributeUpload> attributes = attributesOf(view, indices);
+    VkDeviceSize bytes = 0;
+    for (AttributeUpload& attribute : attributes) {
+        attribute.offset = bytes;
+        bytes +=
+            (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
+    }
+    // The addresses of a buffer are aligned for its usage only. The slack aligns them for attributes too.
+    Result<Buffer> buffer =
+        createBuffer(context, pool, bytes + kAttributeAlignment,
+                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    const VkDeviceSize slack =
+        (kAttributeAlignment - buffer->address % kAttributeAlignment) % kAttributeAlignment;
+    for (const AttributeUpload& attribute : attributes) {
+        if (attribute.bytes.empty()) {
+            continue;
+        }
+        const VkDeviceSize offset = slack + attribute.offset;
+        primitive.*attribute.address = buffer->address + offset;
+        if (Status status = uploader.copyToBuffer(attribute.bytes, *buffer, offset); !status) {
+            return status.error();
+        }
+    }
+    primitive.buffer = std::move(*buffer);
+    return primitive;
+}
+
+gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
+                                       std::uint32_t firstTriangle, std::uint32_t instance) {
+    gpu::GeometryRecord record{};
+    record.shaderId = entry.shaderId;
+    record.materialIndex = entry.materialIndex;
+    record.featureLobes = entry.featureLobes;
+    record.featureInputs = entry.featureInputs;
+    record.instanceIndex = instance;
+    record.flags = entry.geometryFlags;
+    record.indices = primitive.indices + firstTriangle * kTriangleIndexBytes;
+    record.positions = primitive.positions;
+    record.normals = primitive.normals;
+    record.tangents = primitive.tangents;
+    record.texCoords0 = primitive.texCoords0;
+    record.texCoords1 = primitive.texCoords1;
+    record.colors = primitive.colors;
+    return record;
+}
+
+// The parts of each mesh that has triangles, as indices into SceneLayout::parts.
+using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+
+// Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
+void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
+                  std::vector<std::vector<TriangleRange>>& ranges) {
+    const auto room = [&]() -> std::uint64_t {
+        if (ranges.empty() || ranges.back().size() >= capacity.geometries) {
+            return 0;
+        }
+        std::uint64_t held = 0;
+        for (const TriangleRange& range : ranges.back()) {
+            held += range.count;
+        }
+        return capacity.triangles - held;
+    };
+    for (std::uint32_t first = 0; first < triangleCount;) {
+        // A primitive that fits into one part is not split.
+        if (room() < std::min<std::uint64_t>(triangleCount - first, capacity.triangles)) {
+            ranges.emplace_back();
+        }
+        const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(triangleCount - first, room()));
+        ranges.back().push_back({primitive, first, count});
+        first += count;
+    }
+}
+
+// Appends the parts of a mesh and returns their indices. If `instance` is given, it alone uses these parts.
+std::vector<std::uint32_t> partition(const PackageScene& known, const SceneView& scene,
+                                     std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                     std::uint32_t mesh, std::optional<std::uint32_t> instance,
+                                     std::vector<MeshPart>& parts) {
+    std::map<bool, std::vector<std::vector<TriangleRange>>> members;
+    const PrimitiveRange own = primitivesOf(scene.primitives, mesh);
+    for (std::uint32_t i = own.first; i < own.end; ++i) {
+        const PrimitiveView& view = scene.primitives[i];
+        if (primitives[i].triangleCount > 0) {
+            const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+            appendRanges(i, primitives[i].triangleCount, capacity,
+                         members[(flags & gpu::kGeometryDoubleSided) != 0]);
+        }
+    }
+    std::vector<std::uint32_t> indices;
+    for (auto& [doubleSided, blases] : members) {
+        for (std::vector<TriangleRange>& ranges : blases) {
+            indices.push_back(static_cast<std::uint32_t>(parts.size()));
+            parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+        }
+    }
+    return indices;
+}
+
+// Makes the parts that instances share. A mesh gets such parts unless all its instances deform it.
+PartsOfMesh sharedParts(const PackageScene& known, const SceneView& scene,
+                        std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                        const std::vector<bool>& deforms, std::vector<MeshPart>& parts) {
+    std::set<std::uint32_t> meshes;
+    for (const PrimitiveView& view : scene.primitives) {
+        meshes.insert(view.mesh);
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (deforms[i]) {
+            meshes.erase(scene.instances[i].mesh);
+        }
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (!deforms[i]) {
+            meshes.insert(scene.instances[i].mesh);
+        }
+    }
+    PartsOfMesh partsOfMesh;
+    for (const std::uint32_t mesh : meshes) {
+        std::vector<std::uint32_t> indices =
+            partition(known, scene, primitives, capacity, mesh, std::nullopt, parts);
+        if (!indices.empty()) {
+            partsOfMesh[mesh] = std::move(indices);
+        }
+    }
+    return partsOfMesh;
+}
+
+void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, std::uint32_t primitive,
+                   gpu::GeometryRecord& record) {
+    if (const auto found = deformed.find({instance, primitive}); found != deformed.end()) {
+        record.positions = found->second.positions;
+        record.normals = found->second.normals;
+        record.tangents = found->second.tangents;
+    }
+}
+
+}  // namespace
+
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const std::vector<std::uint32_t>> ordered) {
+    std::vector<GpuPrimitive> uploaded;
+    uploaded.reserve(primitives.size());
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const PrimitiveView& view = primitives[i];
+        const std::span<const std::uint32_t> indices = ordered.empty() ? view.indices : std::span(ordered[i]);
+        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view, indices);
+        if (!primitive) {
+            return primitive.error();
+        }
+        uploaded.push_back(std::move(*primitive));
+    }
+    return uploaded;
+}
+
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
+    const auto first = std::ranges::lower_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    const auto end = std::ranges::upper_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    return {static_cast<std::uint32_t>(first - primitives.begin()),
+            static_cast<std::uint32_t>(end - primitives.begin())};
+}
+
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed) {
+    SceneLayout layout;
+    std::vector<bool> deforms(scene.instances.size());
+    for (const auto& [place, vertices] : deformed) {
+        deforms[place.first] = true;
+    }
+    const PartsOfMesh partsOfMesh = sharedParts(known, scene, primitives, capacity, deforms, layout.parts);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const InstanceView& instance = scene.instances[i];
+        const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
+        layout.instances.push_back(record);
+        std::vector<std::uint32_t> parts;
+        if (deforms[i]) {
+            parts = partition(known, scene, primitives, capacity, instance.mesh, i, layout.parts);
+        } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
+            parts = shared->second;
+        }
+        // An instance that is not visible is left out. A flattened one can't be in a TLAS, whose transforms
+        // must be invertible. It is not drawn either: a surface that the camera sees and reflections don't
+        // would be worse than none. In a scene that moves, such an instance keeps its place but is hidden,
+        // because it may be whole again in the next frame.
+        const bool hidden = !instance.visible || !isInvertible(instance.objectToWorld);
+        if (hidden && !scene.moves) {
+            continue;
+        }
+        for (const std::uint32_t part : parts) {
+            layout.partInstances.push_back({part, i, static_cast<std::uint32_t>(layout.geometries.size())});
+            for (const TriangleRange& range : layout.parts[part].ranges) {
+                const PrimitiveView& view = scene.primitives[range.primitive];
+                const GpuPrimitive& primitive = primitives[range.primitive];
+                const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
+                layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
+                                        layout.parts[part].doubleSided,
+                                        (record.flags & gpu::kInstanceMirrored) != 0, i, hidden,
+                                        range.primitive});
+                layout.geometries.push_back(makeGeometryRecord(entry, primitive, range.first, i));
+                placeDeformed(deformed, i, range.primitive, layout.geometries.back());
+                layout.triangles += range.count;
+            }
+        }
+        if (layout.geometries.size() > kMaxGeometries) {
+            return makeError("scene-geometries", "instance " + std::to_string(i),
+                             "the scene's instances have more than 2^24 primitives altogether",
+                             "join primitives of a material, or use fewer instances");
+        }
+    }
+    return layout;
+}
+
+}  // namespace glint

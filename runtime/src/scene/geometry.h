@@ -1,0 +1,110 @@
+// Vertex data on the device, and its partition into acceleration structures.
+#pragma once
+
+#include "context/resources.h"
+#include "context/upload.h"
+#include "interop/scene.h"
+#include "scene/acceleration.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+// A primitive's attributes in one buffer. The address of an attribute that it lacks is 0.
+struct GpuPrimitive {
+    Buffer buffer;
+    VkDeviceAddress indices = 0;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+    VkDeviceAddress texCoords0 = 0;
+    VkDeviceAddress texCoords1 = 0;
+    VkDeviceAddress colors = 0;
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;
+};
+
+// Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
+// each primitive in another order of its triangles; if it is empty, the primitives' own indices are used.
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const std::vector<std::uint32_t>> ordered = {});
+
+// The deformed vertices of one primitive of one instance. The address of an attribute that it lacks is 0.
+struct DeformedVertices {
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+};
+// Keyed by indices into SceneView::instances and SceneView::primitives. An instance that is in the map has
+// its own parts.
+using DeformedAddresses = std::map<std::pair<std::uint32_t, std::uint32_t>, DeformedVertices>;
+
+// Consecutive triangles of a primitive, which form a geometry of a BLAS.
+struct TriangleRange {
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+// The triangles of a mesh that are seen from one side, or those seen from both sides. A part is one BLAS,
+// because culling is a property of the BLAS's instances. A mesh above the capacity of a BLAS has several
+// parts of a kind. Primitives without triangles are in no part.
+struct MeshPart {
+    std::uint32_t mesh = 0;
+    bool doubleSided = false;
+    std::vector<TriangleRange> ranges;
+    std::optional<std::uint32_t> instance{};  // the only instance that uses the part, as it deforms the mesh
+};
+
+// A part placed in the world, which is an instance of the TLAS.
+struct PartInstance {
+    std::uint32_t part = 0;
+    std::uint32_t instance = 0;     // index into SceneView::instances
+    std::uint32_t customIndex = 0;  // index of its first geometry record
+};
+
+// A draw of the raster pass. It shows one geometry record.
+struct Draw {
+    std::uint32_t geometry = 0;  // GeometryRecord index
+    std::uint32_t vertexCount = 0;
+    bool doubleSided = false;
+    bool mirrored = false;
+    std::uint32_t instance = 0;   // index into SceneView::instances
+    bool hidden = false;          // the instance is flattened or not visible at present
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
+};
+
+// The primitives of a mesh, as indices [first, end). The primitives are sorted as SceneView::primitives are.
+struct PrimitiveRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
+
+struct SceneLayout {
+    std::vector<MeshPart> parts;  // in the order of meshes; single-sided parts first
+    std::vector<PartInstance> partInstances;
+    std::vector<Draw> draws;  // one for each geometry record
+    std::vector<gpu::GeometryRecord> geometries;
+    std::vector<gpu::InstanceRecord> instances;  // one for each instance of the scene
+    std::uint64_t triangles = 0;                 // of all instances
+};
+
+// Pure. `primitives` are those of uploadPrimitives(). The capacity must be at least one triangle. Error
+// "scene-geometries": there are more records than the 24 bits of a custom index can number.
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed = {});
+
+}  // namespace glint

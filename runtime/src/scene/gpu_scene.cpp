@@ -1,0 +1,330 @@
+// GpuScene: the steps of an upload.
+#include "renderer/pass_dependencies.h"
+#include "scene/gpu_scene_state.h"
+#include "scene/instance_math.h"
+#include "scene/scene_checks.h"
+#include "scene/textures.h"
+#include "scene/traversal_order.h"
+
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+namespace glint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+// Uploads an array of records that shaders reach by address. The buffer is never empty, so that its address
+// is valid.
+template <typename T>
+Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
+    Result<Buffer> buffer =
+        createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    target = std::move(*buffer);
+    return uploader.copyToBuffer(bytesOf(records), target);
+}
+
+// Makes `deformer` if an instance changes its shape.
+Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
+                  std::unique_ptr<Deformer>& deformer) {
+    const PackageScene known = package.scene(scene.packageScene);
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    BlasCapacity capacity = blasCapacity(state.context);
+    std::vector<std::vector<std::uint32_t>> ordered;
+    const LeafOrder leafOrder = leafOrderFor(state.context, scene.traversalOrder);
+    if (leafOrder != nullptr) {
+        const Clock::time_point begin = Clock::now();
+        capacity = orderedCapacity(capacity);
+        ordered = orderedTriangles(scene.primitives, capacity, leafOrder);
+        state.statistics.orderMs = millisecondsSince(begin);
+    }
+    Result<std::vector<GpuPrimitive>> primitives =
+        uploadPrimitives(state.context, state.pool, **uploader, scene.primitives, ordered);
+    if (!primitives) {
+        return primitives.error();
+    }
+    state.primitives = std::move(*primitives);
+    if (hasDeformedInstance(scene)) {
+        Result<std::unique_ptr<Deformer>> created = Deformer::create(
+            state.context, package, scene, state.primitives, **uploader, state.pool, state.deformed);
+        if (!created) {
+            return created.error();
+        }
+        deformer = std::move(*created);
+    }
+    Result<SceneLayout> laidOut =
+        layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses);
+    if (!laidOut) {
+        return laidOut.error();
+    }
+    layout = std::move(*laidOut);
+    if (leafOrder != nullptr) {
+        const Clock::time_point begin = Clock::now();
+        state.instanceOrder = std::make_unique<InstanceOrder>(scene.primitives, layout.parts, leafOrder);
+        layout.partInstances = permuted<PartInstance>(
+            layout.partInstances, state.instanceOrder->at(scene.instances, layout.partInstances));
+        state.statistics.orderMs += millisecondsSince(begin);
+    }
+    for (const gpu::GeometryRecord& geometry : layout.geometries) {
+        state.shaderIds.push_back(geometry.shaderId);
+    }
+    std::vector<gpu::LightRecord> lights;
+    for (const LightView& light : scene.lights) {
+        lights.push_back(makeLightRecord(light));
+    }
+    state.lightCount = static_cast<std::uint32_t>(lights.size());
+
+    using Geometries = std::span<const gpu::GeometryRecord>;
+    using Instances = std::span<const gpu::InstanceRecord>;
+    using Lights = std::span<const gpu::LightRecord>;
+    using Materials = std::span<const std::uint8_t>;
+    if (Status s = uploadRecords(state, **uploader, Geometries(layout.geometries), state.geometries); !s) {
+        return s;
+    }
+    if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
+        return s;
+    }
+    std::vector<std::uint8_t> materials = materialsWithSizes(state.context, known, scene.images);
+    Result<std::vector<ChangingMaterial>> changing =
+        replaceMaterials(scene.materials, known.materials, materials);
+    state.materialLayout = known.materials.part(0, 0);
+    if (!changing) {
+        return changing.error();
+    }
+    if (scene.moves) {
+        state.changing = std::move(*changing);
+    }
+    if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
+        return s;
+    }
+    if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
+        return s;
+    }
+    Result<std::vector<DeviceImage>> textures =
+        uploadTextures(state.context, state.pool, **uploader, known.textures, scene.images);
+    if (!textures) {
+        return textures.error();
+    }
+    state.textures = std::move(*textures);
+    state.statistics.narrowedTextures = countNarrowed(state.context, known.textures, scene.images);
+    return (*uploader)->finish();
+}
+
+// Computes the vertices of the scene's first pose, before structures are built from them.
+Status deformOnce(Context::State& context, const Deformer& deformer, std::size_t instances) {
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    deformer.recordPose(*commands);
+    recordDependency(context, *commands, kAllToAll);
+    deformer.recordDeform(*commands, std::vector<bool>(instances, true));
+    recordDependency(context, *commands, kAllToAll);
+    return runner->submitAndWait();
+}
+
+BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, const SceneView& scene,
+                    const MeshPart& part, bool dataAccess) {
+    BlasInput input;
+    input.dataAccess = dataAccess;
+    input.updatable = scene.moves && part.instance.has_value();
+    for (const TriangleRange& range : part.ranges) {
+        const PrimitiveView& view = scene.primitives[range.primitive];
+        const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+        const GpuPrimitive& primitive = state.primitives[range.primitive];
+        const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
+        VkDeviceAddress positions = primitive.positions;
+        if (part.instance) {
+            const auto own = state.deformed.addresses.find({*part.instance, range.primitive});
+            positions = own == state.deformed.addresses.end() ? positions : own->second.positions;
+        }
+        input.geometries.push_back({positions, indices, primitive.vertexCount, range.count,
+                                    (flags & gpu::kGeometryAlphaTested) == 0});
+    }
+    return input;
+}
+
+// Builds and compacts the bottom levels that stay as they are. createMotion() builds those that move.
+Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
+                         const SceneLayout& layout, bool dataAccess, std::vector<BlasInput>& refitted) {
+    std::vector<BlasInput> inputs;
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < layout.parts.size(); ++i) {
+        BlasInput input = makeInput(state, known, scene, layout.parts[i], dataAccess);
+        if (input.updatable) {
+            refitted.push_back(std::move(input));
+        } else {
+            parts.push_back(i);
+            inputs.push_back(std::move(input));
+        }
+    }
+    BlasStatistics statistics;
+    Result<std::vector<AccelerationStructure>> blases =
+        buildBlases(state.context, state.pool, inputs, statistics);
+    if (!blases) {
+        return blases.error();
+    }
+    state.blases = std::move(*blases);
+    state.partBlases.resize(layout.parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        state.partBlases[parts[i]] = state.blases[i].address;
+    }
+    state.statistics.blasCount = static_cast<std::uint32_t>(state.blases.size());
+    state.statistics.blasBytes = statistics.bytes;
+    state.statistics.blasUncompactedBytes = statistics.uncompactedBytes;
+    state.statistics.blasBuildMs = statistics.buildMs;
+    return okStatus();
+}
+
+Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout) {
+    std::vector<VkAccelerationStructureInstanceKHR> instances;
+    for (const PartInstance& placed : layout.partInstances) {
+        instances.push_back(makePlaced(layout.parts[placed.part].doubleSided, placed,
+                                       scene.instances[placed.instance].objectToWorld,
+                                       state.partBlases[placed.part]));
+    }
+    Result<AccelerationStructure> tlas =
+        buildTlas(state.context, state.pool, instances, state.statistics.tlasBuildMs);
+    if (!tlas) {
+        return tlas.error();
+    }
+    state.tlas = std::move(*tlas);
+    return okStatus();
+}
+
+}  // namespace
+
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+                                              const std::array<float, 12>& objectToWorld,
+                                              VkDeviceAddress blas) {
+    VkAccelerationStructureInstanceKHR instance{};
+    static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
+    std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
+    // A custom index has 24 bits and the mask 8. layOutScene() has checked that the index fits.
+    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
+    // A shader binding table that has hit records has one for each geometry record.
+    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
+    instance.mask = 0xFF;
+    // Facing is determined in object space, so that a mirroring transform changes nothing. The default agrees
+    // with glTF: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
+    instance.flags = doubleSided ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU : 0U;
+    instance.accelerationStructureReference = blas;
+    return instance;
+}
+
+Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
+                                                   const SceneView& scene) {
+    Context::State& contextState = context.state();
+    if (scene.packageScene >= package.sceneCount()) {
+        return makeError("scene-package", "",
+                         "scene " + std::to_string(scene.packageScene) +
+                             " is not in the package, which has " + std::to_string(package.sceneCount()),
+                         "find its index by Package::findScene()");
+    }
+    if (package.positionFetch() && !contextState.handles.positionFetch) {
+        return makeError(
+            "position-fetch", "",
+            "the package's shaders read positions from acceleration structures, which the device does "
+            "not allow or was not created for",
+            "create it with VK_KHR_ray_tracing_position_fetch and set DeviceHandles::positionFetch, or "
+            "compile without --position-fetch");
+    }
+    if (package.precision() == package::ShadingPrecision::Half && !contextState.handles.shaderFloat16) {
+        return makeError("half-precision", "",
+                         "the package's shaders compute in 16-bit float, which the device does not allow or "
+                         "was not created for",
+                         "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
+                         "DeviceHandles::shaderFloat16, or compile with --precision 32");
+    }
+    const PackageScene known = package.scene(scene.packageScene);
+    if (Status s = checkScene(known, scene, contextState.limits.core.maxImageDimension2D); !s) {
+        return s.error();
+    }
+    auto state = std::make_unique<State>(contextState);
+    SceneLayout layout;
+    std::unique_ptr<Deformer> deformer;
+    if (Status s = uploadData(*state, package, scene, layout, deformer); !s) {
+        return s.error();
+    }
+    if (deformer) {
+        if (Status s = deformOnce(contextState, *deformer, scene.instances.size()); !s) {
+            return s.error();
+        }
+    }
+    std::vector<BlasInput> refitted;
+    if (Status s = buildBottomLevels(*state, known, scene, layout, package.positionFetch(), refitted); !s) {
+        return s.error();
+    }
+    if (Status s = scene.moves ? createMotion(*state, scene, layout, refitted, std::move(deformer))
+                               : buildTopLevel(*state, scene, layout);
+        !s) {
+        return s.error();
+    }
+    Result<std::vector<UniqueSampler>> samplers = createSamplers(contextState, known.samplers);
+    if (!samplers) {
+        return samplers.error();
+    }
+    state->samplers = std::move(*samplers);
+    if (Status s = createSceneSet(*state); !s) {
+        return s.error();
+    }
+    state->statistics.triangles = layout.triangles;
+    state->statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
+    state->statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
+    if (!state->motion) {
+        state->batches = batchDraws(layout.draws);
+    }
+    return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
+}
+
+GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+GpuScene::~GpuScene() = default;
+
+const GpuScene::Statistics& GpuScene::statistics() const {
+    return state_->statistics;
+}
+
+Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion) {
+    return recordMotion(*state_, commands, motion);
+}
+
+Status GpuScene::updateAndWait(const MotionView& motion) {
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    if (Status s = update(*commands, motion); !s) {
+        return s;
+    }
+    return runner->submitAndWait();
+}
+
+Result<MotionStatistics> GpuScene::motion() const {
+    return readMotion(*state_);
+}
+
+GpuScene::State& GpuScene::state() {
+    return *state_;
+}
+
+}  // namespace glint

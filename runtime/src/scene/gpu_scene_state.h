@@ -1,0 +1,62 @@
+// The part of a GpuScene that the renderer sees.
+#pragma once
+
+#include "context/resources.h"
+#include "motion/scene_motion.h"
+#include "renderer/draw_batches.h"
+#include "scene/acceleration.h"
+#include "scene/geometry.h"
+#include "scene/scene_materials.h"
+#include "scene/traversal_order.h"
+
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace glint {
+
+// The number of structures that the array of set 0 has room for: the scene's, and those that a host
+// application adds.
+inline constexpr std::uint32_t kTlasCapacity = 4;
+
+// Members are destroyed in reverse order: the pool's memory last.
+struct GpuScene::State {
+    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+
+    Context::State& context;
+    MemoryPool pool;
+    std::vector<GpuPrimitive> primitives;
+    DeformedBuffers deformed;
+    std::vector<AccelerationStructure> blases;  // the BLASes that are built once
+    std::vector<VkDeviceAddress> partBlases;    // indexed as SceneLayout::parts
+    // Null if the top level has its instances in the scene's own order.
+    std::unique_ptr<InstanceOrder> instanceOrder;
+    AccelerationStructure tlas;
+    Buffer geometries;
+    std::vector<std::uint32_t> shaderIds;  // one for each geometry record
+    Buffer instances;
+    Buffer materials;
+    Buffer lights;
+    std::uint32_t lightCount = 0;
+    std::vector<DeviceImage> textures;
+    std::vector<UniqueSampler> samplers;
+    UniqueSetLayout setLayout;
+    UniqueDescriptorPool descriptorPool;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    std::vector<Draw> draws;  // empty if the scene does not move: its batches are enough
+    std::vector<DrawBatch> batches;
+    // The materials that an update may change, with their values on the device. Empty if the scene does not
+    // move.
+    std::vector<ChangingMaterial> changing;
+    MaterialTable materialLayout;  // without records
+    Statistics statistics;
+    std::unique_ptr<SceneMotion> motion;  // null if the scene does not move
+};
+
+// Creates the layout, the pool and set 0. The set is filled from the state's structures, textures and
+// samplers.
+Status createSceneSet(GpuScene::State& state);
+
+}  // namespace glint

@@ -1,0 +1,207 @@
+#include "scene/scene_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <tuple>
+
+namespace glint {
+namespace {
+
+constexpr const char* kSameScene = "compile the package from the scene that is rendered";
+
+std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
+    return "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive);
+}
+
+// An attribute span of a primitive by name, and the key bit that makes it necessary. With 0 it is always or
+// never necessary.
+struct Attribute {
+    const char* name;
+    std::size_t count;
+    std::uint32_t input;
+};
+
+std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
+    return {{{"normals", view.normals.size(), kInputNormals},
+             {"tangents", view.tangents.size(), kInputTangents},
+             {"texCoords0", view.texCoords0.size(), kInputTexCoord0},
+             {"texCoords1", view.texCoords1.size(), kInputTexCoord1},
+             {"colors", view.colors.size(), kInputVertexColor}}};
+}
+
+Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry& entry,
+                       const std::string& where) {
+    for (const Attribute& attribute : namedAttributes(view)) {
+        if (attribute.count != 0 && attribute.count != view.positions.size()) {
+            return makeError("scene-attribute", where,
+                             std::string(attribute.name) + " has " + std::to_string(attribute.count) +
+                                 " elements for " + std::to_string(view.positions.size()) + " positions",
+                             "leave the span empty or make it as long as positions");
+        }
+        const bool needed = (entry.featureInputs & attribute.input) != 0;
+        if (needed && attribute.count == 0 && !view.positions.empty()) {
+            return makeError(
+                "scene-package", where,
+                std::string("the package's key reads ") + attribute.name + ", the primitive has none",
+                kSameScene);
+        }
+    }
+    return okStatus();
+}
+
+Status checkIndices(const PrimitiveView& view, const std::string& where) {
+    constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
+    if (view.indices.size() % 3 != 0) {
+        return makeError("scene-index", where,
+                         std::to_string(view.indices.size()) + " indices are no list of triangles",
+                         "give three indices for each triangle");
+    }
+    if (view.indices.size() > kMaxCount || view.positions.size() > kMaxCount) {
+        return makeError("scene-index", where, "the primitive has more than 2^32 - 1 vertices or indices",
+                         "split the primitive");
+    }
+    const auto outside = std::ranges::find_if(
+        view.indices, [&](std::uint32_t index) { return index >= view.positions.size(); });
+    if (outside != view.indices.end()) {
+        return makeError("scene-index", where,
+                         "index " + std::to_string(outside - view.indices.begin()) + " is " +
+                             std::to_string(*outside) + ", there are " +
+                             std::to_string(view.positions.size()) + " positions",
+                         "repair the primitive's indices");
+    }
+    return okStatus();
+}
+
+std::tuple<std::uint32_t, std::uint32_t> keyOf(const PrimitiveView& view) {
+    return {view.mesh, view.primitive};
+}
+
+Status checkPrimitives(const PackageScene& known, std::span<const PrimitiveView> primitives) {
+    const PrimitiveView* previous = nullptr;
+    for (const PrimitiveView& view : primitives) {
+        const std::string where = placeOf(view.mesh, view.primitive);
+        if (previous != nullptr && keyOf(*previous) >= keyOf(view)) {
+            return makeError("scene-order", where, "the primitives are not sorted, or one is there twice",
+                             "sort them by mesh, then primitive");
+        }
+        previous = &view;
+        const package::PrimitiveEntry* entry = known.findPrimitive(view.mesh, view.primitive);
+        if (entry == nullptr) {
+            return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
+        }
+        if (Status status = checkAttributes(view, *entry, where); !status) {
+            return status;
+        }
+        if (Status status = checkIndices(view, where); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+// The scene must have every primitive that the package has for an instance's mesh.
+Status checkInstances(const PackageScene& known, const SceneView& scene) {
+    std::set<std::uint32_t> used;
+    for (const InstanceView& instance : scene.instances) {
+        used.insert(instance.mesh);
+    }
+    for (const package::PrimitiveEntry& entry : known.primitives) {
+        if (!used.contains(entry.mesh)) {
+            continue;
+        }
+        if (!std::ranges::binary_search(scene.primitives, std::tuple(entry.mesh, entry.primitive),
+                                        std::less<>{}, keyOf)) {
+            return makeError("scene-package", placeOf(entry.mesh, entry.primitive),
+                             "the scene lacks a primitive that the package knows", kSameScene);
+        }
+    }
+    return okStatus();
+}
+
+Status checkImages(const PackageScene& known, std::span<const ImageView> images, std::uint32_t maxImageSize) {
+    for (const package::TextureEntry& texture : known.textures) {
+        const std::string where = "image " + std::to_string(texture.image);
+        if (texture.image >= images.size()) {
+            return makeError(
+                "scene-package", where,
+                "the package refers to this image, the scene has " + std::to_string(images.size()),
+                kSameScene);
+        }
+        const ImageView& image = images[texture.image];
+        if (image.width == 0 || image.height == 0 || image.width > maxImageSize ||
+            image.height > maxImageSize) {
+            return makeError("scene-image", where,
+                             "the image is " + std::to_string(image.width) + " x " +
+                                 std::to_string(image.height) + " pixels, the device takes 1 to " +
+                                 std::to_string(maxImageSize),
+                             "scale the image");
+        }
+        if (image.format > ImageView::Format::Rgba16) {
+            return makeError("scene-image", where, "the image has an unknown format",
+                             "use a value of ImageView::Format");
+        }
+        const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+        if (image.levels == 0 || image.levels > most) {
+            return makeError("scene-image", where,
+                             "the image has " + std::to_string(image.levels) +
+                                 " levels, its size takes 1 to " + std::to_string(most),
+                             "give the levels that there are");
+        }
+        if (image.pixels.size() != image.byteCount(image.levels)) {
+            return makeError("scene-image", where,
+                             std::to_string(image.pixels.size()) + " bytes do not make " +
+                                 std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
+                                 " x " + std::to_string(image.height) + " RGBA pixels",
+                             "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Status checkLights(std::span<const LightView> lights) {
+    for (const LightView& light : lights) {
+        const float values[] = {
+            light.intensity[0], light.intensity[1],   light.intensity[2],   light.position[0],
+            light.position[1],  light.position[2],    light.direction[0],   light.direction[1],
+            light.direction[2], light.innerConeAngle, light.outerConeAngle, light.range,
+            light.size};
+        const bool finite = std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+        if (!finite || light.type > LightView::Type::Spot) {
+            return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
+                             "the light has a value that is not finite, or an unknown type",
+                             "repair the light");
+        }
+        const bool tooWide = light.type == LightView::Type::Directional && light.size >= 1.5707963F;
+        if (light.size < 0.0F || tooWide) {
+            return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
+                             "the size of the light is negative, or a quarter turn or more",
+                             "give a radius in metres, or an angle in radians");
+        }
+    }
+    return okStatus();
+}
+
+Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize) {
+    if (Status status = checkPrimitives(known, scene.primitives); !status) {
+        return status;
+    }
+    if (Status status = checkInstances(known, scene); !status) {
+        return status;
+    }
+    if (Status status = checkImages(known, scene.images, maxImageSize); !status) {
+        return status;
+    }
+    if (Status status = checkDeformation(scene); !status) {
+        return status;
+    }
+    return checkLights(scene.lights);
+}
+
+}  // namespace glint

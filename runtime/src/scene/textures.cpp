@@ -1,0 +1,182 @@
+#include "scene/textures.h"
+
+#include "context/vulkan_error.h"
+#include "scene/material_table.h"
+#include "scene/texels.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string>
+
+namespace glint {
+namespace {
+
+// The texture of a slot that names none. White leaves a factor unchanged.
+constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
+
+Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                  const ImageView& image, bool srgb) {
+    const bool isWide = image.format == ImageView::Format::Rgba16 && context.limits.wideTextures;
+    ImageInfo info;
+    info.format = isWide ? VK_FORMAT_R16G16B16A16_UNORM
+                  : srgb ? VK_FORMAT_R8G8B8A8_SRGB
+                         : VK_FORMAT_R8G8B8A8_UNORM;
+    info.extent = {image.width, image.height};
+    info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+    info.usage =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    Result<DeviceImage> texture = createImage(context, pool, info);
+    if (!texture) {
+        return texture.error();
+    }
+    // Mips must be blitted from linear values. Blits of sRGB formats decode and encode them.
+    std::vector<std::uint8_t> converted;
+    if (image.format == ImageView::Format::Rgba16 && (srgb || !isWide)) {
+        converted = isWide ? linearizeRgba16(image.pixels) : narrowRgba16(image.pixels);
+    }
+    ImageView stored = image;
+    stored.pixels = converted.empty() ? image.pixels : converted;
+    stored.format = isWide ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8;
+    std::vector<std::span<const std::uint8_t>> mips;
+    for (std::uint32_t level = 0; level < stored.levels; ++level) {
+        const std::uint64_t start = stored.byteCount(level);
+        mips.push_back(stored.pixels.subspan(start, stored.byteCount(level + 1) - start));
+    }
+    if (Status status = uploader.copyToImage(mips, stored.bytesPerPixel(), *texture); !status) {
+        return status.error();
+    }
+    return texture;
+}
+
+VkSamplerAddressMode addressMode(std::uint32_t wrap) {
+    constexpr VkSamplerAddressMode kModes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                               VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                               VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
+    return kModes[wrap];
+}
+
+VkFilter filter(std::uint32_t linear) {
+    return linear != 0 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+}
+
+// A file that asks for nearest texels, or for no mips, gets those.
+float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry) {
+    const bool isTrilinear = entry.minification != 0 && entry.mipmapped != 0 && entry.mip != 0;
+    return isTrilinear ? context.limits.samplerAnisotropy : 1.0F;
+}
+
+Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry) {
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    info.magFilter = filter(entry.magnification);
+    info.minFilter = filter(entry.minification);
+    info.addressModeU = addressMode(entry.wrapU);
+    info.addressModeV = addressMode(entry.wrapV);
+    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    if (entry.mipmapped != 0) {
+        info.mipmapMode = entry.mip != 0 ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+        info.maxLod = VK_LOD_CLAMP_NONE;
+    } else {
+        // Only mip 0 is used. The limit is above 0, so that minification still uses its own filter
+        // (VkSamplerCreateInfo, note).
+        info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+        info.maxLod = 0.25F;
+    }
+    info.maxAnisotropy = anisotropyOf(context, entry);
+    info.anisotropyEnable = info.maxAnisotropy > 1.0F ? VK_TRUE : VK_FALSE;
+    VkSampler sampler = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateSampler(context.handles.device, &info, nullptr, &sampler);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateSampler", result);
+    }
+    return UniqueSampler(context, sampler);
+}
+
+}  // namespace
+
+Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                                std::span<const package::TextureEntry> textures,
+                                                std::span<const ImageView> images) {
+    if (textures.size() > context.limits.maxTextures) {
+        return makeError("scene-textures", "",
+                         "the scene has " + std::to_string(textures.size()) + " textures, the device takes " +
+                             std::to_string(context.limits.maxTextures),
+                         "use a smaller scene");
+    }
+    std::vector<DeviceImage> uploaded;
+    for (const package::TextureEntry& texture : textures) {
+        Result<DeviceImage> image =
+            uploadTexture(context, pool, uploader, images[texture.image], texture.srgb != 0);
+        if (!image) {
+            return image.error();
+        }
+        uploaded.push_back(std::move(*image));
+    }
+    if (uploaded.empty()) {
+        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhite}, false);
+        if (!image) {
+            return image.error();
+        }
+        uploaded.push_back(std::move(*image));
+    }
+    return uploaded;
+}
+
+std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
+                            std::span<const ImageView> images) {
+    if (context.limits.wideTextures) {
+        return 0;
+    }
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(textures, [&](const package::TextureEntry& texture) {
+            return images[texture.image].format == ImageView::Format::Rgba16;
+        }));
+}
+
+std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
+                                             std::span<const ImageView> images) {
+    std::vector<std::uint8_t> bytes(known.materials.bytes.begin(), known.materials.bytes.end());
+    const std::span<const package::TextureEntry> textures = known.textures;
+    const std::span<const package::SamplerEntry> samplers = known.samplers;
+    for (std::size_t i = 0; i < known.materials.size(); ++i) {
+        for (std::uint32_t slot = 0; slot < known.materials.textureCount; ++slot) {
+            gpu::TextureRecord record = textureAt(known.materials, i, slot);
+            if (record.textureIndex < textures.size()) {
+                const ImageView& image = images[textures[record.textureIndex].image];
+                record.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
+            }
+            record.anisotropy = record.samplerIndex < samplers.size()
+                                    ? anisotropyOf(context, samplers[record.samplerIndex])
+                                    : 1.0F;
+            std::memcpy(&bytes[placeOfTexture(known.materials, i, slot)], &record, sizeof record);
+        }
+    }
+    return bytes;
+}
+
+Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
+                                                  std::span<const package::SamplerEntry> samplers) {
+    const std::uint32_t limit =
+        std::min(context.limits.maxSamplers, context.limits.core.maxSamplerAllocationCount);
+    if (samplers.size() > limit) {
+        return makeError("scene-samplers", "",
+                         "the scene has " + std::to_string(samplers.size()) + " samplers, the device takes " +
+                             std::to_string(limit),
+                         "use fewer kinds of samplers");
+    }
+    constexpr package::SamplerEntry kDefault{0, 0, 1, 1, 1, 1};
+    const std::span<const package::SamplerEntry> wanted =
+        samplers.empty() ? std::span(&kDefault, 1) : samplers;
+    std::vector<UniqueSampler> created;
+    for (const package::SamplerEntry& entry : wanted) {
+        Result<UniqueSampler> sampler = createSampler(context, entry);
+        if (!sampler) {
+            return sampler.error();
+        }
+        created.push_back(std::move(*sampler));
+    }
+    return created;
+}
+
+}  // namespace glint

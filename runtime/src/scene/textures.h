@@ -1,0 +1,37 @@
+// Bindless textures and samplers.
+#pragma once
+
+#include "context/resources.h"
+#include "context/upload.h"
+#include "interop/scene.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// Makes one image with all mips for each TextureEntry, in their order. There is at least one image, so that
+// the array is never empty. 16-bit images become 16-bit linear textures if the device can use those. Queues
+// the copies in `uploader`. Error "scene-textures": there are more than a shader of this device can see.
+Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                                std::span<const package::TextureEntry> textures,
+                                                std::span<const ImageView> images);
+
+// Returns how many of those textures uploadTextures() narrowed from 16 bits to 8.
+std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
+                            std::span<const ImageView> images);
+
+// Returns the package's materials with the sizes of their textures and the anisotropy of their samplers,
+// which texture gradients need. A size query in a shader would be a fetch of its own, and lavapipe answers it
+// for one lane even if lanes differ in the index. Requires an image for each texture.
+std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
+                                             std::span<const ImageView> images);
+
+// Makes one sampler for each SamplerEntry, and at least one. Error "scene-samplers".
+Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
+                                                  std::span<const package::SamplerEntry> samplers);
+
+}  // namespace glint

@@ -1,0 +1,143 @@
+// Environment: the map and its levels of roughness on the device.
+#include "context/upload.h"
+#include "context/vulkan_error.h"
+#include "scene/half_float.h"
+#include "sky/environment_state.h"
+#include "sky/map_filter.h"
+#include "sky/radiance_map.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace glint {
+namespace {
+
+using Texels = std::vector<std::uint8_t>;
+
+template <typename Texel>
+Texels toBytes(const std::vector<Texel>& texels) {
+    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const Texel>(texels));
+    return {bytes.begin(), bytes.end()};
+}
+
+Texels toFloats(const RadianceMap& level) {
+    std::vector<std::array<float, 4>> texels;
+    texels.reserve(level.texels.size());
+    for (const Radiance& radiance : level.texels) {
+        texels.push_back({radiance[0], radiance[1], radiance[2], 1.0F});
+    }
+    return toBytes(texels);
+}
+
+Texels toHalves(const RadianceMap& level, float scale) {
+    std::vector<std::array<std::uint16_t, 4>> texels;
+    texels.reserve(level.texels.size());
+    for (const Radiance& radiance : level.texels) {
+        texels.push_back({toHalf(radiance[0] / scale), toHalf(radiance[1] / scale),
+                          toHalf(radiance[2] / scale), toHalf(1.0F)});
+    }
+    return toBytes(texels);
+}
+
+// Returns a power of two, so that scaling loses no digits. It is 1 unless the map is brighter than the
+// largest half float.
+float halfScale(const RadianceMap& map) {
+    float largest = 0.0F;
+    for (const Radiance& radiance : map.texels) {
+        largest = std::max({largest, radiance[0], radiance[1], radiance[2]});
+    }
+    float scale = 1.0F;
+    while (largest / scale > kMaxHalf) {
+        scale *= 2.0F;
+    }
+    return scale;
+}
+
+Status createSampler(Environment::State& state) {
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    info.magFilter = VK_FILTER_LINEAR;
+    info.minFilter = VK_FILTER_LINEAR;
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    // The map wraps around the horizon without a seam, and the poles are edges.
+    info.addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    VkSampler sampler = VK_NULL_HANDLE;
+    const VkResult result =
+        state.context.vk.CreateSampler(state.context.handles.device, &info, nullptr, &sampler);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateSampler", result);
+    }
+    state.sampler = UniqueSampler(state.context, sampler);
+    return okStatus();
+}
+
+Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& levels) {
+    const bool half = state.statistics.halfFloat;
+    state.scale = half ? halfScale(levels.front()) : 1.0F;
+    ImageInfo info;
+    info.format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+    info.extent = {levels.front().width, levels.front().height};
+    info.mips = static_cast<std::uint32_t>(levels.size());
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    Result<DeviceImage> image = createImage(state.context, state.pool, info);
+    if (!image) {
+        return image.error();
+    }
+    state.map = std::move(*image);
+    std::vector<Texels> mips;
+    mips.reserve(levels.size());
+    for (const RadianceMap& level : levels) {
+        mips.push_back(half ? toHalves(level, state.scale) : toFloats(level));
+    }
+    const std::vector<std::span<const std::uint8_t>> views(mips.begin(), mips.end());
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    if (Status status = (*uploader)->copyToImage(views, half ? 8 : 16, state.map); !status) {
+        return status;
+    }
+    return (*uploader)->finish();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image) {
+    Result<CheckedMap> checked = checkMap(image);
+    if (!checked) {
+        return checked.error();
+    }
+    auto state = std::make_shared<State>(context.state());
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    RadianceMap map = fitToDevice(std::move(checked->map));
+    state->harmonics = skyHarmonics(map);
+    const std::vector<RadianceMap> levels = filterByRoughness(std::move(map));
+    Statistics& statistics = state->statistics;
+    statistics.filterMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    statistics.width = levels.front().width;
+    statistics.height = levels.front().height;
+    statistics.levels = static_cast<std::uint32_t>(levels.size());
+    statistics.negativePixels = checked->negativePixels;
+    statistics.halfFloat = !context.state().limits.filteredFloats;
+    if (Status status = uploadLevels(*state, levels); !status) {
+        return status.error();
+    }
+    if (Status status = createSampler(*state); !status) {
+        return status.error();
+    }
+    return std::unique_ptr<Environment>(new Environment(std::move(state)));
+}
+
+Environment::Environment(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+Environment::~Environment() = default;
+
+const Environment::Statistics& Environment::statistics() const {
+    return state_->statistics;
+}
+
+}  // namespace glint

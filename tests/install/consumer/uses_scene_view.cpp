@@ -1,0 +1,42 @@
+// A program that hands a glTF scene to the runtime: the scene with its pixels, the camera, and the package,
+// which it compiles in memory. It has no device, so it stops before the upload.
+#include "gltf/import.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <cstddef>
+#include <iostream>
+
+int main(int argc, char** argv) {
+    glint::ImportOptions import;
+    import.decodeImages = true;
+    const glint::Result<glint::Scene> scene = glint::importScene(argc > 1 ? argv[1] : "", import);
+    if (!scene) {
+        std::cerr << glint::toString(scene.error()) << '\n';
+        return 1;
+    }
+    const glint::scene_view::SceneViewData data = glint::scene_view::makeSceneView(*scene);
+    const glint::SceneView view = data.view();
+    const glint::Result<glint::scene_view::CameraChoice> camera =
+        glint::scene_view::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
+    const glint::Result<glint::Package> package = glint::scene_view::compileAndLoad(*scene, {});
+    if (!camera || !package) {
+        std::cerr << glint::toString(camera ? package.error() : camera.error()) << '\n';
+        return 1;
+    }
+    const glint::Status matches = glint::scene_view::checkPackage(
+        *package, "memory", {glint::package::kStrategyUber, {}, false}, *scene);
+    if (!matches) {
+        std::cerr << glint::toString(matches.error()) << '\n';
+        return 1;
+    }
+    std::size_t triangles = 0;
+    for (const glint::PrimitiveView& primitive : view.primitives) {
+        triangles += primitive.indices.size() / 3;
+    }
+    std::cout << view.instances.size() << " instances, " << triangles << " triangles, " << view.images.size()
+              << " images, " << package->caseCount() << " cases, camera " << camera->name << '\n';
+    return 0;
+}

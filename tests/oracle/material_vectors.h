@@ -1,0 +1,14 @@
+// Parameters of materials as vectors.
+#pragma once
+
+#include "oracle/vectors.h"
+#include "plan/material.h"
+
+namespace glint::oracle {
+
+// The first three numbers of a parameter.
+inline Vec3 toVec(const ConstParameterValue& v) {
+    return {v[0], v[1], v[2]};
+}
+
+}  // namespace glint::oracle

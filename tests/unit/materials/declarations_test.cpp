@@ -1,0 +1,149 @@
+// Tests the declarations of material features: Glint's own, and what the reader refuses.
+#include "materials/declarations.h"
+
+#include "materials/declaration_files.h"
+#include "plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+
+// Glint's own declarations with one more.
+Result<MaterialModel> modelWith(const std::string& text) {
+    std::vector<DeclarationFile> files;
+    for (const BuiltinFile& file : declarationFiles()) {
+        files.push_back({file.name, file.text});
+    }
+    files.push_back({"materials/wet/wet.json", text});
+    return readDeclarations(files);
+}
+
+std::string refusal(const std::string& text) {
+    const Result<MaterialModel> model = modelWith(text);
+    EXPECT_FALSE(model.ok()) << text;
+    if (model) {
+        return {};
+    }
+    EXPECT_EQ(model.error().id, "declaration");
+    return model.error().where + ": " + model.error().message;
+}
+
+TEST(Declarations, OfGlintAreComplete) {
+    const MaterialModel& model = builtinMaterialModel();
+    EXPECT_EQ(model.features.size(), 43U);
+    EXPECT_EQ(model.order.size(), model.features.size());
+    std::set<std::string> shortNames;
+    for (const Feature& feature : model.features) {
+        EXPECT_FALSE(feature.gltf.empty()) << feature.name;
+        EXPECT_TRUE(shortNames.insert(feature.shortName).second) << feature.shortName;
+        EXPECT_TRUE(!feature.neutral.empty() || feature.stage == Stage::Base || feature.texture >= 0)
+            << feature.name;
+    }
+    for (const MaterialTexture& texture : model.textures) {
+        EXPECT_FALSE(texture.places.empty()) << texture.name;
+        EXPECT_EQ(model.features[static_cast<std::size_t>(texture.feature)].name, texture.name);
+    }
+}
+
+TEST(Declarations, DoNotDependOnTheOrderOfFiles) {
+    std::vector<DeclarationFile> files;
+    for (const BuiltinFile& file : declarationFiles()) {
+        files.push_back({file.name, file.text});
+    }
+    std::ranges::reverse(files);
+    const Result<MaterialModel> model = readDeclarations(files);
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    EXPECT_EQ(model->featureDefines(), builtinMaterialModel().featureDefines());
+    EXPECT_EQ(model->order, builtinMaterialModel().order);
+    for (std::size_t i = 0; i < model->parameters.size(); ++i) {
+        EXPECT_EQ(model->parameters[i].name, builtinMaterialModel().parameters[i].name);
+    }
+}
+
+// A user's feature is in keys like Glint's own, from one file alone.
+TEST(Declarations, OneFileAddsAFeature) {
+    const Result<MaterialModel> model = modelWith(R"({
+        "name": "wet", "extension": "EXT_wet", "stage": "layer",
+        "parameters": [{"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}],
+        "textures": [{"name": "wetTexture", "scales": ["wetness"]}],
+        "neutral": [{"when": "wetness == 0", "because": "wetness is 0"}],
+        "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})");
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    const FeatureMask wet = model->mask("wet");
+    EXPECT_NE(wet & kLobeMask, 0U);
+    EXPECT_NE(model->featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
+    Material material(*model);
+    material["metallicFactor"] = 0.0F;
+    PrimitiveInputs primitive;
+    primitive.hasTexCoords0 = true;
+    EXPECT_EQ(makeKey(material, primitive, {}) & wet, 0U);
+    EXPECT_FALSE(sendsRays(package::kEffectReflection, material, primitive, 0.3F));
+    material["wetness"] = 0.5F;
+    material.texture("wetTexture").texture = 0;
+    EXPECT_EQ(makeKey(material, primitive, {}), wet | model->mask("wetTexture") | model->mask("texCoord0"));
+    EXPECT_TRUE(sendsRays(package::kEffectReflection, material, primitive, 0.3F));
+    // Existing features keep their bits.
+    for (const Feature& feature : builtinMaterialModel().features) {
+        EXPECT_EQ(model->mask(feature.name), feature.mask()) << feature.name;
+    }
+}
+
+TEST(Declarations, SayWhatIsWrongAndWhere) {
+    const std::string file = "materials/wet/wet.json";
+    EXPECT_EQ(refusal("{"), file + ": is no JSON");
+    EXPECT_EQ(refusal("[]"), file + "#: must be an object");
+    EXPECT_EQ(refusal("{}"), file + "#: has no \"name\"");
+    EXPECT_EQ(refusal(R"({"name": "Wet", "stage": "layer"})"),
+              file + "#/name: \"Wet\" must be letters and digits that begin with a small letter");
+    EXPECT_NE(refusal(R"({"name": "sheen", "stage": "layer"})").find("is declared twice"), std::string::npos);
+    EXPECT_NE(
+        refusal(R"({"name": "wet", "stage": "layr"})").find("#/stage: there is no \"layr\"; did you mean"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal(R"({"name": "wet", "stage": "layer", "neutrl": []})").find("#/neutrl: there is no member"),
+        std::string::npos);
+    const auto withReason = [&](const std::string& when) {
+        return refusal(R"({"name": "wet", "stage": "layer", "neutral": [{"when": ")" + when +
+                       R"(", "because": "it is"}]})");
+    };
+    EXPECT_NE(withReason("wetness == 0").find("#/neutral/0/when: there is no \"wetness\""),
+              std::string::npos);
+    EXPECT_NE(withReason("metallicFactor").find("must be a condition"), std::string::npos);
+    EXPECT_NE(withReason("has(wet)").find("lead back to it"), std::string::npos);
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface", "parameters": [
+                          {"name": "wetness", "type": "float", "default": 2, "range": [0, 1]}]})")
+                  .find("#/parameters/0/default: is outside of the range"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface", "textures": [
+                          {"name": "wetTexture", "scales": ["damp"]}]})")
+                  .find("there is no parameter \"damp\""),
+              std::string::npos);
+    EXPECT_NE(refusal(std::string(2000, '[')).find("nests too deep"), std::string::npos);
+}
+
+// Damaged declarations are refused, or read; they never crash.
+TEST(Declarations, DamagedFilesAreRefusedOrRead) {
+    for (const BuiltinFile& file : declarationFiles()) {
+        const std::string text(file.text);
+        for (std::size_t place = 0; place < text.size(); place += 7) {
+            for (const char other : {'"', '0', '{', ' '}) {
+                std::string damaged = text;
+                damaged[place] = other;
+                const DeclarationFile alone{"materials/x/x.json", damaged};
+                const Result<MaterialModel> model = readDeclarations({&alone, 1});
+                if (!model) {
+                    ASSERT_EQ(model.error().id, "declaration") << damaged;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,130 @@
+#include <glint/measure/settings.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace glint::measure {
+namespace {
+
+Configuration usual() {
+    return {{"spp", "4"},
+            {"shadow-spp", "1"},
+            {"ao-spp", "4"},
+            {"effects", "auto"},
+            {"max-roughness", "0.3"},
+            {"mirror-roughness", "0.05"},
+            {"skip-below", "0"},
+            {"clamp", "0"},
+            {"ssr", "off"},
+            {"max-interfaces", "8"},
+            {"hit-lobes", "all"},
+            {"energy-compensation", "on"},
+            {"texture-lod", "cones"},
+            {"alpha", "opaque"},
+            {"precision", "32"},
+            {"hit-record", "full"},
+            {"strategy", "visibility"},
+            {"merge", "family"},
+            {"shadows", "inline"},
+            {"position-fetch", "off"},
+            {"ordering", "auto"},
+            {"binning", "none"},
+            {"batch-effects", "off"}};
+}
+
+Facts rich() {
+    Facts facts;
+    facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
+    facts.rayPipeline = facts.positionFetch = facts.float16 = true;
+    facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
+    facts.white = 2.0;
+    return facts;
+}
+
+const Setting& named(const std::vector<Setting>& settings, std::string_view name) {
+    return *std::ranges::find(settings, name, &Setting::name);
+}
+
+TEST(BenchSettings, AreAllThereAndHaveTheirDefault) {
+    for (const bool quick : {false, true}) {
+        const std::vector<Setting> settings = settingsFor(rich(), usual(), quick);
+        EXPECT_EQ(settings.size(), settingNames().size());
+        for (const Setting& setting : settings) {
+            EXPECT_EQ(std::ranges::count(setting.values, setting.base), 1) << setting.name;
+            EXPECT_GT(setting.values.size(), 1U) << setting.name;
+            EXPECT_TRUE(setting.skipped.empty()) << setting.name;
+            EXPECT_FALSE(setting.what.empty()) << setting.name;
+        }
+    }
+}
+
+TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
+    Configuration base = usual();
+    base["spp"] = "6";
+    base["ssr"] = "12";
+    const std::vector<Setting> settings = settingsFor(rich(), base, false);
+    EXPECT_EQ(named(settings, "spp").values,
+              (std::vector<std::string>{"1", "2", "4", "6", "8", "16", "32", "64"}));
+    EXPECT_EQ(named(settings, "ssr").values, (std::vector<std::string>{"off", "8", "12", "16", "32", "64"}));
+}
+
+TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
+    Facts facts;
+    facts.effects = {"shadow"};
+    const std::vector<Setting> settings = settingsFor(facts, usual(), false);
+    for (const char* const name :
+         {"shadow-spp", "ao-spp", "max-roughness", "ssr", "max-interfaces", "hit-lobes", "texture-lod",
+          "alpha", "precision", "strategy", "ordering", "binning", "position-fetch", "clamp"}) {
+        const Setting& setting = named(settings, name);
+        EXPECT_EQ(setting.values, std::vector<std::string>{setting.base}) << name;
+        EXPECT_TRUE(std::ranges::none_of(setting.skipped, [](const SkippedValue& value) {
+            return value.reason.empty();
+        })) << name;
+    }
+    EXPECT_GT(named(settings, "spp").values.size(), 1U);
+}
+
+TEST(BenchSettings, TryEffectsWithoutEachOfThem) {
+    Facts facts = rich();
+    facts.effects = {"reflection", "shadow"};
+    EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
+              (std::vector<std::string>{"auto", "shadow", "reflection"}));
+    facts.effects = {"shadow"};
+    EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
+              (std::vector<std::string>{"auto", "none"}));
+}
+
+TEST(BenchSettings, ScaleTheClampByWhite) {
+    EXPECT_EQ(named(settingsFor(rich(), usual(), false), "clamp").values,
+              (std::vector<std::string>{"0", "32", "8", "2"}));
+}
+
+TEST(BenchSettings, OfTheReferenceApproximateNothing) {
+    const Configuration exact = exactValues(rich());
+    EXPECT_EQ(exact.at("texture-lod"), "mip0");
+    EXPECT_EQ(exact.at("hit-lobes"), "all");
+    EXPECT_EQ(exact.at("alpha"), "tested");
+    EXPECT_EQ(exact.at("max-roughness"), "1");
+    EXPECT_EQ(exact.at("ssr"), "off");
+    EXPECT_FALSE(exact.contains("strategy"));
+    EXPECT_FALSE(exact.contains("effects"));
+    EXPECT_FALSE(exact.contains("spp"));
+    Facts still = rich();
+    still.effects = {"shadow"};
+    EXPECT_FALSE(exactValues(still).contains("max-roughness"));
+}
+
+TEST(BenchSettings, DropWhatHasNoEffectBesideOthers) {
+    const Configuration base = usual();
+    EXPECT_EQ(simplified({{"spp", "4"}, {"ssr", "16"}}, base), (Configuration{{"ssr", "16"}}));
+    EXPECT_EQ(simplified({{"strategy", "uber"}, {"ordering", "wave-loop"}, {"hit-record", "packed"}}, base),
+              (Configuration{{"strategy", "uber"}}));
+    EXPECT_EQ(simplified({{"position-fetch", "on"}}, base), Configuration{});
+    EXPECT_EQ(nameOf({{"ssr", "16"}, {"spp", "8"}}), "spp 8, ssr 16");
+    EXPECT_EQ(nameOf(Configuration{}), "default");
+}
+
+}  // namespace
+}  // namespace glint::measure

@@ -1,0 +1,91 @@
+// Tests boxes of deformed meshes, and the rules that depend on them.
+#include "motion/motion_rules.h"
+
+#include "motion/motion_bounds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace glint {
+namespace {
+
+Box box(double x, double y, double z, double size) {
+    return {{x, y, z}, {x + size, y + size, z + size}};
+}
+
+void expectBox(const Box& actual, const Box& expected) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(actual.min[i], expected.min[i], 1e-6) << "axis " << i;
+        EXPECT_NEAR(actual.max[i], expected.max[i], 1e-6) << "axis " << i;
+    }
+}
+
+TEST(MotionBounds, AreThoseOfTheMeshAtRest) {
+    const std::vector<std::array<float, 3>> positions{{0, 0, 0}, {1, 2, 3}};
+    PrimitiveView view;
+    view.positions = positions;
+    const MotionBounds bounds(std::span(&view, 1));
+    InstanceView instance;
+    instance.objectToWorld = {2, 0, 0, 10, 0, 1, 0, 0, 0, 0, -1, 0};
+    expectBox(bounds.at(instance), {{10, 0, -3}, {12, 2, 0}});
+}
+
+TEST(MotionBounds, HoldMorphedAndSkinnedVertices) {
+    const std::vector<std::array<float, 3>> positions{{0, 0, 0}, {1, 0, 0}};
+    const std::vector<std::array<float, 3>> differences{{0, 4, 0}, {0, -2, 0}};
+    const std::vector<MorphTargetView> targets{{differences, {}, {}}};
+    const std::vector<std::uint16_t> joints{0, 1};
+    const std::vector<float> jointWeights{1.0F, 1.0F};
+    PrimitiveView view;
+    view.positions = positions;
+    view.targets = targets;
+    const std::vector<float> weights{-0.5F};
+    InstanceView instance;
+    instance.morphWeights = weights;
+    expectBox(MotionBounds(std::span(&view, 1)).at(instance), {{0, -2, 0}, {1, 1, 0}});
+    // The second vertex follows a joint that lifts it by 5.
+    view.joints = joints;
+    view.jointWeights = jointWeights;
+    const std::vector<std::array<float, 12>> rows{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                                                  {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}};
+    instance.joints = rows;
+    const Box skinned = MotionBounds(std::span(&view, 1)).at(instance);
+    expectBox(skinned, {{0, -2, 0}, {1, 1, 5}});
+}
+
+TEST(MotionRules, ABottomLevelIsRefittedUntilItIsWorn) {
+    BlasHistory history;
+    history.apply(BuildAction::Build, 10.0);
+    EXPECT_EQ(history.next(false, 10.0), BuildAction::Keep);
+    EXPECT_EQ(history.next(true, 20.0), BuildAction::Refit);
+    EXPECT_EQ(history.next(true, 20.1), BuildAction::Build) << "its surface has doubled";
+    for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
+        ASSERT_EQ(history.next(true, 10.0), BuildAction::Refit) << i;
+        history.apply(BuildAction::Refit, 10.0);
+    }
+    EXPECT_EQ(history.next(true, 10.0), BuildAction::Build);
+    EXPECT_EQ(history.next(false, 10.0), BuildAction::Keep);
+    history.apply(BuildAction::Build, 30.0);
+    EXPECT_EQ(history.next(true, 60.0), BuildAction::Refit) << "counts from the last build";
+}
+
+TEST(MotionRules, TheTopLevelIsUpdatedUntilAnInstanceLeaves) {
+    TlasHistory history;
+    const std::vector<Box> start{box(0, 0, 0, 1), box(5, 0, 0, 2)};
+    history.apply(BuildAction::Build, start);
+    EXPECT_EQ(history.next(false, start), BuildAction::Keep);
+    EXPECT_EQ(history.next(true, start), BuildAction::Refit);
+    // The diagonals are 1.73 and 3.46 m.
+    EXPECT_EQ(history.next(true, std::vector{box(1.7, 0, 0, 1), box(5, 0, 0, 2)}), BuildAction::Refit);
+    EXPECT_EQ(history.next(true, std::vector{box(1.8, 0, 0, 1), box(5, 0, 0, 2)}), BuildAction::Build);
+    EXPECT_EQ(history.next(true, std::vector{box(0, 0, 0, 1), box(5, 3.4, 0, 2)}), BuildAction::Refit);
+    EXPECT_EQ(history.next(true, std::vector{box(0, 0, 0, 1), box(5, 3.5, 0, 2)}), BuildAction::Build);
+    for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
+        history.apply(BuildAction::Refit, start);
+    }
+    EXPECT_EQ(history.next(true, start), BuildAction::Build);
+}
+
+}  // namespace
+}  // namespace glint

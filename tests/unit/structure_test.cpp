@@ -1,0 +1,159 @@
+// The shape of the source tree: how large folders are, and which part may know which.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The parts of the tool, from what knows least to what knows most. A part includes itself and the parts
+// before it.
+constexpr std::string_view kParts[] = {"base",  "plan",      "materials",  "gltf",    "scene",
+                                       "spirv", "cache",     "emit",       "inspect", "image",
+                                       "synthetic", "scene_view", "measure", "cli"};
+// The first part that may use the runtime and Vulkan, and not only the headers that say what a package is.
+constexpr std::string_view kFirstWithRuntime = "inspect";
+constexpr std::string_view kPlainHeaders[] = {"glint/effects.h", "glint/embedded_file.h",
+                                              "glint/package_format.h", "glint/package_modules.h",
+                                              "glint/result.h"};
+
+std::optional<std::size_t> rankOf(std::string_view part) {
+    const auto* const found = std::ranges::find(kParts, part);
+    return found == std::end(kParts) ? std::nullopt
+                                     : std::optional(static_cast<std::size_t>(found - std::begin(kParts)));
+}
+
+bool isSource(const fs::path& path) {
+    constexpr std::string_view kSuffixes[] = {".h",     ".cpp",   ".cu",    ".py",   ".sh",
+                                              ".glsl",  ".comp",  ".vert",  ".frag", ".rgen",
+                                              ".rchit", ".rahit", ".rmiss", ".js"};
+    return std::ranges::find(kSuffixes, path.extension().string()) != std::end(kSuffixes);
+}
+
+// Calls `visit` for each source below a folder of the repository.
+void visitSources(const std::string& folder, const std::function<void(const fs::path&)>& visit) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(GLINT_SOURCE_DIR) / folder)) {
+        if (entry.is_regular_file() && isSource(entry.path())) {
+            visit(entry.path());
+        }
+    }
+}
+
+// Calls `visit` for each file that a source includes.
+void visitIncludes(const fs::path& source, const std::function<void(const std::string&)>& visit) {
+    static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+    std::ifstream file(source);
+    for (std::string line; std::getline(file, line);) {
+        std::smatch match;
+        if (std::regex_search(line, match, kInclude)) {
+            visit(match[1].str());
+        }
+    }
+}
+
+// Returns "measure" for "measure/page.h" and "glint/measure/bed.h"; empty if the file is of no part of the
+// tool.
+std::string partOf(const std::string& included) {
+    const std::string path = included.starts_with("glint/") ? included.substr(6) : included;
+    const std::size_t slash = path.find('/');
+    return slash != std::string::npos && rankOf(path.substr(0, slash)) ? path.substr(0, slash)
+                                                                       : std::string();
+}
+
+TEST(Structure, FoldersHoldAtMostFortySources) {
+    constexpr int kMost = 40;
+    // These are larger. The numbers may only become smaller.
+    const std::map<std::string, int> larger{{"tool/gltf", 90}, {"tool/emit", 60}, {"tool/plan", 48}};
+    std::map<std::string, int> sizes;
+    for (const char* const folder : {"benchmarks", "examples", "runtime", "scripts", "shaders", "tool"}) {
+        visitSources(folder, [&](const fs::path& path) {
+            ++sizes[fs::relative(path.parent_path(), GLINT_SOURCE_DIR).generic_string()];
+        });
+    }
+    ASSERT_TRUE(sizes.contains("tool/measure"));
+    ASSERT_TRUE(sizes.contains("runtime/src/renderer"));
+    for (const auto& [folder, size] : sizes) {
+        const auto exception = larger.find(folder);
+        EXPECT_LE(size, exception != larger.end() ? exception->second : kMost) << folder;
+    }
+}
+
+TEST(Structure, PartsOfTheToolIncludeThoseBeforeThem) {
+    int includes = 0;
+    for (const std::string_view part : kParts) {
+        const std::string folder = "tool/" + std::string(part);
+        visitSources(folder, [&](const fs::path& source) {
+            visitIncludes(source, [&](const std::string& included) {
+                const std::string other = partOf(included);
+                if (other.empty()) {
+                    return;
+                }
+                ++includes;
+                EXPECT_LE(*rankOf(other), *rankOf(part)) << source << " includes " << included;
+                // Of planning, reading glTF needs the materials alone.
+                EXPECT_TRUE(part != "gltf" || other != "plan" || included.starts_with("plan/material"))
+                    << source << " includes " << included;
+            });
+        });
+    }
+    EXPECT_GT(includes, 500);
+}
+
+TEST(Structure, EveryFolderOfTheToolIsAPart) {
+    visitSources("tool", [](const fs::path& source) {
+        const fs::path part = *fs::relative(source, GLINT_SOURCE_DIR "/tool").begin();
+        EXPECT_TRUE(rankOf(part.string())) << source;
+    });
+}
+
+TEST(Structure, TheCompilerKnowsNoVulkan) {
+    for (const std::string_view part : kParts) {
+        if (part == kFirstWithRuntime) {
+            break;
+        }
+        visitSources("tool/" + std::string(part), [&](const fs::path& source) {
+            visitIncludes(source, [&](const std::string& included) {
+                const bool ofRuntime = included.starts_with("glint/") && partOf(included).empty();
+                const bool plain = std::ranges::find(kPlainHeaders, included) != std::end(kPlainHeaders);
+                EXPECT_FALSE(included.starts_with("vulkan/") || (ofRuntime && !plain))
+                    << source << " includes " << included;
+            });
+        });
+    }
+}
+
+TEST(Structure, TheRuntimeIncludesNothingOfTheTool) {
+    const std::vector<std::string> folders{"context", "package", "scene", "motion", "renderer", "sky"};
+    int includes = 0;
+    visitSources("runtime", [&](const fs::path& source) {
+        visitIncludes(source, [&](const std::string& included) {
+            EXPECT_TRUE(!included.starts_with("glint/") || partOf(included).empty())
+                << source << " includes " << included;
+            const std::size_t slash = included.find('/');
+            const std::string folder = slash == std::string::npos ? std::string() : included.substr(0, slash);
+            if (std::ranges::find(folders, folder) != folders.end()) {
+                ++includes;
+                EXPECT_TRUE(fs::exists(fs::path(GLINT_SOURCE_DIR "/runtime/src") / included))
+                    << source << " includes " << included;
+            } else {
+                EXPECT_TRUE(rankOf(folder) == std::nullopt) << source << " includes " << included;
+            }
+        });
+    });
+    EXPECT_GT(includes, 100);
+}
+
+}  // namespace

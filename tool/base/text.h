@@ -1,0 +1,18 @@
+// Words as text: lists for people, and command lines for shells.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// Returns "a, b, c", or "-" for an empty list.
+std::string join(const std::vector<std::string>& words);
+
+// Returns the text in single quotes, as bash and zsh accept them.
+std::string shellQuoted(std::string_view text);
+// Returns the words as a shell accepts them. Words with characters that have a meaning in a shell are quoted.
+std::string shellWords(const std::vector<std::string>& words);
+
+}  // namespace glint

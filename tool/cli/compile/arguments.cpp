@@ -1,0 +1,172 @@
+#include "cli/compile/arguments.h"
+
+#include "base/text.h"
+#include "cli/options/settings_option.h"
+#include "emit/embed_source.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kPlanOnly = "--plan-only";
+constexpr const char* kLauncher = "--launcher";
+constexpr const char* kModules = "--modules";
+
+void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
+    addTracingLists(command, arguments.tracing);
+    addCalibration(command, arguments.calibration);
+    addPlanOptions(command, arguments.plan);
+    addProfileInput(command, arguments.plan);
+    addLockOptions(command, arguments.lock);
+    addEffectOptions(command, arguments.effects);
+    addAccuracyOptions(command, arguments.accuracy);
+    addFlag(command, "--environment-map", arguments.environmentMap,
+            "rays that leave the scene see an environment map, which\n"
+            "every frame then needs, instead of a gradient")
+        .group("Shaders");
+    addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
+        .group("Shaders");
+}
+
+// Options for compilation by other processes.
+void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option& dry) {
+    CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly, "DIR",
+                                "compile nothing: write each module's source into this\n"
+                                "folder, and a build.ninja that compiles them one by one\n"
+                                "and makes the package");
+    CLI::Option& launcher = addText(command, kLauncher, arguments.launcher, "COMMAND",
+                                    "with --plan-only: the command that runs each compilation,\n"
+                                    "such as the client of a build farm");
+    CLI::Option& modules = addText(command, kModules, arguments.modules, "DIR",
+                                   "take modules that glint compile-module made instead of\n"
+                                   "compiling; build.ninja uses this");
+    launcher.needs(&plan);
+    plan.excludes(&dry)->excludes(&modules);
+    modules.excludes(&dry);
+    for (CLI::Option* const option : {&plan, &launcher, &modules}) {
+        option->group("Farm");
+    }
+}
+
+void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
+    addText(command, "-o,--output", arguments.output, "DIR",
+            "folder of the package; an earlier package is replaced\n"
+            "(required without --embed or --dry-run)")
+        .group("Output");
+    addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
+                   "write the package as a C++ source, with a header beside\n"
+                   "it, for programs that ship no files; -o is then optional")
+        .group("Output")
+        ->type_name("FILE.cpp");
+    addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
+               "what else the package holds, separated by commas:\n"
+               "glsl: the shaders' sources; header: C++ tables")
+        .group("Output");
+    CLI::Option& dry =
+        addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
+    dry.group("Output");
+    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")
+        .group("Output");
+    addCacheOptions(command, arguments.cache);
+    addDepfileOptions(command, arguments.depfile);
+    addFarmOptions(command, arguments, dry);
+}
+
+}  // namespace
+
+void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
+    addTexts(command, "SCENE", arguments.scenes, "FILE",
+             "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
+        .required();
+    addReadingOptions(command, arguments.reading);
+    addSettingsFile(command, arguments.settings);
+    addOutputOptions(command, arguments);
+    addShaderOptions(command, arguments);
+}
+
+void settleCompile(const CLI::App& command, CompileArguments& arguments) {
+    if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
+        throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
+    }
+    settleProfile(arguments.plan);
+    checkEffects(arguments.effects);
+    if (arguments.depfile.targets.empty()) {
+        arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
+                                                                : planFile(arguments)};
+    }
+    arguments.options = describeOptions(command);
+    // The words already contain what the settings file says.
+    constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules, "--settings"};
+    constexpr std::string_view kReport[] = {"--werror", "-W"};
+    for (const CLI::Option* const option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || option->get_positional()) {
+            continue;
+        }
+        if (std::ranges::find(kReport, name) != std::end(kReport)) {
+            addWords(*option, arguments.reportWords);
+        } else if (hasEffect(*option) && std::ranges::find(kOwn, name) == std::end(kOwn)) {
+            addWords(*option, arguments.words);
+        }
+    }
+    if (!arguments.modules.empty()) {
+        // Nothing is compiled, and Ninja knows what is up to date, so the cache is not used.
+        arguments.cache.folder = kNoCache;
+    }
+}
+
+std::string planFile(const CompileArguments& arguments) {
+    return (std::filesystem::path(arguments.planOnly) / "build.ninja").string();
+}
+
+std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
+    std::vector<std::string> files;
+    if (!arguments.output.empty() || arguments.embed.empty()) {
+        files.push_back((std::filesystem::path(arguments.output) / package::kManifestFile).string());
+    }
+    if (!arguments.embed.empty()) {
+        files.push_back(arguments.embed);
+        files.push_back(embeddedHeader(arguments.embed).string());
+    }
+    return files;
+}
+
+CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) {
+    const auto emits = [&](const char* what) {
+        return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
+    };
+    CompileSettings settings;
+    arguments.tracing.apply(settings);
+    settings.plan = std::move(plan);
+    arguments.accuracy.apply(settings);
+    arguments.effects.apply(settings);
+    settings.jobs = static_cast<int>(arguments.jobs);
+    settings.emitHeader = emits("header");
+    settings.emitGlsl = emits("glsl");
+    settings.environmentMap = arguments.environmentMap;
+    settings.debugInfo = arguments.debugInfo;
+    settings.modules = arguments.modules;
+    return settings;
+}
+
+std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& file :
+         {arguments.plan.profile, arguments.lock.file, arguments.settings, arguments.calibration}) {
+        if (!file.empty()) {
+            files.emplace_back(file);
+        }
+    }
+    return files;
+}
+
+}  // namespace glint

@@ -1,0 +1,32 @@
+// Writes all results of glint compile as one step: all files are complete on disk before any of them is moved
+// into place.
+#pragma once
+
+#include "cli/compile/depfile.h"
+#include "cli/options/lock_option.h"
+#include "emit/compile.h"
+#include "gltf/scene_list.h"
+
+#include <glint/result.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace glint {
+
+// Members that are empty are not written.
+struct CompileOutputs {
+    std::filesystem::path folder;  // of the package
+    std::filesystem::path embed;   // a C++ source
+    const LockArguments& lock;
+    const LockChoice& lockChoice;
+    const DepfileArguments& depfile;
+    std::span<const std::string> dependencies;
+};
+
+// A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
+// writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
+Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, const CompileOutputs& outputs);
+
+}  // namespace glint

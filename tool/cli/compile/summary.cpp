@@ -1,0 +1,86 @@
+#include "cli/compile/summary.h"
+
+#include "base/json_depth.h"
+#include "base/staged_file.h"
+#include "cache/packing.h"
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+std::string describe(const ModuleCounts& modules) {
+    return fmt::format("{} compiled, {} taken from the cache", modules.compiled, modules.cached);
+}
+
+}  // namespace
+
+ModuleCounts countModules(const CompiledPackage& package) {
+    ModuleCounts counts;
+    for (const CompiledModule& module : package.modules) {
+        ++(module.compiled ? counts.compiled : counts.cached);
+    }
+    return counts;
+}
+
+void tell(const Console& console, CompileSummary summary, const std::optional<ModuleCounts>& modules,
+          bool upToDate, double milliseconds) {
+    if (console.isJson()) {
+        summary.json["milliseconds"] = milliseconds;
+        summary.json["modules"] =
+            modules ? Json{{"compiled", modules->compiled}, {"cached", modules->cached}} : Json(nullptr);
+        summary.json["upToDate"] = upToDate;
+        console.result(summary.json);
+        return;
+    }
+    const auto add = [&](const char* name, std::string value) {
+        summary.fields.insert(summary.fields.end() - 1, {name, std::move(value)});
+    };
+    if (modules) {
+        add("modules", upToDate ? "up to date, none compiled" : describe(*modules));
+    }
+    add("time", fmt::format("{:.0f} ms", milliseconds));
+    console.print(formatFields(summary.fields) + summary.dropped);
+}
+
+std::string pack(const CompileSummary& summary) {
+    Packer packer;
+    packer.add(summary.fields.size());
+    for (const std::vector<std::string>& field : summary.fields) {
+        packer.add(std::string_view(field[0])).add(std::string_view(field[1]));
+    }
+    packer.add(std::string_view(summary.dropped)).add(static_cast<std::uint64_t>(summary.modules));
+    const std::string json = summary.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return packer.add(std::string_view(json)).take();
+}
+
+std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson) {
+    Unpacker unpacker(bytes);
+    CompileSummary summary;
+    // A field is two texts, each with its length.
+    summary.fields.resize(unpacker.count(2 * sizeof(std::uint64_t)).value_or(0));
+    for (std::vector<std::string>& field : summary.fields) {
+        field = {std::string(unpacker.text().value_or("")), std::string(unpacker.text().value_or(""))};
+    }
+    summary.dropped = unpacker.text().value_or("");
+    summary.modules = static_cast<int>(unpacker.number().value_or(0));
+    const std::optional<std::string_view> json = unpacker.text();
+    if (!json || !unpacker.atEnd() || summary.fields.empty()) {
+        return std::nullopt;
+    }
+    if (!withJson) {
+        return summary;
+    }
+    if (nestsTooDeep(asBytes(*json))) {
+        return std::nullopt;
+    }
+    summary.json = Json::parse(*json, nullptr, false);
+    return summary.json.is_object() ? std::optional(std::move(summary)) : std::nullopt;
+}
+
+}  // namespace glint

@@ -1,0 +1,291 @@
+#include "cli/explain/plan_text.h"
+
+#include "cli/table.h"
+#include "emit/json.h"
+#include "plan/plan_cost.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace glint {
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+const Case& caseOf(const PlannedScenes& planned, int shaderId) {
+    return planned.plan.cases[static_cast<std::size_t>(shaderId)];
+}
+
+std::string titleOf(const PlannedScenes& planned, int shaderId, Detail detail) {
+    return shaderTitle(static_cast<std::uint64_t>(shaderId), caseOf(planned, shaderId).name, detail);
+}
+
+std::string percent(double share) {
+    return fmt::format("{:.2f} %", 100.0 * share);
+}
+
+std::string counted(std::size_t count, const std::string& what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+// Returns the first names, and how many more there are.
+std::string materialsText(const PlannedScenes& planned, const std::vector<int>& materials) {
+    constexpr std::size_t kShown = 3;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(materials.size(), kShown); ++i) {
+        names.push_back(planned.scenes.materialName(materials[i]));
+    }
+    const std::string more =
+        materials.size() > kShown ? fmt::format(" and {} more", materials.size() - kShown) : std::string();
+    return fmt::format("{}{}", fmt::join(names, "; "), more);
+}
+
+std::string headText(const PlannedScenes& planned) {
+    const int budget = budgetOf(planned.options);
+    const std::string limit = budget > 0 ? fmt::format(", at most {}", budget) : std::string();
+    return fmt::format(
+        "{}: {} in {}, --merge {}{}; hits {}\n\n"
+        "in vain       SPIR-V instructions that an average hit of the scene runs because its case holds "
+        "more\n"
+        "              than its key: branches, and code that other lanes of its subgroup wait for\n"
+        "spared        {:.0f} for each case that sharing makes unnecessary\n"
+        "instructions  of the case's shader; they and the fetches are estimated\n"
+        "apart         instructions of shaders of its keys alone, on average over its hits\n",
+        planned.scenes.fileNames(), counted(planned.plan.keys.size(), "key"),
+        counted(caseCount(planned.plan), "case"), toString(planned.options.merge), limit,
+        countsHits(planned.options) ? "counted by the profile" : "expected from areas", kCaseCost);
+}
+
+// Without the columns that other tables have, too, where a line has to fit a terminal.
+std::string fitting(Rows rows, Detail detail) {
+    constexpr std::size_t kColumns[] = {9, 6};  // why, branches; the last first
+    for (const std::size_t column : kColumns) {
+        for (std::vector<std::string>& row : rows) {
+            if (detail == Detail::Short) {
+                row.erase(row.begin() + static_cast<std::ptrdiff_t>(column));
+            }
+        }
+    }
+    return formatTable(rows, detail);
+}
+
+std::string overviewText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+    Rows rows{
+        {"case", "keys", "hits", "instructions", "apart", "fetches", "branches", "in vain", "spared", "why"}};
+    double saved = 0.0;
+    for (const CaseCost& entry : cost.cases) {
+        const Case& shaderCase = caseOf(planned, entry.shaderId);
+        saved += entry.saved;
+        rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(shaderCase.keys.size()),
+                        percent(shaderCase.share), fmt::format("{:.0f}", entry.code.instructions),
+                        fmt::format("{:.0f}", entry.ownInstructions),
+                        fmt::format("{:.0f}", entry.code.fetches), std::to_string(entry.branches.size()),
+                        fmt::format("{:.2f}", entry.inVain), fmt::format("{:.0f}", entry.saved),
+                        std::string(toString(shaderCase.reason))});
+    }
+    rows.push_back({"all", std::to_string(planned.plan.keys.size()), "", "", "", "", "",
+                    fmt::format("{:.2f}", cost.inVain), fmt::format("{:.0f}", saved), ""});
+    for (std::size_t column = 2; column < 7; ++column) {
+        rows.back()[column] = "-";
+    }
+    return fitting(std::move(rows), detail);
+}
+
+std::string nearestText(const PlannedScenes& planned, const NearestCase& nearest, Detail detail) {
+    return fmt::format("with case {}, the nearest: {:.2f} more in vain, {:.0f} spared",
+                       titleOf(planned, nearest.shaderId, detail), nearest.adds, kCaseCost);
+}
+
+std::string fetchesText(const CodeEstimate& code) {
+    return fmt::format("{:.0f} fetch{}", code.fetches, code.fetches == 1.0 ? "" : "es");
+}
+
+std::string leavingText(const KeyCost& cost) {
+    return cost.leavingAdds < 0.0 ? fmt::format("apart it would spare {:.2f}", -cost.leavingAdds)
+                                  : fmt::format("apart it would cost {:.2f} more", cost.leavingAdds);
+}
+
+// Describes a case of several keys.
+std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Detail detail) {
+    const Case& shaderCase = caseOf(planned, entry.shaderId);
+    Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
+              {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
+                                       counted(shaderCase.keys.size() - 1, "case"))},
+              {"  all have", featureList(shaderCase.always)}};
+    std::string label = "  branches on";
+    for (const BranchCost& branch : entry.branches) {
+        rows.push_back({label, fmt::format("{}, in {} of its hits: {:.2f}", branch.feature->name,
+                                           percent(branch.share), branch.cost)});
+        label.clear();
+    }
+    label = "  keys";
+    for (const KeyCost& key : entry.keys) {
+        const Key& planKey = planned.plan.keys[static_cast<std::size_t>(key.key)];
+        rows.push_back({label, fmt::format("{}: {} of all hits, {:.0f} instructions, {}; {}",
+                                           materialsText(planned, planKey.materials), percent(planKey.share),
+                                           key.own.instructions, fetchesText(key.own), leavingText(key))});
+        const FeatureMask besides = planKey.mask & ~shaderCase.always;
+        rows.push_back({"", besides != 0 ? "  with " + featureList(besides) : "  with nothing else"});
+        label.clear();
+    }
+    if (entry.nearest) {
+        rows.push_back({"  no further", nearestText(planned, *entry.nearest, detail)});
+    }
+    return fmt::format("case {}\n{}", titleOf(planned, entry.shaderId, detail), formatFields(rows, detail));
+}
+
+// Cases of one key: what keeps each from sharing one.
+std::string singlesText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+    Rows rows{{"case", "nearest", "in vain", "spared", "materials"}};
+    for (const CaseCost& entry : cost.cases) {
+        const Case& shaderCase = caseOf(planned, entry.shaderId);
+        if (shaderCase.keys.size() == 1 && entry.nearest) {
+            rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(entry.nearest->shaderId),
+                            fmt::format("{:.2f}", std::max(0.0, entry.nearest->adds)),
+                            fmt::format("{:.0f}", kCaseCost), materialsText(planned, shaderCase.materials)});
+        }
+    }
+    return rows.size() == 1 ? std::string()
+                            : "\nCases of one key, and what merging with the nearest case would cost\n\n" +
+                                  formatTable(rows, detail);
+}
+
+std::string policiesText(const PlannedScenes& planned, const PlanCost& cost) {
+    Rows rows{{"--merge", "cases", "in vain", "for cases", "all", ""}};
+    const auto add = [&](MergePolicy merge, std::size_t cases, double inVain, const std::string& note) {
+        const double all = totalCost(inVain, cases);
+        rows.push_back({std::string(toString(merge)), std::to_string(cases), fmt::format("{:.2f}", inVain),
+                        fmt::format("{:.0f}", all - inVain), fmt::format("{:.2f}", all), note});
+    };
+    for (const PolicyCost& policy : cost.policies) {
+        const bool isThis = policy.merge == planned.options.merge;
+        add(policy.merge, policy.cases, policy.inVain, isThis ? "this plan" : "");
+    }
+    if (planned.options.merge == MergePolicy::Profile) {
+        add(MergePolicy::Profile, caseCount(planned.plan), cost.inVain, "this plan");
+    }
+    return "\nThe same keys under every policy\n\n" + formatTable(rows);
+}
+
+Json toJson(const CodeEstimate& code) {
+    return {{"instructions", code.instructions},
+            {"textureFetches", code.fetches},
+            {"inputBranches", code.inputBranches},
+            {"lobeBranches", code.lobeBranches}};
+}
+
+Json keyToJson(const PlannedScenes& planned, const KeyCost& cost) {
+    const Key& key = planned.plan.keys[static_cast<std::size_t>(cost.key)];
+    return {{"mask", fmt::format("0x{:016x}", key.mask)},
+            {"features", featuresToJson(key.mask)},
+            {"materials", materialsToJson(planned.scenes, key.materials)},
+            {"share", shareToJson(key.share)},
+            {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
+            {"leavingAdds", cost.leavingAdds}};
+}
+
+Json caseToJson(const PlannedScenes& planned, const CaseCost& cost) {
+    const Case& shaderCase = caseOf(planned, cost.shaderId);
+    Json keys = Json::array();
+    for (const KeyCost& key : cost.keys) {
+        keys.push_back(keyToJson(planned, key));
+    }
+    Json branches = Json::array();
+    for (const BranchCost& branch : cost.branches) {
+        branches.push_back(Json{{"feature", branch.feature->name},
+                                {"share", shareToJson(branch.share)},
+                                {"inVain", branch.cost}});
+    }
+    Json nearest;
+    if (cost.nearest) {
+        nearest = Json{{"id", cost.nearest->shaderId}, {"adds", cost.nearest->adds}, {"spares", kCaseCost}};
+    }
+    return {{"id", cost.shaderId},
+            {"name", shaderCase.name},
+            {"reason", toString(shaderCase.reason)},
+            {"share", shareToJson(shaderCase.share)},
+            {"always", featuresToJson(shaderCase.always)},
+            {"sometimes", featuresToJson(shaderCase.sometimes)},
+            {"estimate", toJson(cost.code)},
+            {"ownInstructions", cost.ownInstructions},
+            {"inVain", cost.inVain},
+            {"spared", cost.saved},
+            {"branches", branches},
+            {"keys", keys},
+            {"nearest", nearest}};
+}
+
+std::string sumOf(const StrategyEstimate& estimate, std::initializer_list<CostTerm> terms) {
+    double sum = 0.0;
+    bool has = false;
+    for (const CostTerm term : terms) {
+        sum += estimate.parts[static_cast<std::size_t>(term)];
+        has = has || hasTerm(estimate.strategy, term);
+    }
+    return has ? fmt::format("{:.3f}", sum) : "-";
+}
+
+}  // namespace
+
+std::string planText(const PlannedScenes& planned, Detail detail) {
+    if (planned.plan.keys.empty()) {
+        return "no primitives: no keys, no cases\n";
+    }
+    const PlanCost cost = costPlan(planned.plan, planned.options);
+    std::string text = headText(planned) + "\n" + overviewText(planned, cost, detail);
+    for (const CaseCost& entry : cost.cases) {
+        if (entry.keys.size() > 1) {
+            text += "\n" + mergedText(planned, entry, detail);
+        }
+    }
+    return text + singlesText(planned, cost, detail) + policiesText(planned, cost);
+}
+
+Json planToJson(const PlannedScenes& planned) {
+    const PlanCost cost = costPlan(planned.plan, planned.options);
+    Json cases = Json::array();
+    for (const CaseCost& entry : cost.cases) {
+        cases.push_back(caseToJson(planned, entry));
+    }
+    Json policies = Json::array();
+    for (const PolicyCost& policy : cost.policies) {
+        policies.push_back(Json{{"merge", toString(policy.merge)},
+                                {"cases", policy.cases},
+                                {"inVain", policy.inVain},
+                                {"cost", totalCost(policy.inVain, policy.cases)}});
+    }
+    const int budget = budgetOf(planned.options);
+    return {{"maxShaders", budget > 0 ? Json(budget) : Json()},
+            {"hits", countsHits(planned.options) ? "counted" : "expected"},
+            {"keys", planned.plan.keys.size()},
+            {"inVain", cost.inVain},
+            {"caseCost", kCaseCost},
+            {"cost", totalCost(cost.inVain, cost.cases.size())},
+            {"cases", cases},
+            {"policies", policies}};
+}
+
+std::string strategiesText(const StrategyAdvice& advice) {
+    const FrameFacts& facts = advice.choice.facts;
+    const std::string costs = advice.builtIn ? "as measured on " : "of the calibration of ";
+    std::string text = fmt::format("\nStrategies for a frame of {:.3g} million pixels, costs {}{}\n\n",
+                                   advice.pixels / 1e6, costs, advice.device);
+    if (facts.rays > 0.0) {
+        std::vector<std::vector<std::string>> rows{
+            {"strategy, ms", "all", "launches", "rays", "ordering", "shading", "divergence"}};
+        for (const StrategyEstimate& estimate : advice.choice.estimates) {
+            rows.push_back({estimate.strategy, fmt::format("{:.3f}", estimate.ms),
+                            sumOf(estimate, {CostTerm::Launches, CostTerm::Cases}),
+                            sumOf(estimate, {CostTerm::Rays, CostTerm::Incoherence}),
+                            sumOf(estimate, {CostTerm::Buckets}), sumOf(estimate, {CostTerm::Instructions}),
+                            sumOf(estimate, {CostTerm::Divergence, CostTerm::Code, CostTerm::Misses})});
+        }
+        text += formatTable(rows) + "\n";
+    }
+    return text + wrapped(fmt::format("--strategy {}: {}\n\n", advice.choice.strategy, advice.choice.why));
+}
+
+}  // namespace glint

@@ -1,0 +1,150 @@
+#include "cli/options/motion_options.h"
+
+#include "base/suggest.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <numeric>
+
+namespace glint {
+
+namespace {
+
+constexpr std::int64_t kMaxFrame = 1000000;
+constexpr double kMaxSeconds = 1e6;
+
+std::string animationName(const Scene& scene, std::size_t index) {
+    const std::string& name = scene.animations[index].name;
+    return name.empty() ? std::to_string(index) : name;
+}
+
+// Parses all of `text` as a number within [0, kMaxFrame].
+std::optional<std::int64_t> parseFrame(std::string_view text) {
+    std::int64_t frame = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), frame);
+    const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+    return whole && frame >= 0 && frame <= kMaxFrame ? std::optional(frame) : std::nullopt;
+}
+
+Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std::string& wanted) {
+    std::vector<std::size_t> all(scene.animations.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (all.empty()) {
+        return makeError("animation-missing", scene.path, "has no animation to play",
+                         "leave out --frames and --time");
+    }
+    if (wanted == "all") {
+        return all;
+    }
+    for (const std::size_t index : all) {
+        if (scene.animations[index].name == wanted) {
+            return std::vector{index};
+        }
+    }
+    const std::optional<std::int64_t> number = parseFrame(wanted);
+    if (number && static_cast<std::size_t>(*number) < all.size()) {
+        return std::vector{static_cast<std::size_t>(*number)};
+    }
+    std::vector<std::string> names;
+    names.reserve(all.size() + 1);
+    for (const std::size_t index : all) {
+        names.push_back(animationName(scene, index));
+    }
+    const std::string known = enumeration(names);
+    names.emplace_back("all");
+    return makeError("animation-unknown", scene.path,
+                     "has no animation \"" + wanted + "\"" + known + suggestion(wanted, names),
+                     "use a name, a number from 0, or all");
+}
+
+}  // namespace
+
+void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
+    const std::string group = "Movement";
+    CLI::Option& frames = addText(command, "--frames", arguments.frames, "A:B",
+                                  "play an animation and write frames A to B, or one frame,\n"
+                                  "each as out.0007.png");
+    frames.group(group)->check(CLI::Validator(
+        [](const std::string& text) {
+            return parseFrames(text) ? std::string()
+                                     : "\"" + text + "\" is neither a frame such as 7 nor a range such as " +
+                                           "0:23, of 0 to 1000000";
+        },
+        ""));
+    addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
+            "frames per second (0.001 to 10000, default: 24; needs\n"
+            "--frames)")
+        .needs(&frames)
+        ->group(group);
+    addText(command, "--time", arguments.time, "SECONDS",
+            "render one picture at this time of the animation, 0 to\n"
+            "1000000 (default: the rest pose)")
+        .excludes(&frames)
+        ->group(group)
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                double seconds = 0.0;
+                return measure::parseReal(text, 0.0, kMaxSeconds, seconds)
+                           ? std::string()
+                           : "\"" + text + "\" is no number from 0 to 1000000";
+            },
+            ""));
+    addText(command, "--animation", arguments.animation, "NAME|INDEX|all",
+            "which animation plays, by name or number from 0; all: all\n"
+            "of them at once (default: 0)")
+        .group(group);
+    addChoice(command, "--refit", arguments.refit, {"auto", "always", "never"},
+              "how acceleration structures follow; auto: they are\n"
+              "refitted, and rebuilt by rule; always: only refitted;\n"
+              "never: rebuilt in each frame; needs --frames")
+        .needs(&frames)
+        ->group(group);
+}
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view all = text;
+    const std::optional<std::int64_t> first = parseFrame(all.substr(0, colon));
+    const std::optional<std::int64_t> last =
+        colon == std::string::npos ? first : parseFrame(all.substr(colon + 1));
+    if (!first || !last || *last < *first) {
+        return std::nullopt;
+    }
+    return FrameRange{*first, *last};
+}
+
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene) {
+    if (arguments.frames.empty() && arguments.time.empty()) {
+        return std::optional<Movement>();
+    }
+    Result<std::vector<std::size_t>> animations = chooseAnimations(scene, arguments.animation);
+    if (!animations) {
+        return animations.error();
+    }
+    Movement movement;
+    movement.animations = std::move(*animations);
+    if (const std::optional<FrameRange> range = parseFrames(arguments.frames)) {
+        movement.isSequence = true;
+        for (std::int64_t frame = range->first; frame <= range->last; ++frame) {
+            movement.moments.push_back({frame, static_cast<double>(frame) / arguments.fps});
+        }
+    } else {
+        double seconds = 0.0;
+        measure::parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
+        movement.moments.push_back({0, seconds});
+    }
+    if (arguments.refit != "auto") {
+        movement.builds =
+            arguments.refit == "always" ? MotionView::Builds::Refit : MotionView::Builds::Rebuild;
+    }
+    return std::optional(std::move(movement));
+}
+
+std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame) {
+    std::filesystem::path numbered = file;
+    numbered.replace_extension(fmt::format(".{:04}{}", frame, file.extension().string()));
+    return numbered;
+}
+
+}  // namespace glint

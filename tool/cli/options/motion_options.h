@@ -1,0 +1,56 @@
+// Options about movement: a sequence of frames, or one moment of an animation.
+#pragma once
+
+#include "cli/options/options.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct MotionArguments {
+    std::string frames;  // "A:B" or "A"; empty: no sequence
+    double fps = 24.0;
+    std::string time;  // seconds; empty: the rest pose
+    std::string animation = "0";
+    std::string refit = "auto";
+};
+void addMotionOptions(CLI::App& command, MotionArguments& arguments);
+
+// The frames of a sequence. The first and the last are rendered too.
+struct FrameRange {
+    std::int64_t first = 0;
+    std::int64_t last = 0;
+};
+// Parses "7" or "0:23". Returns nothing for other text, if the last frame is before the first, or above a
+// million frames.
+std::optional<FrameRange> parseFrames(const std::string& text);
+
+// A moment to render.
+struct Moment {
+    std::int64_t frame = 0;
+    double seconds = 0.0;
+};
+
+// The animations that play, and the moments to render.
+struct Movement {
+    std::vector<std::size_t> animations;  // into Scene::animations
+    std::vector<Moment> moments;          // at least one
+    bool isSequence = false;              // files are numbered
+    MotionView::Builds builds = MotionView::Builds::ByRule;
+};
+
+// Returns nothing if the scene is rendered at rest. Errors: "animation-missing", "animation-unknown".
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene);
+
+// Returns "out.0007.png" for "out.png" and 7.
+std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame);
+
+}  // namespace glint

@@ -1,0 +1,245 @@
+#include "cli/render/frames.h"
+
+#include "base/clock.h"
+#include "image/image_file.h"
+#include "image/tone.h"
+
+#include <glint/measure/render_settings.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/pose.h>
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+// Renders picture after picture with one scene on the device and one renderer.
+class FrameLoop {
+public:
+    FrameLoop(const FrameSetup& setup, Scene& scene, scene_view::SceneViewData& data, RenderReport& report)
+        : setup_(setup), scene_(scene), data_(data), report_(report), camera_(setup.camera) {}
+
+    // The scene is uploaded in the pose of the first moment.
+    Status start(Context& context, const Package& package) {
+        if (setup_.movement) {
+            if (Status posed = pose(setup_.movement->moments.front()); !posed) {
+                return posed;
+            }
+            data_.moves = setup_.movement->moments.size() > 1;
+        }
+        // Once for all pictures: a sequence would flicker otherwise.
+        sky_ = measure::chooseSky(setup_.arguments, scene_, data_);
+        if (setup_.environment == nullptr) {
+            report_.sky = sky_;
+        }
+        const Clock::time_point begin = Clock::now();
+        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
+        if (!uploaded) {
+            return uploaded.error();
+        }
+        const Clock::time_point onDevice = Clock::now();
+        report_.start.uploadMs = millisecondsBetween(begin, onDevice);
+        gpuScene_ = std::move(*uploaded);
+        report_.sceneStatistics = gpuScene_->statistics();
+        Result<std::unique_ptr<Renderer>> renderer =
+            Renderer::create(context, package, *gpuScene_, setup_.renderer);
+        if (!renderer) {
+            return renderer.error();
+        }
+        report_.start.rendererMs = millisecondsSince(onDevice);
+        renderer_ = std::move(*renderer);
+        report_.tracer = std::string(package::nameOf(renderer_->tracer()));
+        if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
+            report_.ordering = std::string(package::nameOf(renderer_->ordering()));
+        }
+        report_.pipelines.making = renderer_->pipelineMaking();
+        report_.footprint = renderer_->footprint();
+        report_.pipelines.count = report_.footprint.pipelines;
+        if (setup_.renderer.pipelineStatistics) {
+            Result<std::vector<PipelineStatistics>> statistics = renderer_->pipelineStatistics();
+            if (!statistics) {
+                return statistics.error();
+            }
+            report_.pipelines.statistics = std::move(*statistics);
+        }
+        report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
+                          gpuScene_->allocatedBytes()};
+        report_.hasDetails = !setup_.arguments.stats.empty();
+        report_.countsLight = !setup_.arguments.stats.empty();
+        return okStatus();
+    }
+
+    // Moves the uploaded scene to a later moment.
+    Status advance(const Moment& moment, FrameReport& frame) {
+        const Clock::time_point begin = Clock::now();
+        if (Status posed = pose(moment); !posed) {
+            return posed;
+        }
+        frame.poseMs = millisecondsSince(begin);
+        MotionView motion = data_.motion();
+        motion.builds = setup_.movement->builds;
+        const Clock::time_point updated = Clock::now();
+        if (Status status = gpuScene_->updateAndWait(motion); !status) {
+            return status;
+        }
+        frame.updateMs = millisecondsSince(updated);
+        const Result<MotionStatistics> statistics = gpuScene_->motion();
+        if (!statistics) {
+            return statistics.error();
+        }
+        frame.motion = *statistics;
+        return okStatus();
+    }
+
+    Result<LinearImage> render(FrameReport& frame) {
+        FrameOptions options = measure::frameOptions(setup_.arguments, camera_, sky_, setup_.environment);
+        options.timing = Timing::Passes;
+        // Counting takes time that would be added to that of the passes, so it is on only if the counts are
+        // asked for.
+        options.countsLight = !setup_.arguments.stats.empty();
+        options.seed = report_.seed;
+        const Clock::time_point begin = Clock::now();
+        const bool countsHits = !setup_.arguments.profileOutput.empty();
+        const auto afterSample = [&] {
+            if (!std::exchange(begun_, true)) {
+                report_.start.firstSampleMs = millisecondsSince(begin);
+            }
+            return countsHits ? addHits() : okStatus();
+        };
+        Result<LinearImage> image = renderer_->render(options, report_.samples, afterSample);
+        frame.renderMs = millisecondsSince(begin);
+        report_.renderMs += frame.renderMs;
+        if (!image) {
+            return image;
+        }
+        if (Status measured = measure(frame); !measured) {
+            return measured.error();
+        }
+        return image;
+    }
+
+    // Returns the exposure for the surfaces of the last picture.
+    Result<double> exposureOf(const LinearImage& image) {
+        const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
+        return surfaces ? Result<double>(automaticExposure(image, *surfaces)) : surfaces.error();
+    }
+
+private:
+    Status pose(const Moment& moment) {
+        scene_view::applyPose(scene_view::poseAt(scene_, setup_.movement->animations, moment.seconds),
+                              scene_);
+        scene_view::poseSceneView(scene_, data_);
+        setup_.arguments.effectFrame.apply(data_);
+        if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
+            return okStatus();  // that one stands still
+        }
+        const Result<scene_view::CameraChoice> moved = scene_view::chooseCameraAround(
+            scene_, scene_view::Bounds{}, setup_.arguments.camera, setup_.aspect);
+        if (!moved) {
+            return moved.error();
+        }
+        camera_ = moved->view;
+        return okStatus();
+    }
+
+    Status addHits() {
+        const Result<FrameCounters> counters = renderer_->counters();
+        if (!counters) {
+            return counters.error();
+        }
+        report_.addHits(*counters);
+        return okStatus();
+    }
+
+    // Collects the times and counts of the last sample.
+    Status measure(FrameReport& frame) {
+        Result<std::vector<PassTiming>> passes = renderer_->timings();
+        if (!passes) {
+            return passes.error();
+        }
+        Result<FrameCounters> counters = renderer_->counters();
+        if (!counters) {
+            return counters.error();
+        }
+        for (const PassTiming& pass : *passes) {
+            frame.deviceMs += pass.milliseconds;
+        }
+        report_.passes = std::move(*passes);
+        report_.counters = std::move(*counters);
+        if (!setup_.arguments.coverage.empty()) {
+            Result<std::vector<PixelPath>> paths = renderer_->readCoverage();
+            if (!paths) {
+                return paths.error();
+            }
+            report_.paths = std::move(*paths);
+        }
+        return okStatus();
+    }
+
+    const FrameSetup& setup_;
+    Scene& scene_;
+    scene_view::SceneViewData& data_;
+    RenderReport& report_;
+    CameraView camera_;
+    scene_view::SkyChoice sky_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<Renderer> renderer_;
+    bool begun_ = false;  // a sample is complete
+};
+
+}  // namespace
+
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+                    scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
+                    RenderReport& report) {
+    FrameLoop loop(setup, scene, data, report);
+    if (Status started = loop.start(context, package); !started) {
+        return started;
+    }
+    const bool isSequence = setup.movement && setup.movement->isSequence;
+    const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+        FrameReport frame;
+        frame.frame = moments[i].frame;
+        frame.seconds = moments[i].seconds;
+        const std::string& output = setup.arguments.output;
+        frame.image = isSequence ? numberedFile(output, frame.frame).string() : output;
+        if (i > 0) {
+            if (Status advanced = loop.advance(moments[i], frame); !advanced) {
+                return advanced;
+            }
+        }
+        const Result<LinearImage> image = loop.render(frame);
+        if (!image) {
+            return image.error();
+        }
+        const Result<bool> accepted = accept();
+        if (!accepted || !*accepted) {
+            return accepted ? okStatus() : Status(accepted.error());
+        }
+        // A sequence keeps the exposure of its first picture, because it would flicker otherwise.
+        if (i == 0) {
+            const Result<double> exposure = loop.exposureOf(*image);
+            if (!exposure) {
+                return exposure.error();
+            }
+            report.exposure = *exposure;
+            report.exposureAutomatic = setup.arguments.exposure == "auto";
+            if (!report.exposureAutomatic) {
+                measure::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
+            }
+        }
+        if (Status written = writeImage(frame.image, *image, report.exposure); !written) {
+            return written;
+        }
+        if (isSequence) {
+            report.frames.push_back(std::move(frame));
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace glint

@@ -1,0 +1,35 @@
+// Renders the pictures of glint render: one picture, or a sequence in which the scene moves.
+#pragma once
+
+#include "cli/options/motion_options.h"
+#include "cli/render/arguments.h"
+#include "cli/render/report.h"
+#include "gltf/scene.h"
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <functional>
+#include <optional>
+
+namespace glint {
+
+struct FrameSetup {
+    const RenderArguments& arguments;
+    RendererOptions renderer;
+    const Environment* environment = nullptr;  // null: none
+    const std::optional<Movement>& movement;   // nothing: the rest pose
+    CameraView camera;                         // of the first picture
+    double aspect = 1.0;                       // width / height
+};
+
+// Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from
+// it, are left in the last pose. `accept` is called before each picture is written. Its error ends the work;
+// if it returns false, the work ends without an error.
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+                    scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
+                    RenderReport& report);
+
+}  // namespace glint

@@ -1,0 +1,85 @@
+// The report of glint render about a picture: the JSON of --stats and --json, and the table.
+#pragma once
+
+#include "cli/render/device_report.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "plan/strategy_choice.h"
+
+#include <glint/environment.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/sky.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct EnvironmentReport {
+    std::string file;
+    Environment::Statistics statistics;
+};
+
+// One picture of a sequence.
+struct FrameReport {
+    std::int64_t frame = 0;
+    double seconds = 0.0;  // of the animation
+    std::string image;
+    MotionStatistics motion;
+    double poseMs = 0.0;  // wall clock: nodes, joints and weights on the CPU
+    double updateMs =
+        0.0;  // wall clock: the scene on the device; 0 for the first, which is uploaded in its pose
+    double renderMs = 0.0;  // wall clock: all samples and the read-back
+    double deviceMs = 0.0;  // the passes of the last sample
+};
+
+struct RenderReport {
+    std::string scene;
+    std::string image;
+    std::string device;
+    std::string driver;
+    std::string strategy;
+    std::optional<StrategyAdvice> strategyChoice;  // with --strategy auto
+    std::string tracer;
+    std::optional<std::string> ordering;  // of hits, where the strategy orders them
+    std::optional<std::string> merge;     // absent: a package was given
+    std::string alpha;
+    std::uint32_t width = 0;   // pixels
+    std::uint32_t height = 0;  // pixels
+    std::uint32_t samples = 0;
+    std::uint32_t seed = 0;
+    std::string camera;
+    double exposure = 0.0;                     // stops
+    bool exposureAutomatic = false;            // chosen by the first picture
+    std::optional<scene_view::SkyChoice> sky;  // absent: an environment map lights the scene
+    std::optional<double> compileMs;           // absent: a package was given
+    std::uint32_t cases = 0;
+    std::vector<std::string> caseNames;  // by shader ID
+    std::optional<EnvironmentReport> environment;
+    GpuScene::Statistics sceneStatistics;
+    Renderer::Footprint footprint;
+    bool countsLight = false;  // rays of shadow and ambient-occlusion are counted
+    MemoryReport memory;
+    bool hasDetails = false;  // the text has all memory, too
+    PipelineReport pipelines;
+    StartReport start;
+    double renderMs = 0.0;            // wall clock, all samples and the read-back
+    std::vector<PassTiming> passes;   // of the last sample, of the last frame
+    FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all
+    std::vector<FrameReport> frames;  // with --frames
+    std::vector<PixelPath> paths;     // of the last sample, row by row; for --coverage only
+    std::vector<std::uint64_t> hits;  // by shader ID, of all samples that were given to addHits()
+
+    void addHits(const FrameCounters& sample);
+};
+
+// Returns the error "order-check" if hits are lost, doubled or misplaced; RendererOptions::checkOrder counts
+// these.
+Status checkOrder(const RenderReport& report);
+
+Json toJson(const RenderReport& report);
+std::string toText(const RenderReport& report, Detail detail);
+
+}  // namespace glint

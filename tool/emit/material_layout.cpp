@@ -1,0 +1,204 @@
+#include "emit/material_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <interop/scene.h>
+
+namespace glint {
+
+namespace {
+
+constexpr std::uint32_t kFloatBytes = 4;
+
+bool isUsed(const MaterialModel& model, int feature, FeatureMask used) {
+    return feature < 0 || (model.features[static_cast<std::size_t>(feature)].mask() & used) != 0;
+}
+
+std::string noteOf(const std::string& unit, const std::string& about) {
+    return unit.empty() || about.empty() ? unit + about : unit + "; " + about;
+}
+
+// "clearcoatRoughnessFactor" becomes "CLEARCOAT_ROUGHNESS_FACTOR".
+std::string upperSnake(std::string_view name) {
+    std::string text;
+    for (const char c : name) {
+        const bool isUpper = c >= 'A' && c <= 'Z';
+        text += isUpper ? "_" : "";
+        text += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    }
+    return text;
+}
+
+std::string textureConstant(std::string_view name) {
+    std::string text = "k";
+    text += static_cast<char>(name[0] - 'a' + 'A');
+    text += name.substr(1);
+    return text;
+}
+
+// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
+// points down; the extension's GLSL listing turns the other way, its text and test models this one
+// (KhronosGroup/glTF issue 1563).
+gpu::TextureRecord transformed(const TextureTransform& transform) {
+    const double sine = std::sin(static_cast<double>(transform.rotation));
+    const double cosine = std::cos(static_cast<double>(transform.rotation));
+    const double scaleU = transform.scale[0];
+    const double scaleV = transform.scale[1];
+    gpu::TextureRecord record{};
+    record.rowU = {static_cast<float>(cosine * scaleU), static_cast<float>(sine * scaleV),
+                   transform.offset[0]};
+    record.rowV = {static_cast<float>(-sine * scaleU), static_cast<float>(cosine * scaleV),
+                   transform.offset[1]};
+    return record;
+}
+
+// Evaluates expressions at the values of a material, whatever its textures and animations do.
+double derivedValue(const MaterialFacts& facts, const DerivedField& field, int channel) {
+    const std::size_t row = field.channels.size() == 1 ? 0 : static_cast<std::size_t>(channel);
+    const Channels number = field.channels[row].number(facts);
+    const bool shared = number.count == 1 || field.channels.size() > 1;
+    return number.of[shared ? 0 : static_cast<std::size_t>(channel)].low;
+}
+
+// The macros that read a field of a record, and of the record of a hit's material.
+std::string fieldMacros(std::string_view name, std::string_view value) {
+    const std::string macro = upperSnake(name);
+    return fmt::format(
+        "#define GLINT_RECORD_{0}(record) {1}\n#define GLINT_MATERIAL_{0}(hit) "
+        "GLINT_RECORD_{0}(GLINT_MATERIAL(hit))\n",
+        macro, value);
+}
+
+std::string literalOf(const std::string& type, std::span<const float> values) {
+    std::string text = type == "float" ? "" : type + "(";
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        text += fmt::format("{}{:#.9g}", i == 0 ? "" : ", ", std::isinf(values[i]) ? 0.0F : values[i]);
+    }
+    return text + (type == "float" ? "" : ")");
+}
+
+}  // namespace
+
+int MaterialLayout::slotOf(int texture) const {
+    const auto found = std::ranges::find(textures, texture);
+    return found == textures.end() ? -1 : static_cast<int>(found - textures.begin());
+}
+
+MaterialLayout makeMaterialLayout(const MaterialModel& model, FeatureMask used) {
+    MaterialLayout layout;
+    layout.model = &model;
+    const auto append = [&layout](RecordField field) {
+        field.offset = layout.bytes;
+        layout.bytes += kFloatBytes * static_cast<std::uint32_t>(field.channels);
+        layout.fields.push_back(std::move(field));
+    };
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        const Parameter& parameter = model.parameters[i];
+        if (parameter.inRecord && isUsed(model, parameter.feature, used)) {
+            append({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about),
+                    parameter.channels, 0, static_cast<int>(i), -1});
+        }
+    }
+    for (std::size_t i = 0; i < model.derived.size(); ++i) {
+        const DerivedField& field = model.derived[i];
+        if (isUsed(model, field.feature, used)) {
+            append({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
+                    static_cast<int>(i)});
+        }
+    }
+    for (std::size_t i = 0; i < model.textures.size(); ++i) {
+        if (isUsed(model, model.textures[i].feature, used)) {
+            layout.textures.push_back(static_cast<int>(i));
+        }
+    }
+    layout.textureOffset = layout.bytes;
+    layout.bytes += static_cast<std::uint32_t>(layout.textures.size() * sizeof(gpu::TextureRecord));
+    return layout;
+}
+
+MaterialLayout materialLayoutOf(const Plan& plan) {
+    return makeMaterialLayout(*plan.model, plan.primaryAlways | plan.primarySometimes);
+}
+
+std::vector<std::uint8_t> makeMaterialRecord(const Material& material, const MaterialLayout& layout) {
+    std::vector<std::uint8_t> record(layout.bytes);
+    Material plain = material;
+    plain.ranges.clear();
+    const PrimitiveInputs primitive;
+    const KeyOptions options;
+    const FeatureMask key = 0;
+    const MaterialFacts facts(plain, primitive, options, key, MaterialFacts::Textures::Ignored);
+    for (const RecordField& field : layout.fields) {
+        for (int i = 0; i < field.channels; ++i) {
+            const float value =
+                field.parameter >= 0
+                    ? plain.values[static_cast<std::size_t>(
+                          layout.model->parameters[static_cast<std::size_t>(field.parameter)].first + i)]
+                    : static_cast<float>(derivedValue(
+                          facts, layout.model->derived[static_cast<std::size_t>(field.derived)], i));
+            std::memcpy(&record[field.offset + kFloatBytes * static_cast<std::size_t>(i)], &value,
+                        sizeof value);
+        }
+    }
+    for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
+        const TextureInfo& info = material.textures[static_cast<std::size_t>(layout.textures[slot])];
+        if (info.texture >= 0) {
+            const gpu::TextureRecord texture = transformed(info.transform);
+            std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
+        }
+    }
+    return record;
+}
+
+std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
+    std::string text = "struct MaterialRecord {\n";
+    for (const RecordField& field : layout.fields) {
+        text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type, field.name,
+                            field.note.empty() ? "" : "  // ", field.note);
+    }
+    if (!layout.textures.empty()) {
+        text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textures.size());
+    }
+    return text + "};\n";
+}
+
+std::string recordDeclarations(const MaterialLayout& layout) {
+    const MaterialModel& model = *layout.model;
+    std::string text =
+        "// The values of a material that the scenes of the package need.\n" + recordStruct(layout, "");
+    text +=
+        "layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MaterialArray { "
+        "MaterialRecord "
+        "data[]; };\n";
+    text += "// The textures of a record.\n";
+    for (std::size_t i = 0; i < model.textures.size(); ++i) {
+        text += fmt::format("const uint {} = {}u;\n", textureConstant(model.textures[i].name),
+                            std::max(0, layout.slotOf(static_cast<int>(i))));
+    }
+    text += "#define GLINT_TEXTURE(record, slot) ";
+    text += layout.textures.empty() ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
+                                    : "(record).textures[slot]\n";
+    text += "// The values of a hit's material. No key of the package reads those that are constants here.\n";
+    const auto define = [&](const std::string& name, const std::string& type,
+                            std::span<const float> fallback) {
+        const bool present =
+            std::ranges::any_of(layout.fields, [&](const RecordField& row) { return row.name == name; });
+        text += fieldMacros(name, present ? fmt::format("(record).{}", name) : literalOf(type, fallback));
+    };
+    for (const Parameter& parameter : model.parameters) {
+        if (parameter.inRecord) {
+            define(parameter.name, parameter.type,
+                   std::span(parameter.fallback).first(static_cast<std::size_t>(parameter.channels)));
+        }
+    }
+    for (const DerivedField& field : model.derived) {
+        const std::array<float, 4> zero{};
+        define(field.name, field.type, std::span(zero).first(static_cast<std::size_t>(field.count)));
+    }
+    return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// The record of a material on the device: which fields it has, and where. A package's records have the fields
+// that some key of its scenes needs.
+#pragma once
+
+#include "plan/plan.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+struct RecordField {
+    std::string name;
+    std::string type;  // in GLSL
+    std::string note;  // unit and meaning, for comments
+    int channels = 1;
+    std::uint32_t offset = 0;  // bytes
+    int parameter = -1;        // index into MaterialModel::parameters, or
+    int derived = -1;          // into MaterialModel::derived
+};
+
+struct MaterialLayout {
+    const MaterialModel* model = nullptr;
+    std::vector<RecordField> fields;
+    std::vector<int> textures;  // index into MaterialModel::textures for each texture of a record
+    std::uint32_t textureOffset = 0;
+    std::uint32_t bytes = 0;
+
+    // Returns the place of a texture in the record, or -1.
+    int slotOf(int texture) const;
+};
+
+// `used` is the union of all keys, with all lobes.
+MaterialLayout makeMaterialLayout(const MaterialModel& model, FeatureMask used);
+
+// The layout of a plan's package.
+MaterialLayout materialLayoutOf(const Plan& plan);
+
+// Returns the bytes of a record: the values of the material and the transforms of its textures. Which
+// textures these are is for makeMaterialTables() to settle.
+std::vector<std::uint8_t> makeMaterialRecord(const Material& material, const MaterialLayout& layout);
+
+// Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture, and for each
+// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where records lack the field.
+std::string recordDeclarations(const MaterialLayout& layout);
+// Returns the struct alone. `scope` stands before the names of vector types: empty in GLSL, "gpu::" in C++.
+std::string recordStruct(const MaterialLayout& layout, std::string_view scope);
+
+}  // namespace glint

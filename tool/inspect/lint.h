@@ -1,0 +1,70 @@
+// Finds the SPIR-V modules that a path stands for, what is slow in them, and whether they exceed budgets.
+#pragma once
+
+#include "inspect/malioc.h"
+#include "spirv/lint.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::inspect {
+
+struct LintFile {
+    std::filesystem::path path;
+    std::string name;  // role, or case and stage, as the package's manifest has it; empty without one
+};
+
+struct LintFiles {
+    bool isFolder = false;
+    std::vector<LintFile> files;
+};
+
+// A file stands for itself. A package stands for the modules that its manifest names, each file once, in its
+// order. Another folder stands for every .spv below it, sorted by name. Errors: "lint-path" (nothing there,
+// no module in the folder), "manifest-format", and those of readFile() for the manifest.
+Result<LintFiles> findLintFiles(const std::filesystem::path& path);
+
+struct LintedModule {
+    LintFile file;
+    std::optional<SpirvLint> lint;  // nothing where the file can't be read
+    std::optional<MaliocReport> malioc;
+    std::vector<LintFinding> findings;  // all of them: shape, budgets, why it can't be read
+};
+
+struct LintedFolder {
+    std::string path;
+    std::vector<LintFinding> findings;  // of its modules together
+};
+
+struct LintReport {
+    std::vector<LintedModule> modules;
+    std::vector<LintedFolder> folders;
+    std::optional<std::filesystem::path> malioc;  // nothing where there is none
+    std::size_t count(Severity severity) const;
+};
+
+// Returns "file.spv: error: in main (word 214): message; hint [rule]".
+Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where);
+
+// The most that a module may have of each; nothing: no limit.
+struct LintBudgets {
+    std::optional<std::int64_t> instructions;
+    std::optional<std::int64_t> textureFetches;
+    std::optional<std::int64_t> rayQueries;
+};
+
+// Lints one module. If `malioc` is not empty, compute shaders are also given to that program, for `core`.
+// Problems with the file are findings.
+LintedModule lintModule(const LintFile& file, const LintBudgets& budgets,
+                        const std::optional<std::filesystem::path>& malioc, const std::string& core);
+
+// Judges a folder's modules together: a pipeline with many closest-hit shaders.
+std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules);
+
+}  // namespace glint::inspect

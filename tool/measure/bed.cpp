@@ -1,0 +1,306 @@
+#include "gltf/scene_list.h"
+#include "spirv/compiler.h"
+
+#include <glint/measure/bed.h>
+#include <glint/measure/machine.h>
+#include <glint/measure/point.h>
+#include <glint/measure/profile.h>
+#include <glint/measure/render_settings.h>
+#include <glint/measure/strategy_advice.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/environment.h>
+#include <glint/scene_view/package.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+// Opens the device with as many of its optional features as possible: those that the default needs, and those
+// that the sweep could use.
+Result<std::unique_ptr<Context>> openDevice(const RenderSettings& render, DeviceOptions& features) {
+    HeadlessOptions options;
+    options.validation = render.validate ? Validation::Synchronization : Validation::Off;
+    options.deviceName = render.device;
+    Result<std::unique_ptr<Context>> context = Diagnostic{};
+    for (const DeviceOptions tried :
+         {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
+        // It is used if shaders can be compiled for it and the validation layers know it.
+        options.positionFetch =
+            render.tracing.positionFetch || (tried.positionFetch && supportsPositionFetch());
+        options.shaderFloat16 = render.accuracy.halves() || tried.float16;
+        context = Context::createHeadless(options);
+        if (context) {
+            features = {options.positionFetch, options.shaderFloat16};
+            break;
+        }
+    }
+    return context;
+}
+
+SceneSize sizeOf(const scene_view::SceneViewData& data) {
+    std::map<std::uint32_t, std::uint64_t> triangles;  // by mesh
+    for (const PrimitiveView& primitive : data.primitives) {
+        triangles[primitive.mesh] += primitive.indices.size() / 3;
+    }
+    SceneSize size;
+    for (const InstanceView& instance : data.instances) {
+        size.triangles += triangles[instance.mesh];
+        ++size.instances;
+    }
+    return size;
+}
+
+// Returns as words the settings for which `decides` is true.
+template <typename Decides>
+std::string decided(const RenderSettings& render, const Decides& decides) {
+    Configuration configuration = configurationOf(render);
+    std::erase_if(configuration, [&](const auto& choice) { return !decides(choice.first); });
+    return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
+}
+
+// A pass of a case counts with those of the others.
+std::string nameOfPass(const PassTiming& pass) {
+    return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
+}
+
+HitPart partOf(Pass pass) {
+    switch (pass) {
+        case Pass::RayDispatch:
+            return HitPart::Dispatch;
+        case Pass::Trace:
+            return HitPart::Trace;
+        case Pass::Count:
+        case Pass::Offset:
+        case Pass::Copy:
+            return HitPart::Order;
+        case Pass::Uber:
+        case Pass::SortedUber:
+        case Pass::HitShaders:
+        case Pass::ShadeMiss:
+        case Pass::ShadeCase:
+            return HitPart::Shade;
+        case Pass::ShadowDispatch:
+        case Pass::Shadow:
+            return HitPart::Shadow;
+        default:
+            return HitPart::None;
+    }
+}
+
+}  // namespace
+
+double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
+    double sum = 0.0;
+    for (const PassTiming& stretch : stretches) {
+        sum += stretch.pass == pass ? stretch.milliseconds : 0.0;
+    }
+    return sum;
+}
+
+HitTimes hitTimesOf(std::span<const PassTiming> passes) {
+    std::vector<PassTime> times;
+    for (const PassTiming& pass : passes) {
+        times.push_back({partOf(pass.pass), pass.milliseconds});
+    }
+    return hitTimesOf(times);
+}
+
+Result<Exposure> Mount::expose(std::uint32_t seed) const {
+    FrameOptions frame = frame_;
+    frame.seed = seed;
+    Exposure exposure;
+    const auto add = [&]() -> Status {
+        const Result<std::vector<PassTiming>> stretches = renderer_->timings();
+        if (!stretches) {
+            return stretches.error();
+        }
+        exposure.milliseconds += stretchMs(*stretches, Pass::Frame);
+        exposure.hitMs += stretchMs(*stretches, Pass::Hits);
+        return okStatus();
+    };
+    Result<LinearImage> image = renderer_->render(frame, samples_, add);
+    if (!image) {
+        return image.error();
+    }
+    Result<FrameCounters> counters = renderer_->counters();
+    if (!counters) {
+        return counters.error();
+    }
+    exposure.image = std::move(*image);
+    exposure.counters = std::move(*counters);
+    if (Status split = addSplit(frame, exposure); !split) {
+        return split.error();
+    }
+    return exposure;
+}
+
+// Adds the times of passes, measured on one more sample and multiplied by the number of samples. Measuring
+// each pass keeps passes from overlapping.
+Status Mount::addSplit(FrameOptions frame, Exposure& exposure) const {
+    frame.timing = Timing::Passes;
+    if (Status rendered = renderer_->renderSamples(frame, 1); !rendered) {
+        return rendered;
+    }
+    const Result<std::vector<PassTiming>> passes = renderer_->timings();
+    if (!passes) {
+        return passes.error();
+    }
+    exposure.hits = hitTimesOf(*passes);
+    exposure.hits /= 1.0 / samples_;
+    for (const PassTiming& pass : *passes) {
+        exposure.passes[nameOfPass(pass)] += pass.milliseconds * samples_;
+    }
+    return okStatus();
+}
+
+Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t samples) const {
+    FrameOptions frame = frame_;
+    frame.seed = seed;
+    return renderer_->render(frame, samples);
+}
+
+Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const RenderSettings& base,
+                                                   const Scene& scene, ModuleCache* cache) {
+    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache));
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    parseSize(base.size, width, height);
+    const scene_view::SceneViewData data = sceneView(base, scene);
+    const Result<scene_view::CameraChoice> camera =
+        scene_view::chooseCamera(scene, data, base.camera, static_cast<double>(width) / height);
+    if (!camera) {
+        return camera.error();
+    }
+    bed->camera_ = camera->view;
+    bed->cameraName_ = camera->name;
+    bed->sky_ = chooseSky(base, scene, data);
+    bed->size_ = sizeOf(data);
+    bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
+    Result<std::unique_ptr<Context>> context = openDevice(base, bed->features_);
+    if (!context) {
+        return context.error();
+    }
+    bed->context_ = std::move(*context);
+    bed->onCpu_ = isOnCpu(*bed->context_);
+    if (Status settled = bed->settleChoices(); !settled) {
+        return settled.error();
+    }
+    if (!base.environment.file.empty()) {
+        std::vector<Diagnostic> notes;
+        Result<std::unique_ptr<Environment>> environment =
+            scene_view::loadEnvironment(*bed->context_, base.environment.file, notes);
+        observer.report(notes);
+        if (!environment) {
+            return environment.error();
+        }
+        bed->environment_ = std::move(*environment);
+    }
+    return bed;
+}
+
+// A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
+// chosen for this scene.
+Status BenchBed::settleChoices() {
+    const Result<PlanChoice> plan = choosePlan(base_.plan, SceneList({&scene_, 1}));
+    if (!plan) {
+        return plan.error();
+    }
+    base_.plan.alpha = toString(plan->options.keys.alpha);
+    if (base_.tracing.strategies.front() != kAutoStrategy) {
+        return okStatus();
+    }
+    std::vector<Diagnostic> warnings;
+    const Result<StrategyAdvice> advice =
+        adviseRender(base_, plan->options, *context_, scene_, nullptr, warnings);
+    observer_.report(warnings);
+    if (!advice) {
+        return advice.error();
+    }
+    observer_.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+    base_.tracing.strategies = {advice->choice.strategy};
+    return okStatus();
+}
+
+Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderSettings& render) {
+    const SceneList scenes({&scene_, 1});
+    const Result<PlanChoice> plan = choosePlan(render.plan, scenes);
+    if (!plan) {
+        return plan.error();
+    }
+    Result<Package> package = Diagnostic{};
+    if (render.package.empty()) {
+        package = scene_view::compileAndLoad(
+            scene_, compileSettings(render, plan->options, context_->handles().tracers, scene_), cache_);
+    } else {
+        package = Package::load(render.package);
+        if (package) {
+            const scene_view::PackageDemand demand{strategyOf(render), tracerOf(render),
+                                                   !render.environment.file.empty()};
+            if (Status checked = scene_view::checkPackage(*package, render.package, demand, scene_);
+                !checked) {
+                return checked.error();
+            }
+        }
+    }
+    if (!package) {
+        return package.error();
+    }
+    auto mounted = std::make_shared<MountedPackage>();
+    mounted->package = std::make_unique<Package>(std::move(*package));
+    scene_view::SceneViewData data = sceneView(render, scene_);
+    data.packageScene = scene_view::sceneIn(*mounted->package, scene_).value_or(0);
+    scene_view::useLayoutOf(*mounted->package, scene_, data);
+    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(*context_, *mounted->package, data.view());
+    if (!uploaded) {
+        return uploaded.error();
+    }
+    mounted->scene = std::move(*uploaded);
+    return mounted;
+}
+
+Result<Mount> BenchBed::mount(const Configuration& configuration, const std::string& package) {
+    RenderSettings render = withSettings(base_, configuration);
+    render.package = package;
+    const std::string key =
+        fmt::format("{} {}", package, decided(render, [](std::string_view setting) {
+                        // With --effects auto, the limit of roughness decides too.
+                        return stageOf(setting) == Stage::Compile || setting == "max-roughness";
+                    }));
+    std::shared_ptr<MountedPackage> shared = packages_[key].lock();
+    if (!shared) {
+        Result<std::shared_ptr<MountedPackage>> made = mountPackage(render);
+        if (!made) {
+            return made.error();
+        }
+        shared = std::move(*made);
+        packages_[key] = shared;
+    }
+    const std::string rendererKey =
+        fmt::format("{} {}", key, decided(render, [](std::string_view setting) {
+                        return setting == "ordering" || setting == "batch-effects";
+                    }));
+    std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
+    if (!renderer) {
+        Result<std::unique_ptr<Renderer>> made =
+            Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(render));
+        if (!made) {
+            return made.error();
+        }
+        renderer = std::move(*made);
+        renderers_[rendererKey] = renderer;
+    }
+    Mount mount;
+    mount.package_ = std::move(shared);
+    mount.renderer_ = std::move(renderer);
+    mount.frame_ = frameOptions(render, camera_, sky_, environment_.get());
+    mount.samples_ = static_cast<std::uint32_t>(render.samples);
+    mount.ordersHits_ = (strategyOf(render) & package::kOrderedStrategies) != 0;
+    return mount;
+}
+
+}  // namespace glint::measure

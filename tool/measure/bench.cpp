@@ -1,0 +1,237 @@
+#include "measure/measurer.h"
+#include "measure/reference.h"
+
+#include <glint/measure/bench.h>
+#include <glint/measure/sweep.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+BenchPoint makePoint(PointKind kind, Configuration configuration) {
+    BenchPoint point;
+    point.kind = kind;
+    point.name = nameOf(configuration);
+    point.configuration = std::move(configuration);
+    return point;
+}
+
+// Does all the work between reading the scene and writing the files.
+class Bench {
+public:
+    Bench(const Observer& observer, const BenchSettings& settings, BenchBed& bed, CacheStore* store,
+          BenchReport& report)
+        : observer_(observer), settings_(settings), bed_(bed), store_(store), report_(report) {}
+
+    Status run(const PlanOptions& plan) {
+        if (Status made = makeTruth(plan); !made) {
+            return made;
+        }
+        base_ = makePoint(PointKind::Default, {});
+        const MeasureOptions options{static_cast<std::uint32_t>(settings_.rounds), report_.seed,
+                                     static_cast<std::uint32_t>(settings_.batch), report_.metric};
+        const Truth truth{report_.reference.image, report_.reference.exposure};
+        observer_.progress("compiling the default");
+        Result<Measurer> measurer = Measurer::create(observer_, bed_, options, truth, base_);
+        if (!measurer) {
+            return measurer.error();
+        }
+        std::vector<BenchPoint> points;
+        for (const Candidate& candidate : settings_.candidates) {
+            BenchPoint point = makePoint(PointKind::Package, {});
+            point.name = candidate.name;
+            point.package = candidate.folder;
+            points.push_back(std::move(point));
+        }
+        add(points, PointKind::Single, singles(report_.settings, report_.base));
+        if (settings_.depth != "singles") {
+            add(points, PointKind::Pair, pairs(report_.settings, report_.base, settings_.quick));
+        }
+        Status measured = measure(*measurer, std::move(points));
+        for (std::size_t i = 0; measured && i < searches(); ++i) {
+            std::vector<BenchPoint> found;
+            const std::size_t count = settings_.quick ? kQuickProposals : kProposals;
+            add(found, PointKind::Search, proposals(report_.settings, report_.base, rated(), count));
+            if (found.empty()) {
+                break;
+            }
+            measured = measure(*measurer, std::move(found));
+        }
+        if (!measured) {
+            return measured;
+        }
+        finish();
+        return okStatus();
+    }
+
+private:
+    static constexpr std::size_t kProposals = 12;
+    static constexpr std::size_t kQuickProposals = 4;
+
+    std::size_t searches() const {
+        constexpr std::size_t kSearches = 3;
+        return settings_.depth != "search" ? 0 : settings_.quick ? 1 : kSearches;
+    }
+
+    // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
+    Status makeTruth(const PlanOptions& plan) {
+        Facts facts = factsOf(bed_.base(), bed_.scene(), plan);
+        const std::uint32_t tracers = bed_.context().handles().tracers;
+        facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
+        facts.positionFetch = bed_.features().positionFetch;
+        facts.float16 = bed_.features().float16;
+        const ReferenceOptions options{settings_.referenceError,
+                                       static_cast<std::uint32_t>(settings_.referenceSamples)};
+        Result<Reference> reference = makeReference(observer_, bed_, facts, options, store_);
+        if (!reference) {
+            return reference.error();
+        }
+        report_.reference = std::move(*reference);
+        if (!report_.reference.reached) {
+            observer_.report(makeWarning(
+                "bench-reference", report_.scene.file,
+                fmt::format("the reference is within {:.2g} % after {} samples, not {:.2g} %",
+                            100.0 * report_.reference.relativeError, report_.reference.samples,
+                            100.0 * options.target),
+                "give more --reference-spp, or ask for less with --reference-error: smaller errors can't "
+                "be told apart"));
+        }
+        facts.white = std::exp2(-report_.reference.exposure);
+        report_.settings = settingsFor(facts, report_.base, settings_.quick);
+        if (!settings_.only.empty()) {
+            std::erase_if(report_.settings, [this](const Setting& setting) {
+                return std::ranges::find(settings_.only, setting.name) == settings_.only.end();
+            });
+        }
+        return okStatus();
+    }
+
+    static void add(std::vector<BenchPoint>& points, PointKind kind,
+                    std::vector<Configuration> configurations) {
+        for (Configuration& configuration : configurations) {
+            points.push_back(makePoint(kind, std::move(configuration)));
+        }
+    }
+
+    Status measure(Measurer& measurer, std::vector<BenchPoint> points) {
+        if (Status measured = measurer.measure(points); !measured) {
+            return measured;
+        }
+        for (BenchPoint& point : points) {
+            if (!point.times.empty()) {
+                report_.points.push_back(std::move(point));
+            }
+        }
+        return checkValidation(observer_, bed_.context());
+    }
+
+    // Rates the points that the tool makes itself; errors are of a kind that adds up.
+    std::vector<Rated> rated() const {
+        std::vector<Rated> all;
+        const auto add = [&](const BenchPoint& point) {
+            if (point.kind != PointKind::Package) {
+                const double error = errorOf(point, report_.metric).median;
+                const bool isRoot = report_.metric == ErrorMetric::Rmse;
+                all.push_back({point.configuration, timeRatio(point).median, isRoot ? error * error : error,
+                               isTimeTie(point), isErrorTie(point)});
+            }
+        };
+        add(base_);
+        std::ranges::for_each(report_.points, add);
+        return all;
+    }
+
+    void finish() {
+        report_.points.insert(report_.points.begin(), std::move(base_));
+        std::vector<Rated> points;
+        for (const BenchPoint& point : report_.points) {
+            points.push_back({point.configuration, timeRatio(point).median,
+                              errorOf(point, report_.metric).median, isTimeTie(point), isErrorTie(point)});
+        }
+        report_.front = paretoFront(withTiesSettled(points));
+        report_.strategies = compareStrategies(report_.points, report_.base.find("strategy")->second);
+        if (settings_.budgetMs > 0.0 || settings_.maxError > 0.0) {
+            report_.advice = advise();
+        }
+    }
+
+    BenchAdvice advise() const {
+        BenchAdvice advice;
+        Demand demand;
+        if (settings_.budgetMs > 0.0) {
+            advice.budgetMs = demand.time = settings_.budgetMs;
+        }
+        if (settings_.maxError > 0.0) {
+            advice.maxError = demand.error = settings_.maxError;
+        }
+        std::vector<Offer> offers;
+        std::size_t fastest = 0;
+        std::size_t best = 0;
+        for (std::size_t i = 0; i < report_.points.size(); ++i) {
+            const BenchPoint& point = report_.points[i];
+            offers.push_back({timeOf(report_, i), errorOf(point, report_.metric)});
+            fastest = offers[i].time.median < offers[fastest].time.median ? i : fastest;
+            best = offers[i].error.median < offers[best].error.median ? i : best;
+        }
+        advice.point = measure::advise(offers, demand);
+        advice.file = (std::filesystem::path(settings_.output) / kSettingsFile).string();
+        const auto describe = [&](std::size_t i) {
+            return fmt::format("{}: {:.3g} ms ({:.3g} to {:.3g}), {} {:.3g} ({:.3g} to {:.3g})",
+                               report_.points[i].name, offers[i].time.median, offers[i].time.low,
+                               offers[i].time.high, nameOf(report_.metric), offers[i].error.median,
+                               offers[i].error.low, offers[i].error.high);
+        };
+        if (advice.point) {
+            advice.why = fmt::format(
+                "{}. Of {} measured configurations it has the {} of those whose intervals are within what is "
+                "asked for; ties go to the {} one.",
+                describe(*advice.point), report_.points.size(),
+                advice.budgetMs ? "least error" : "least time", advice.budgetMs ? "faster" : "more exact");
+        } else {
+            advice.why = fmt::format(
+                "no measured configuration is surely within what is asked for; the "
+                "fastest is {}; the most exact is {}",
+                describe(fastest), describe(best));
+        }
+        return advice;
+    }
+
+    const Observer& observer_;
+    const BenchSettings& settings_;
+    BenchBed& bed_;
+    CacheStore* store_;
+    BenchReport& report_;
+    BenchPoint base_;  // joins the report's points at the end
+};
+
+void describeScene(BenchBed& bed, BenchReport& report) {
+    const RenderSettings& render = bed.base();
+    BenchScene& scene = report.scene;
+    const SceneSize size = bed.sceneSize();
+    scene.triangles = size.triangles;
+    scene.instances = size.instances;
+    scene.materials = bed.scene().materials.size();
+    scene.lights = bed.lights();
+    scene.camera = bed.cameraName();
+    scene.environment = render.environment.file;
+    parseSize(render.size, scene.width, scene.height);
+    report.machine = machineOf(bed.context());
+}
+
+}  // namespace
+
+Status runBench(const Observer& observer, const BenchSettings& settings, const PlanOptions& plan,
+                BenchBed& bed, CacheStore* store, BenchReport& report) {
+    describeScene(bed, report);
+    report.base = configurationOf(bed.base());
+    return Bench(observer, settings, bed, store, report).run(plan);
+}
+
+}  // namespace glint::measure

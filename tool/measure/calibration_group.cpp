@@ -1,0 +1,101 @@
+#include "measure/calibration_group.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+package::Effect effectOf(synthetic::Coherence coherence) {
+    return coherence == synthetic::Coherence::Coherent ? package::kEffectReflection
+                                                       : package::kEffectIndirectDiffuse;
+}
+
+CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
+    TracingSettings tracing = settings.render.tracing;
+    tracing.strategies = strategiesFor(tracers);
+    CompileSettings compile;
+    tracing.apply(compile, tracers);
+    settings.render.accuracy.apply(compile);
+    compile.plan.merge = MergePolicy::None;
+    // The settings cover scenes with both kinds of rays, so that they can share a package.
+    compile.effects = {false, package::kEffectReflection | package::kEffectIndirectDiffuse};
+    if (settings.shadows) {
+        compile.effects.named |= package::kEffectShadow;
+    }
+    compile.emitHeader = false;
+    return compile;
+}
+
+// Returns the size of the code of each case's own shader.
+std::vector<CaseWork> workOf(const CompiledPackage& compiled) {
+    std::vector<CaseWork> work(compiled.plan.cases.size());
+    for (const CompiledModule& module : compiled.modules) {
+        if (module.key.role == package::ModuleRole::ShadeCase) {
+            CaseWork& one = work[module.key.index];
+            one.instructions = module.statistics.instructions;
+            one.fetches = module.statistics.textureFetches;
+        }
+    }
+    return work;
+}
+
+}  // namespace
+
+std::vector<std::string> strategiesFor(std::uint32_t tracers) {
+    std::vector<std::string> names;
+    for (const package::Strategy strategy : package::kStrategies) {
+        const bool pipelineOnly = strategy == package::kStrategyHitShaders;
+        if (!pipelineOnly || (tracers & package::kTracerRayPipeline) != 0) {
+            names.emplace_back(package::nameOf(strategy));
+        }
+    }
+    return names;
+}
+
+Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache) {
+    CompiledGroup group;
+    for (const synthetic::CasesOptions& one : options) {
+        group.scenes.push_back(synthetic::makeCasesScene(one));
+    }
+    group.options = std::move(options);
+    Result<CompiledPackage> compiled = compilePackage(group.scenes, settingsOf(settings, tracers), cache);
+    if (!compiled) {
+        return compiled.error();
+    }
+    group.package = std::move(*compiled);
+    return group;
+}
+
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled) {
+    CalibrationGroup group;
+    group.work = workOf(compiled.package);
+    Result<Package> package = scene_view::loadPackage(compiled.package);
+    if (!package) {
+        return package.error();
+    }
+    group.package = std::make_unique<Package>(std::move(*package));
+    for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
+        const Scene& scene = compiled.scenes[i];
+        const synthetic::CasesOptions& options = compiled.options[i];
+        scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+        data.packageScene = static_cast<std::uint32_t>(i);
+        const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, options.aspect);
+        if (!camera) {
+            return camera.error();
+        }
+        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, *group.package, data.view());
+        if (!uploaded) {
+            return uploaded.error();
+        }
+        group.scenes.push_back({options, std::move(*uploaded), *camera, effectOf(options.coherence)});
+    }
+    return group;
+}
+
+}  // namespace glint::measure

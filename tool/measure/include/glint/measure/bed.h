@@ -1,0 +1,163 @@
+// Renders for a bench: one device and scene, and a renderer for each mounted configuration.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <glint/context.h>
+#include <glint/environment.h>
+#include <glint/measure/hit_times.h>
+#include <glint/measure/observer.h>
+#include <glint/measure/render_settings.h>
+#include <glint/measure/settings.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/sky.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+class ModuleCache;
+}
+
+namespace glint::measure {
+
+// One picture: all samples of a frame.
+struct Exposure {
+    LinearImage image;
+    double milliseconds = 0.0;  // device time of all samples
+    double hitMs = 0.0;  // of that, what strategies differ in: from the list of rays to their shaded hits
+    // Times by pass, from one sample measured that way, times the number of samples. Passes that otherwise
+    // overlap do not overlap here, so their sum is larger.
+    std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
+    HitTimes hits;                         // of those, what strategies differ in
+    FrameCounters counters;                // of the last sample
+};
+
+// Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.
+double stretchMs(std::span<const PassTiming> stretches, Pass pass);
+// Adds up the passes of one sample (Timing::Passes) in which strategies differ.
+HitTimes hitTimesOf(std::span<const PassTiming> passes);
+
+// A package, and the scene on the device in the form that the package needs.
+struct MountedPackage {
+    std::unique_ptr<Package> package;
+    std::unique_ptr<GpuScene> scene;
+};
+
+// A configuration that is ready to render.
+class Mount {
+public:
+    // Has the errors of Renderer::render().
+    Result<Exposure> expose(std::uint32_t seed) const;
+    // Renders with other samples and without measuring times.
+    Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
+    // Which pixels of the last picture see a surface, as Renderer::readSurfaces() says.
+    Result<std::vector<std::uint8_t>> surfaces() const {
+        return renderer_->readSurfaces();
+    }
+
+    const Renderer& renderer() const {
+        return *renderer_;
+    }
+    bool ordersHits() const {
+        return ordersHits_;
+    }
+    std::uint32_t cases() const {
+        return package_->package->caseCount();
+    }
+
+private:
+    friend class BenchBed;
+    Status addSplit(FrameOptions frame, Exposure& exposure) const;
+
+    std::shared_ptr<MountedPackage> package_;
+    std::shared_ptr<Renderer> renderer_;
+    FrameOptions frame_;
+    std::uint32_t samples_ = 1;
+    bool ordersHits_ = false;
+};
+
+// Optional features of a device.
+struct DeviceOptions {
+    bool positionFetch = false;  // and the compiler
+    bool float16 = false;
+};
+
+struct SceneSize {
+    std::uint64_t triangles = 0;  // of all instances
+    std::uint32_t instances = 0;
+};
+
+class BenchBed {
+public:
+    // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
+    // `observer`, `scene` and `cache`, which may be null, must outlive the result. Errors of
+    // Context::createHeadless() and of files.
+    static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const RenderSettings& base,
+                                                    const Scene& scene, ModuleCache* cache);
+
+    // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
+    // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
+    // ones. Has the errors of each of these steps.
+    Result<Mount> mount(const Configuration& configuration, const std::string& package = {});
+
+    Context& context() {
+        return *context_;
+    }
+    const RenderSettings& base() const {
+        return base_;
+    }
+    const Scene& scene() const {
+        return scene_;
+    }
+    const std::string& cameraName() const {
+        return cameraName_;
+    }
+    const DeviceOptions& features() const {
+        return features_;
+    }
+    const SceneSize& sceneSize() const {
+        return size_;
+    }
+    const scene_view::SkyChoice& sky() const {
+        return sky_;
+    }
+    std::uint32_t lights() const {
+        return lights_;
+    }
+    bool onCpu() const {
+        return onCpu_;
+    }
+
+private:
+    BenchBed(const Observer& observer, RenderSettings base, const Scene& scene, ModuleCache* cache)
+        : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache) {}
+    Status settleChoices();
+    Result<std::shared_ptr<MountedPackage>> mountPackage(const RenderSettings& arguments);
+
+    const Observer& observer_;
+    RenderSettings base_;
+    const Scene& scene_;
+    ModuleCache* cache_;
+    std::unique_ptr<Context> context_;
+    std::unique_ptr<Environment> environment_;
+    CameraView camera_;
+    std::string cameraName_;
+    scene_view::SkyChoice sky_;
+    DeviceOptions features_;
+    bool onCpu_ = false;
+    std::uint32_t lights_ = 0;
+    SceneSize size_;
+    // The keys hold everything that decides about the values.
+    std::map<std::string, std::weak_ptr<MountedPackage>> packages_;
+    std::map<std::string, std::weak_ptr<Renderer>> renderers_;
+};
+
+}  // namespace glint::measure

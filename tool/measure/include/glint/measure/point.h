@@ -1,0 +1,61 @@
+// A configuration of a bench, and its measurements.
+#pragma once
+
+#include "image/error.h"
+
+#include <glint/measure/hit_times.h>
+#include <glint/measure/settings.h>
+#include <glint/measure/statistics.h>
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::measure {
+
+// The error by which points are ordered, a member of ImageErrors.
+enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };
+std::string_view nameOf(ErrorMetric metric);  // as the JSON has it: "relMse"
+ErrorMetric metricNamed(std::string_view name);
+double valueOf(ErrorMetric metric, const ImageErrors& errors);
+
+enum class PointKind { Default, Single, Pair, Search, Package };
+std::string_view nameOf(PointKind kind);
+
+// The name under which the passes of all cases count together: "shade <case>".
+inline constexpr std::string_view kShadeCases = "shade cases";
+
+// Each list has one entry for each round, in the order of rounds. Times are milliseconds of the device.
+struct BenchPoint {
+    PointKind kind = PointKind::Single;
+    Configuration configuration;  // what differs from the default
+    std::string name;             // for people
+    std::string package;          // folder of one that was given; empty: compiled
+    std::vector<double> times;    // of a picture
+    std::vector<double> ratios;   // to the default in the same round
+    std::map<std::string, std::vector<double>> passes;
+    std::vector<double> hitMs;      // what strategies differ in
+    std::vector<HitTimes> hits;     // its passes
+    std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
+    std::vector<ImageErrors> errors;
+    std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
+    bool sameImage = true;            // as the default's, bit by bit, in every round
+    LinearImage image;                // of the first round
+    FrameCounters counters;           // of its last sample
+    Renderer::Footprint footprint;
+    std::uint32_t cases = 0;
+    std::string tracer;
+    std::string ordering;  // empty where hits are not ordered
+};
+
+// Times relative to the default's median, so that drifts of the machine between batches do not matter.
+Interval timeRatio(const BenchPoint& point);
+Interval errorOf(const BenchPoint& point, ErrorMetric metric);
+// Returns whether the interval of the ratio contains 1.
+bool isTimeTie(const BenchPoint& point);
+bool isErrorTie(const BenchPoint& point);
+
+}  // namespace glint::measure

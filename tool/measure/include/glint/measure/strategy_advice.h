@@ -1,0 +1,51 @@
+// The strategy `auto`: chooses the strategy that is expected to be fastest, from scenes, a
+// package and a device.
+#pragma once
+
+#include "gltf/scene_list.h"
+#include "plan/frame_rounds.h"
+#include "plan/plan.h"
+#include "plan/strategy_choice.h"
+
+#include <glint/context.h>
+#include <glint/measure/render_settings.h>
+#include <glint/package.h>
+#include <glint/result.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint::measure {
+
+// The constants on which an estimate is based.
+struct KnownCosts {
+    DeviceCosts device;
+    bool builtIn = true;
+};
+// Returns the costs in the file, or the built-in costs for the type of device if no file is named. Has the
+// errors of readDeviceFile().
+Result<KnownCosts> knownCosts(const std::string& file, bool onCpu);
+
+// Returns the strategies that can be chosen for a device with these tracers (bits), traced by `tracer` if it
+// is given, and contained in the package if there is one. The names are in the order of kStrategyNames.
+std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
+                                            std::optional<package::Tracer> tracer, const Package* package);
+
+// Returns the rounds of a frame of each scene, for all scenes together. `plan` is that of the scenes.
+std::vector<Round> roundsOf(const SceneList& scenes, const Plan& plan, const PlanOptions& options,
+                            const FrameShape& shape);
+
+// Returns the choice among `available`. Error "calibration-strategies" if there are constants for none of
+// them.
+Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector<Round>& rounds,
+                                      const std::vector<std::string>& available, double pixels);
+
+// Advises for one scene, before anything is rendered. The candidates are what the device can run: of
+// `package` if it is not null, else of a package that would be compiled by `plan`. Warns "calibration-device"
+// if the calibration is for another device. Has the errors of knownCosts() and adviseStrategy().
+Result<StrategyAdvice> adviseRender(const RenderSettings& arguments, const PlanOptions& plan,
+                                    const Context& context, const Scene& scene, const Package* package,
+                                    std::vector<Diagnostic>& warnings);
+
+}  // namespace glint::measure

@@ -1,0 +1,72 @@
+// Measures times and errors of configurations in rounds, in each of which every configuration renders one
+// picture, in random order.
+#pragma once
+
+#include <glint/measure/bed.h>
+#include <glint/measure/observer.h>
+#include <glint/measure/point.h>
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::measure {
+
+struct MeasureOptions {
+    std::uint32_t rounds = 9;
+    std::uint32_t seed = 1;   // of the order; round r renders with random numbers of its own, seed + r
+    std::uint32_t batch = 8;  // configurations that are mounted at a time, besides the default
+    ErrorMetric metric = ErrorMetric::RelMse;
+};
+
+// The picture against which errors are measured.
+struct Truth {
+    const LinearImage& image;
+    double exposure = 0.0;  // stops
+};
+
+// Measures in batches that each have the default in every round. Ratios are relative to the default in the
+// same round, so a machine that slows down or a clock that drifts does not distort them. Before its rounds a
+// configuration renders once, so that its pipelines are ready. On a GPU it also renders for a few
+// milliseconds before each picture, so that clocks are up.
+class Measurer {
+public:
+    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. All arguments
+    // must outlive the result. Has the errors of BenchBed::mount().
+    static Result<Measurer> create(const Observer& observer, BenchBed& bed, const MeasureOptions& options,
+                                   const Truth& truth, BenchPoint& base);
+
+    // Fills in the measurements of `points`. A point that can't be mounted is reported as the warning
+    // "bench-point" and has no measurements.
+    Status measure(std::span<BenchPoint> points);
+
+private:
+    Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
+             BenchPoint& base)
+        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base) {}
+
+    // A configuration on the device, and its picture of the current round.
+    struct Entry {
+        BenchPoint* point = nullptr;
+        Mount mount;
+        Exposure exposure;
+    };
+    Result<Entry> mount(BenchPoint& point) const;
+    Status measureBatch(std::span<Entry> entries, std::uint64_t seed);
+    Status warmUp(const Entry& entry, std::chrono::milliseconds time) const;
+    Status expose(Entry& entry, std::uint32_t seed) const;
+    void keep(std::span<Entry*> entries, std::uint32_t round);
+
+    const Observer& observer_;
+    BenchBed& bed_;
+    MeasureOptions options_;
+    const Truth& truth_;
+    BenchPoint& base_;
+    std::vector<Entry> baseEntry_;  // the one of the default
+    bool baseIsKnown_ = false;      // its errors
+    std::uint64_t batches_ = 0;
+};
+
+}  // namespace glint::measure

@@ -1,0 +1,63 @@
+#include <glint/measure/point.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace glint::measure {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kMetrics{"relMse", "trimmed", "rmse", "flip"};
+constexpr std::array<std::string_view, 5> kKinds{"default", "single", "pair", "search", "package"};
+
+}  // namespace
+
+std::string_view nameOf(ErrorMetric metric) {
+    return kMetrics.at(static_cast<std::size_t>(metric));
+}
+
+ErrorMetric metricNamed(std::string_view name) {
+    const auto found = std::ranges::find(kMetrics, name);
+    return static_cast<ErrorMetric>(std::distance(kMetrics.begin(), found));
+}
+
+double valueOf(ErrorMetric metric, const ImageErrors& errors) {
+    switch (metric) {
+        case ErrorMetric::RelMse:
+            return errors.relMse;
+        case ErrorMetric::Trimmed:
+            return errors.trimmed;
+        case ErrorMetric::Rmse:
+            return errors.rmse;
+        case ErrorMetric::Flip:
+            break;
+    }
+    return errors.flip;
+}
+
+std::string_view nameOf(PointKind kind) {
+    return kKinds.at(static_cast<std::size_t>(kind));
+}
+
+Interval timeRatio(const BenchPoint& point) {
+    return measure::intervalOf(point.ratios);
+}
+
+Interval errorOf(const BenchPoint& point, ErrorMetric metric) {
+    std::vector<double> values;
+    for (const ImageErrors& errors : point.errors) {
+        values.push_back(valueOf(metric, errors));
+    }
+    return measure::intervalOf(values);
+}
+
+bool isTimeTie(const BenchPoint& point) {
+    return isTie(timeRatio(point));
+}
+
+bool isErrorTie(const BenchPoint& point) {
+    return point.sameImage || isTie(measure::intervalOf(point.errorRatios));
+}
+
+}  // namespace glint::measure

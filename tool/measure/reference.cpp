@@ -1,0 +1,181 @@
+#include "measure/reference.h"
+
+#include "base/clock.h"
+#include "cache/packing.h"
+#include "cache/program.h"
+#include "cache/store.h"
+#include "image/tone.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+constexpr std::string_view kKind = "reference";
+// The samples of a block: enough for their sequence to cover a pixel, and few enough to have many blocks.
+constexpr std::uint32_t kBlock = 32;
+constexpr std::uint32_t kFewestBlocks = 4;
+// The seeds of blocks are far from those of rounds.
+constexpr std::uint32_t kFirstSeed = 0x51EED000U;
+
+// Returns everything that decides about the picture.
+Result<std::string> keyOf(BenchBed& bed, const Configuration& configuration) {
+    const RenderSettings& base = bed.base();
+    Packer packer;
+    packer.add(programIdentity()).add(std::uint64_t{kBlock});
+    for (const SourceFile& file : bed.scene().files) {
+        packer.add(file.bytes).add(file.hash);
+    }
+    for (const Configuration& values : {configurationOf(base), configuration}) {
+        for (const auto& [name, value] : values) {
+            packer.add(std::string_view(name)).add(std::string_view(value));
+        }
+    }
+    packer.add(std::string_view(bed.scene().variant))
+        .add(std::string_view(base.size))
+        .add(std::string_view(bed.cameraName()))
+        .add(std::string_view(base.sun))
+        .add(std::string_view(base.sky))
+        .add(std::string_view(base.tracing.tracers.front()))
+        .add(std::string_view(bed.context().deviceName()))
+        .add(std::string_view(bed.context().driverName()))
+        .add(std::string_view(fmt::format("{} {} {} {} {} {} {}", base.effectFrame.lightRadius,
+                                          base.effectFrame.sunAngle, base.effectFrame.occlusionRadius,
+                                          base.effectFrame.occlusionFalloff, base.environment.rotation,
+                                          base.environment.intensity, base.frame.ssrThickness)));
+    if (!base.environment.file.empty()) {
+        const Result<FileDigest> digest = digestFile(base.environment.file);
+        if (!digest) {
+            return digest.error();
+        }
+        packer.add(digest->bytes).add(digest->hash);
+    }
+    return packer.take();
+}
+
+std::string pack(const LinearImage& image) {
+    std::string bytes(image.pixels.size() * sizeof(image.pixels[0]), '\0');
+    std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
+    return bytes;
+}
+
+std::optional<LinearImage> unpack(std::optional<std::string_view> bytes, std::uint32_t width,
+                                  std::uint32_t height) {
+    LinearImage image{width, height, {}};
+    image.pixels.resize(std::size_t{width} * height);
+    if (!bytes || bytes->size() != image.pixels.size() * sizeof(image.pixels[0])) {
+        return std::nullopt;
+    }
+    std::memcpy(image.pixels.data(), bytes->data(), bytes->size());
+    return image;
+}
+
+// What a cache keeps of a reference.
+struct Kept {
+    MeanImage mean;
+    std::vector<std::uint8_t> surfaces;
+};
+
+std::optional<Kept> findKept(CacheStore* store, const std::string& key, std::uint32_t width,
+                             std::uint32_t height) {
+    const std::optional<std::string> bytes = store == nullptr ? std::nullopt : store->find(kKind, key);
+    if (!bytes) {
+        return std::nullopt;
+    }
+    Unpacker unpacker(*bytes);
+    const std::optional<std::uint64_t> blocks = unpacker.number();
+    const std::optional<LinearImage> mean = unpack(unpacker.text(), width, height);
+    const std::optional<LinearImage> error = unpack(unpacker.text(), width, height);
+    const std::optional<std::string_view> surfaces = unpacker.text();
+    if (!blocks || !mean || !error || !surfaces || surfaces->size() != mean->pixels.size() ||
+        !unpacker.atEnd() || *blocks < 2 || *blocks > 0xFFFFFFU) {
+        return std::nullopt;
+    }
+    return Kept{MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks)),
+                {surfaces->begin(), surfaces->end()}};
+}
+
+// Fills in the picture and how certain it is.
+void judge(const MeanImage& sum, std::span<const std::uint8_t> surfaces, const ReferenceOptions& options,
+           Reference& reference) {
+    reference.image = sum.mean();
+    reference.samples = sum.blocks() * kBlock;
+    reference.exposure = automaticExposure(reference.image, surfaces);
+    reference.noise = noiseOf(reference.image, sum.standardError(), reference.exposure);
+    reference.relativeError = std::sqrt(reference.noise.trimmed);
+    reference.target = options.target;
+    reference.reached = reference.relativeError <= options.target;
+}
+
+}  // namespace
+
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const Facts& facts,
+                                const ReferenceOptions& options, CacheStore* store) {
+    const Clock::time_point start = Clock::now();
+    Reference reference;
+    reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    parseSize(bed.base().size, width, height);
+    const Result<std::string> key = keyOf(bed, reference.configuration);
+    if (!key) {
+        return key.error();
+    }
+    std::optional<Kept> kept = findKept(store, *key, width, height);
+    reference.cached = kept.has_value();
+    MeanImage sum = kept ? std::move(kept->mean) : MeanImage(width, height);
+    std::vector<std::uint8_t> surfaces = kept ? std::move(kept->surfaces) : std::vector<std::uint8_t>();
+    const std::uint32_t before = sum.blocks();
+    std::optional<Mount> mount;
+    while (true) {
+        if (sum.blocks() > 0 && sum.blocks() % kFewestBlocks == 0) {
+            judge(sum, surfaces, options, reference);
+            observer.progress(fmt::format("reference: {} samples, within {:.2g} % (target {:.2g} %)",
+                                          reference.samples, 100.0 * reference.relativeError,
+                                          100.0 * options.target));
+            if (reference.reached || reference.samples >= options.maxSamples) {
+                break;
+            }
+        }
+        if (!mount) {
+            observer.progress("compiling the reference");
+            Result<Mount> made = bed.mount(reference.configuration);
+            if (!made) {
+                return made.error();
+            }
+            mount = std::move(*made);
+        }
+        const Result<LinearImage> block = mount->exposeSamples(kFirstSeed + sum.blocks(), kBlock);
+        if (!block) {
+            return block.error();
+        }
+        sum.add(*block);
+        if (surfaces.empty()) {
+            Result<std::vector<std::uint8_t>> seen = mount->surfaces();
+            if (!seen) {
+                return seen.error();
+            }
+            surfaces = std::move(*seen);
+        }
+    }
+    if (store != nullptr && sum.blocks() > before) {
+        Packer packer;
+        packer.add(std::uint64_t{sum.blocks()})
+            .add(std::string_view(pack(sum.mean())))
+            .add(std::string_view(pack(sum.standardError())))
+            .add(std::string_view(std::string(surfaces.begin(), surfaces.end())));
+        store->put(kKind, *key, packer.take());
+    }
+    reference.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return reference;
+}
+
+}  // namespace glint::measure

@@ -1,0 +1,275 @@
+#include "base/text.h"
+#include "measure/commit.h"
+#include "measure/report_json.h"
+
+#include <glint/measure/render_settings.h>
+#include <glint/measure/report.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace glint::measure {
+
+namespace {
+
+Interval times(const Interval& interval, double factor) {
+    return {interval.median * factor, interval.low * factor, interval.high * factor, interval.q1 * factor,
+            interval.q3 * factor};
+}
+
+Json settingsToJson(const Configuration& configuration) {
+    Json object = Json::object();
+    for (const std::string& name : settingNames()) {
+        const auto value = configuration.find(name);
+        if (value != configuration.end()) {
+            object[name] = value->second;
+        }
+    }
+    return object;
+}
+
+// Returns the interval over the rounds of a point.
+Interval intervalOf(const BenchPoint& point, double ImageErrors::*member) {
+    std::vector<double> values;
+    for (const ImageErrors& errors : point.errors) {
+        values.push_back(errors.*member);
+    }
+    return measure::intervalOf(values);
+}
+
+Json errorsToJson(const BenchPoint& point) {
+    std::vector<double> biases;
+    for (const ImageErrors& errors : point.errors) {
+        biases.push_back(errors.bias);
+    }
+    const MeanInterval bias = measure::meanOf(biases);
+    return {{"relMse", toJson(intervalOf(point, &ImageErrors::relMse))},
+            {"rmse", toJson(intervalOf(point, &ImageErrors::rmse))},
+            {"psnr", toJson(intervalOf(point, &ImageErrors::psnr))},
+            {"p999", toJson(intervalOf(point, &ImageErrors::p999))},
+            {"trimmed", toJson(intervalOf(point, &ImageErrors::trimmed))},
+            {"flip", toJson(intervalOf(point, &ImageErrors::flip))},
+            {"bias", {{"mean", bias.mean}, {"low", bias.low}, {"high", bias.high}}}};
+}
+
+Json passesToJson(const BenchPoint& point) {
+    Json passes = Json::array();
+    for (const auto& [name, milliseconds] : point.passes) {
+        const Interval interval = measure::intervalOf(milliseconds);
+        passes.push_back(
+            {{"name", name}, {"median", interval.median}, {"q1", interval.q1}, {"q3", interval.q3}});
+    }
+    return passes;
+}
+
+Json pointToJson(const BenchReport& report, std::size_t index) {
+    const BenchPoint& point = report.points[index];
+    Json time = toJson(timeOf(report, index));
+    time["values"] = point.times;
+    return {{"id", index},
+            {"name", point.name},
+            {"kind", nameOf(point.kind)},
+            {"settings", settingsToJson(point.configuration)},
+            {"package", textOrNull(point.package)},
+            {"command", renderCommand(report, point)},
+            {"time", std::move(time)},
+            {"ratio", toJson(timeRatio(point))},
+            {"timeTie", isTimeTie(point)},
+            {"passes", passesToJson(point)},
+            {"error", errorsToJson(point)},
+            {"errorTie", isErrorTie(point)},
+            {"sameImage", point.sameImage},
+            {"front", std::ranges::find(report.front, index) != report.front.end()},
+            {"tracer", point.tracer},
+            {"ordering", textOrNull(point.ordering)},
+            {"rays", point.counters.rays},
+            {"cases", point.cases},
+            {"pipelines", point.footprint.pipelines},
+            {"bytes", point.footprint.bytes},
+            {"image", imageName(index)},
+            {"errorImage", errorImageName(index)}};
+}
+
+Json settingToJson(const Setting& setting) {
+    Json skipped = Json::array();
+    for (const SkippedValue& value : setting.skipped) {
+        skipped.push_back({{"value", value.value}, {"reason", value.reason}});
+    }
+    return {{"name", setting.name},
+            {"option", "--" + setting.name},
+            {"stage", setting.stage == Stage::Compile ? "compile" : "render"},
+            {"approximates", setting.approximates},
+            {"what", setting.what},
+            {"default", setting.base},
+            {"values", setting.values},
+            {"skipped", std::move(skipped)}};
+}
+
+Json referenceToJson(const BenchReport& report) {
+    const Reference& reference = report.reference;
+    return {{"image", kReferenceImage},
+            {"samples", reference.samples},
+            {"relativeError", reference.relativeError},
+            {"target", reference.target},
+            {"reached", reference.reached},
+            {"noise",
+             {{"relMse", reference.noise.relMse},
+              {"trimmed", reference.noise.trimmed},
+              {"rmse", reference.noise.rmse}}},
+            {"cached", reference.cached},
+            {"seconds", reference.seconds},
+            {"settings", settingsToJson(reference.configuration)},
+            {"exposure", reference.exposure}};
+}
+
+// Returns the values of the base and the point that are decided at `stage`.
+Json decidedAt(const BenchReport& report, const BenchPoint& point, Stage stage) {
+    Configuration values;
+    for (const auto& [name, value] : report.base) {
+        if (stageOf(name) == stage) {
+            values[name] = valueOf(name, point.configuration, report.base);
+        }
+    }
+    return settingsToJson(values);
+}
+
+Json adviceToJson(const BenchReport& report) {
+    if (!report.advice) {
+        return nullptr;
+    }
+    const BenchAdvice& advice = *report.advice;
+    Json object{{"budgetMs", advice.budgetMs ? Json(*advice.budgetMs) : Json(nullptr)},
+                {"maxError", advice.maxError ? Json(*advice.maxError) : Json(nullptr)},
+                {"metric", nameOf(report.metric)},
+                {"point", advice.point ? Json(*advice.point) : Json(nullptr)},
+                {"file", advice.point ? Json(advice.file) : Json(nullptr)}};
+    if (advice.point) {
+        const BenchPoint& point = report.points[*advice.point];
+        object["compile"] = decidedAt(report, point, Stage::Compile);
+        object["render"] = decidedAt(report, point, Stage::Render);
+    }
+    object["why"] = advice.why;
+    return object;
+}
+
+Json strategiesToJson(const BenchReport& report) {
+    const StrategyReport& strategies = report.strategies;
+    Json rows = Json::array();
+    for (const StrategyRow& row : strategies.rows) {
+        rows.push_back({{"strategy", row.strategy},
+                        {"point", row.point},
+                        {"time", toJson(timeOf(report, row.point))},
+                        {"ratio", toJson(row.ratio)},
+                        {"hits", toJson(row.hits)},
+                        {"hitRatio", toJson(row.hitRatio)},
+                        {"traceMs", row.traceMs},
+                        {"orderMs", row.orderMs},
+                        {"shadeMs", row.shadeMs},
+                        {"commonMs", row.commonMs},
+                        {"rays", row.rays}});
+    }
+    return {{"fastest", strategies.fastest},
+            {"rows", std::move(rows)},
+            {"cases", strategies.cases},
+            {"filledCases", strategies.filledCases},
+            {"largestShare", strategies.largestShare},
+            {"casesInWave", strategies.casesInWave},
+            {"why", strategies.why}};
+}
+
+}  // namespace
+
+Interval timeOf(const BenchReport& report, std::size_t point) {
+    const double base = measure::intervalOf(report.points.front().times).median;
+    return point == 0 ? measure::intervalOf(report.points.front().times)
+                      : times(timeRatio(report.points[point]), base);
+}
+
+std::string imageName(std::size_t point) {
+    return fmt::format("images/{:03}.png", point);
+}
+
+std::string errorImageName(std::size_t point) {
+    return fmt::format("images/{:03}_error.png", point);
+}
+
+std::uint32_t pictureScale(const BenchReport& report) {
+    constexpr std::uint32_t kWidest = 320;
+    const std::uint32_t extent = std::min(report.scene.width, 2 * report.scene.height);
+    return std::max(1U, (extent + kWidest - 1) / kWidest);
+}
+
+std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
+    std::vector<std::string> words{"glint", "render", report.scene.file, "-o", "picture.png"};
+    words.insert(words.end(), report.viewWords.begin(), report.viewWords.end());
+    // With these options the command renders the picture of the first round exactly.
+    words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
+                               fmt::format("{:.9g}", report.reference.exposure)});
+    Configuration given;
+    const Configuration defaults = configurationOf(usualSettings());
+    for (const auto& [name, value] : defaults) {
+        const std::string& own = valueOf(name, point.configuration, report.base);
+        const bool isPackaged =
+            !point.package.empty() && stageOf(name) == Stage::Compile && name != "strategy";
+        if (own != value && !isPackaged) {
+            given[name] = own;
+        }
+    }
+    for (const std::string& word : wordsOf(given)) {
+        words.push_back(word);
+    }
+    if (!point.package.empty()) {
+        words.insert(words.end(), {"--package", point.package});
+    }
+    return shellWords(words);
+}
+
+Json toJson(const BenchReport& report) {
+    Json settings = Json::array();
+    for (const Setting& setting : report.settings) {
+        settings.push_back(settingToJson(setting));
+    }
+    Json points = Json::array();
+    for (std::size_t i = 0; i < report.points.size(); ++i) {
+        points.push_back(pointToJson(report, i));
+    }
+    const BenchScene& scene = report.scene;
+    return {{"format", "glint-bench"},
+            {"version", 1},
+            {"tool", GLINT_VERSION},
+            {"commit", sourceCommit()},
+            {"date", report.date},
+            {"command", report.command},
+            {"scene",
+             {{"file", scene.file},
+              {"name", std::filesystem::path(scene.file).stem().string()},
+              {"triangles", scene.triangles},
+              {"materials", scene.materials},
+              {"instances", scene.instances},
+              {"lights", scene.lights},
+              {"camera", scene.camera},
+              {"width", scene.width},
+              {"height", scene.height},
+              {"environment", textOrNull(scene.environment)}}},
+            {"machine", toJson(report.machine)},
+            {"method",
+             {{"rounds", report.rounds},
+              {"seed", report.seed},
+              {"confidence", kConfidence},
+              {"quick", report.quick},
+              {"batch", report.batch},
+              {"pictureScale", pictureScale(report)},
+              {"seconds", report.seconds},
+              {"metric", nameOf(report.metric)}}},
+            {"reference", referenceToJson(report)},
+            {"settings", std::move(settings)},
+            {"points", std::move(points)},
+            {"front", report.front},
+            {"advice", adviceToJson(report)},
+            {"strategies", strategiesToJson(report)}};
+}
+
+}  // namespace glint::measure

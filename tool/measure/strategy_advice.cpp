@@ -1,0 +1,141 @@
+#include "emit/effects.h"
+#include "gltf/import.h"
+#include "plan/built_in_costs.h"
+
+#include <glint/measure/device_file.h>
+#include <glint/measure/render_settings.h>
+#include <glint/measure/strategy_advice.h>
+#include <glint/scene_view/package.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+FrameShape shapeOf(const RenderSettings& render, std::uint32_t effects) {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    parseSize(render.size, width, height);
+    return {static_cast<double>(width) * height, effects, static_cast<float>(render.effects.maxRoughness),
+            render.effectFrame.batch};
+}
+
+// Returns the rounds of a scene whose cases are those of a package.
+std::vector<Round> roundsOf(const Package& package, const Scene& scene, const FrameShape& shape) {
+    std::vector<CaseFeatures> cases;
+    for (const package::CaseEntry& entry : package.cases()) {
+        cases.push_back({entry.always, entry.sometimes, entry.keyCount == 0});
+    }
+    const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
+    std::vector<CaseHits> hits;
+    if (const std::optional<std::uint32_t> index = scene_view::sceneIn(package, scene)) {
+        for (const PrimitiveInputs& inputs : primitives) {
+            const package::PrimitiveEntry* const entry = package.scene(*index).findPrimitive(
+                static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));
+            if (entry != nullptr && entry->shaderId < cases.size()) {
+                hits.push_back({static_cast<int>(entry->shaderId), inputs.expectedHits});
+            }
+        }
+    }
+    return frameRounds(scene.materials, primitives, roundCases(cases, hits), shape);
+}
+
+}  // namespace
+
+Result<KnownCosts> knownCosts(const std::string& file, bool onCpu) {
+    if (file.empty()) {
+        return KnownCosts{builtInCosts(onCpu), true};
+    }
+    Result<DeviceFile> read = readDeviceFile(file);
+    if (!read) {
+        return read.error();
+    }
+    return KnownCosts{std::move(read->costs), false};
+}
+
+std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
+                                            std::optional<package::Tracer> tracer, const Package* package) {
+    const std::uint32_t wanted = tracer ? std::uint32_t{*tracer} : package::kAllTracers;
+    const std::uint32_t compiled = package != nullptr ? package->shape().tracers : package::kAllTracers;
+    std::vector<std::string> names;
+    for (const std::string_view name : kStrategyNames) {
+        const package::Strategy strategy = strategyNamed(std::string(name));
+        const bool has = package == nullptr || package->supports(strategy);
+        // hit-shaders needs ray tracing pipelines, whatever the package's tracers are.
+        const std::uint32_t tracers = package::tracersOf(strategy, compiled);
+        if (has && (tracers & wanted & deviceTracers) != 0) {
+            names.emplace_back(name);
+        }
+    }
+    return names;
+}
+
+std::vector<Round> roundsOf(const SceneList& scenes, const Plan& plan, const PlanOptions& options,
+                            const FrameShape& shape) {
+    const std::vector<CaseFeatures> cases = caseFeatures(plan);
+    std::vector<Round> rounds;
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const SceneList::Range range = scenes.primitivesOf(i);
+        const std::span<const PrimitiveInputs> primitives =
+            scenes.primitives().subspan(range.first, range.count);
+        const std::vector<CaseHits> hits = caseHits(plan, options, primitives, range.first);
+        for (Round& round : frameRounds(scenes.materials(), primitives, roundCases(cases, hits), shape)) {
+            rounds.push_back(std::move(round));
+        }
+    }
+    return rounds;
+}
+
+Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector<Round>& rounds,
+                                      const std::vector<std::string>& available, double pixels) {
+    std::optional<StrategyChoice> choice = chooseStrategy(rounds, costs.device, available);
+    if (!choice) {
+        return makeError(
+            "calibration-strategies", costs.device.device,
+            fmt::format("was not measured with any strategy that can be used here: {}",
+                        available.empty() ? "none" : fmt::format("{}", fmt::join(available, ", "))),
+            "name a --strategy, or measure the device again with glint bench --calibrate");
+    }
+    return StrategyAdvice{std::move(*choice), costs.device.device, costs.builtIn, pixels};
+}
+
+Result<StrategyAdvice> adviseRender(const RenderSettings& render, const PlanOptions& plan,
+                                    const Context& context, const Scene& scene, const Package* package,
+                                    std::vector<Diagnostic>& warnings) {
+    Result<KnownCosts> costs =
+        knownCosts(render.calibration, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
+    if (!costs) {
+        return costs.error();
+    }
+    if (costs->builtIn && context.subgroupSize() > 0) {
+        costs->device.subgroupSize = context.subgroupSize();
+    } else if (!costs->builtIn && costs->device.device != context.deviceName()) {
+        warnings.push_back(makeWarning("calibration-device", render.calibration,
+                                       fmt::format("was measured on {}, but this device is {}",
+                                                   costs->device.device, context.deviceName()),
+                                       "measure this device with glint bench --calibrate"));
+    }
+    const std::uint32_t tracers = context.handles().tracers;
+    const SceneList scenes({&scene, 1});
+    if (package == nullptr) {
+        const CompileSettings settings = compileSettings(render, plan, tracers, scene);
+        const FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects);
+        const Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
+        return adviseStrategy(*costs, roundsOf(scenes, made, plan, shape),
+                              runnableStrategies(tracers, tracerOf(render), nullptr), shape.pixels);
+    }
+    const FrameShape shape = shapeOf(render, package->shape().effects);
+    std::vector<std::string> available = runnableStrategies(tracers, tracerOf(render), package);
+    if (available.empty()) {
+        // What the device lacks is reported when the package is used.
+        available = strategyNames(package->shape().strategies);
+    }
+    return adviseStrategy(*costs, roundsOf(*package, scene, shape), available, shape.pixels);
+}
+
+}  // namespace glint::measure

@@ -1,0 +1,26 @@
+// Which meshes of a scene change shape.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <algorithm>
+
+namespace glint {
+
+// Returns whether the node draws a mesh whose vertices follow a skin or morph targets.
+inline bool isDeformed(const Scene& scene, const Node& node) {
+    if (node.mesh < 0) {
+        return false;
+    }
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+    return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
+        return !primitive.targets.empty() || (node.skin >= 0 && primitive.influences.count > 0);
+    });
+}
+
+// Returns whether any node of the scene does. Its package then has the deforming pass.
+inline bool hasDeformedMesh(const Scene& scene) {
+    return std::ranges::any_of(scene.nodes, [&](const Node& node) { return isDeformed(scene, node); });
+}
+
+}  // namespace glint

@@ -1,0 +1,58 @@
+// Chooses the camera of a picture. Boxes and places are in metres and in world space.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+#include <glint/scene_view.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <array>
+#include <string>
+
+namespace glint::scene_view {
+
+// An axis-aligned box in world space. It is empty if any min is above its max.
+struct Bounds {
+    std::array<double, 3> min{};
+    std::array<double, 3> max{};
+    bool empty() const;
+};
+
+// Returns the union of the transformed boxes of all instances, which may be larger than the geometry.
+// Instances whose box is not finite are left out.
+Bounds worldBounds(const SceneViewData& scene);
+
+// The same at the pose of `scene`, from which `view` was made. For meshes that follow joints or morph targets
+// it uses the deformed vertices.
+Bounds posedBounds(const Scene& scene, const SceneViewData& view);
+
+// Returns the union. An empty box adds nothing.
+Bounds united(const Bounds& a, const Bounds& b);
+
+// Fills the image with `bounds`, with a margin of 5 %, from the front (+Z), a little above and to the right.
+// Flat objects are shown nearly head-on. The vertical field of view is 30°. An empty box, or a point, is
+// treated as a box of 1 m around it. aspect is width / height.
+CameraView framingCamera(const Bounds& bounds, double aspect);
+
+// Returns camera `index` of the scene, which must have it. Its vertical field of view or height stays, and
+// its width follows `aspect`. Error "camera-matrix" if its node's transform is singular.
+Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double aspect);
+
+struct CameraChoice {
+    CameraView view;
+    std::string name;  // for people: "auto", or the camera's name or number
+};
+
+// Returns whether chooseCamera() frames everything instead of taking a camera of the scene.
+bool framesEverything(const Scene& scene, const std::string& wanted);
+
+// `wanted` is "auto", or the number or name of a camera of the scene. If it is empty, the first camera is
+// used, or "auto" if there is none. Error "camera-unknown".
+Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
+                                  double aspect);
+// The same, with the bounds that an automatic camera frames.
+Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
+                                        double aspect);
+
+}  // namespace glint::scene_view

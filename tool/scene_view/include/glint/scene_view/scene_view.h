@@ -1,0 +1,82 @@
+// Makes what the runtime takes (glint/scene_view.h) from a Scene that was read from glTF. A program that uses
+// both needs no other code between them:
+//
+//     Result<Scene> scene = importScene("room.gltf", {.decodeImages = true});
+//     scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
+//     GpuScene::upload(context, package, data.view());
+#pragma once
+
+#include "emit/material_layout.h"
+#include "gltf/scene.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace glint::scene_view {
+
+// The arrays behind a SceneView. Spans point into the Scene, which must outlive it and must not change.
+struct SceneViewData {
+    std::vector<PrimitiveView> primitives;  // sorted by (mesh, primitive)
+    std::vector<InstanceView> instances;
+    std::vector<ImageView> images;
+    std::vector<LightView> lights;
+
+    std::uint32_t packageScene = 0;  // as in SceneView
+    bool moves = false;              // as in SceneView
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
+    std::vector<MaterialView> materials;  // those that animations change
+    // By instance: what places it.
+    struct Source {
+        std::size_t node = 0;       // index into Scene::nodes
+        std::size_t placement = 0;  // index into its Instancing, if it has one
+    };
+    std::vector<Source> sources;
+    // The data to which the spans of primitives, instances and materials point.
+    MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
+    std::vector<std::vector<std::uint8_t>> materialRecords;
+    std::vector<std::vector<MorphTargetView>> targets;
+    std::vector<std::vector<std::array<float, 12>>> joints;
+    std::vector<std::vector<float>> weights;
+
+    // What GpuScene::upload() and Renderer::recordMotion() take. Both point into this object and into the
+    // Scene.
+    SceneView view() const;
+    MotionView motion() const;
+
+    SceneViewData() = default;
+    // A copy's spans would point into the original.
+    SceneViewData(const SceneViewData&) = delete;
+    SceneViewData& operator=(const SceneViewData&) = delete;
+    SceneViewData(SceneViewData&&) = default;
+    SceneViewData& operator=(SceneViewData&&) = default;
+    ~SceneViewData() = default;
+};
+
+// Returns every mesh that a node places, with the numbers of mesh and primitive that the Scene has.
+// Primitives without a triangle are left out, and so are instances of meshes that have no other, and nodes
+// that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
+// Copies no vertices and no pixels: `scene` must outlive the result. Its images must have been decoded, or
+// the runtime refuses them.
+SceneViewData makeSceneView(const Scene& scene);
+
+// Makes records of materials in the layout of `package`, whose scene `scene` is. A scene with materials that
+// animations change needs this before it is uploaded.
+void useLayoutOf(const Package& package, const Scene& scene, SceneViewData& data);
+
+// Takes the pose of `scene`, from which `data` was made: instances, joints, weights, materials and lights.
+// Lights that were added after those of the scene stay.
+void poseSceneView(const Scene& scene, SceneViewData& data);
+
+// Returns three rows of four of a column-major matrix.
+std::array<float, 12> toRows(const Matrix4& matrix);
+
+// Returns a light for scenes without one: warm, from the upper left behind the default camera, 3 lux, which
+// is a few times the radiance of the default sky.
+LightView sunLight();
+
+}  // namespace glint::scene_view

@@ -1,0 +1,26 @@
+// Computes the value of an animated property between its keyframes.
+#pragma once
+
+#include "gltf/animation.h"
+
+#include <array>
+#include <vector>
+
+namespace glint::scene_view {
+
+using Quaternion = std::array<double, 4>;  // x, y, z, w
+
+// Interpolates unit quaternions spherically along the shorter arc, with `amount` in [0, 1] (glTF 2.0,
+// appendix C.4). Opposite quaternions are the same rotation.
+Quaternion slerp(const Quaternion& from, Quaternion to, double amount);
+
+// Returns the values at `time` (seconds), sampler.width of them. Before the first keyframe they are those of
+// the first, and after the last those of the last. Numbers are interpolated one by one (glTF 2.0, appendix
+// C).
+std::vector<double> sampleNumbers(const AnimationSampler& sampler, double time);
+
+// Returns the rotation at `time`, which has unit length. `sampler.width` is 4. Linear interpolation is
+// spherical. A rotation of length 0 has no meaning, and counts as no rotation.
+Quaternion sampleRotation(const AnimationSampler& sampler, double time);
+
+}  // namespace glint::scene_view

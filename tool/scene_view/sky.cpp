@@ -1,0 +1,249 @@
+#include "base/vectors.h"
+#include "image/tone.h"
+#include "scene/deformed.h"
+
+#include <glint/scene_view/pose.h>
+#include <glint/scene_view/sky.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+namespace glint::scene_view {
+
+namespace {
+
+using Corners = std::array<Double3, 3>;
+
+// Returns 1, or -1 if the transform mirrors, which swaps the sides of a triangle.
+double handedness(const std::array<float, 12>& rows) {
+    const Double3 x{rows[0], rows[1], rows[2]};
+    const Double3 y{rows[4], rows[5], rows[6]};
+    const Double3 z{rows[8], rows[9], rows[10]};
+    return dot(cross(x, y), z) < 0.0 ? -1.0 : 1.0;
+}
+
+// Returns the positions of a primitive of an instance in world space.
+std::vector<Double3> worldPositions(const Scene& scene, const Node& node, const InstanceView& instance,
+                                    const Primitive& primitive) {
+    std::vector<Double3> positions;
+    const bool skinned = !instance.joints.empty();
+    if (isDeformed(scene, node)) {
+        const std::vector<Matrix4> joints =
+            skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
+                    : std::vector<Matrix4>();
+        positions = deformedPositions(primitive, node.weights, joints);
+    } else {
+        positions.reserve(primitive.positions.size());
+        for (const Float3& position : primitive.positions) {
+            positions.push_back(toDouble3(position));
+        }
+    }
+    // Skinned vertices are in the world already.
+    for (Double3& position : positions) {
+        position = skinned ? position : transformed(instance.objectToWorld, position);
+    }
+    return positions;
+}
+
+// Returns a vector along the normal of the triangle's front; its length is twice the area.
+Double3 areaVector(const Corners& corners) {
+    return cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
+}
+
+// Calls `visit` for each triangle of all visible instances that has an area, in a fixed order. The corners
+// are counter-clockwise as seen from the front.
+void visitTriangles(const Scene& scene, const SceneViewData& view,
+                    const std::function<void(const Corners&, double area)>& visit) {
+    for (std::size_t i = 0; i < view.instances.size(); ++i) {
+        const InstanceView& instance = view.instances[i];
+        if (!instance.visible) {
+            continue;
+        }
+        const Node& node = scene.nodes[view.sources[i].node];
+        const bool mirrored = handedness(instance.objectToWorld) < 0.0;
+        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+            const std::vector<Double3> positions = worldPositions(scene, node, instance, primitive);
+            for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {
+                Corners corners{positions[primitive.indices[first]], positions[primitive.indices[first + 1]],
+                                positions[primitive.indices[first + 2]]};
+                if (mirrored) {
+                    std::swap(corners[1], corners[2]);
+                }
+                const Double3 twice = areaVector(corners);
+                const double area = 0.5 * length(twice);
+                if (std::isfinite(area) && area > 0.0) {
+                    visit(corners, area);
+                }
+            }
+        }
+    }
+}
+
+// Returns the middle of a triangle.
+SurfacePoint centreOf(const Corners& corners) {
+    SurfacePoint point;
+    for (std::size_t i = 0; i < 3; ++i) {
+        point.position[i] = (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0;
+    }
+    const Double3 normal = areaVector(corners);
+    point.normal = scaled(normal, 1.0 / length(normal));
+    return point;
+}
+
+Double3 between(const Double3& a, const Double3& b) {
+    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+}
+
+// Returns whether a light is so near that its illuminance varies over the triangle.
+bool varies(const Corners& corners, const Double3& centre, std::span<const LightView> lights) {
+    double radius = 0.0;
+    for (const Double3& corner : corners) {
+        radius = std::max(radius, length(difference(corner, centre)));
+    }
+    return std::ranges::any_of(lights, [&](const LightView& light) {
+        return light.type != LightView::Type::Directional &&
+               length(difference(toDouble3(light.position), centre)) < 4.0 * radius;
+    });
+}
+
+// Divides a triangle of this area into patches.
+void addPatches(const Corners& corners, double area, std::span<const LightView> lights, int divisions,
+                std::vector<LitPatch>& patches) {
+    const SurfacePoint centre = centreOf(corners);
+    // This bounds the evaluations of lights if there are many lights.
+    constexpr std::size_t kMostEvaluations = 1U << 20U;
+    if (divisions > 0 && patches.size() * lights.size() < kMostEvaluations &&
+        varies(corners, centre.position, lights)) {
+        const Double3 ab = between(corners[0], corners[1]);
+        const Double3 bc = between(corners[1], corners[2]);
+        const Double3 ca = between(corners[2], corners[0]);
+        for (const Corners& quarter : {Corners{corners[0], ab, ca}, Corners{ab, corners[1], bc},
+                                       Corners{ca, bc, corners[2]}, Corners{ab, bc, ca}}) {
+            addPatches(quarter, 0.25 * area, lights, divisions - 1, patches);
+        }
+        return;
+    }
+    LitPatch patch{0.0, area};
+    for (const LightView& light : lights) {
+        patch.illuminance += illuminanceAt(light, centre);
+    }
+    patches.push_back(patch);
+}
+
+double luminanceOf(const std::array<float, 3>& color) {
+    return luminance({color[0], color[1], color[2]});
+}
+
+}  // namespace
+
+std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
+                                 std::span<const LightView> lights) {
+    constexpr double kParts = 8192.0;
+    constexpr int kDivisions = 20;  // enough to divide a plane of a hundred kilometres into tenths of a metre
+    double whole = 0.0;
+    visitTriangles(scene, view, [&](const Corners&, double area) { whole += area; });
+    std::vector<LitPatch> patches;
+    if (!std::isfinite(whole) || whole <= 0.0) {
+        return patches;
+    }
+    const double part = whole / kParts;
+    double small = 0.0;  // area of small triangles for which no patch stands yet
+    visitTriangles(scene, view, [&](const Corners& corners, double area) {
+        if (area >= part) {
+            addPatches(corners, area, lights, kDivisions, patches);
+            return;
+        }
+        // This is systematic sampling: one triangle is chosen for each part of the area that the small ones
+        // have together.
+        small += area;
+        if (small > 0.5 * part) {
+            addPatches(corners, part, lights, 0, patches);
+            small -= part;
+        }
+    });
+    return patches;
+}
+
+double illuminanceAt(const LightView& light, const SurfacePoint& point) {
+    const double intensity = luminanceOf(light.intensity);
+    const Double3 way = toDouble3(light.direction);
+    if (light.type == LightView::Type::Directional) {
+        return intensity * std::max(-dot(way, point.normal), 0.0);
+    }
+    constexpr double kLeastSquaredDistance = 1e-6;
+    const Double3 toLight = difference(toDouble3(light.position), point.position);
+    const double squared = dot(toLight, toLight);
+    if (!(squared > 0.0)) {
+        return 0.0;
+    }
+    const double distance = std::sqrt(squared);
+    const Double3 direction = scaled(toLight, 1.0 / distance);
+    double share = std::max(dot(direction, point.normal), 0.0) / std::max(squared, kLeastSquaredDistance);
+    if (light.range > 0.0F) {
+        const double ratio = distance / light.range;
+        share *= std::clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
+    }
+    if (light.type == LightView::Type::Spot) {
+        const double outer = std::cos(light.outerConeAngle);
+        const double width = std::max(0.001, std::cos(light.innerConeAngle) - outer);
+        const double cone = std::clamp((-dot(way, direction) - outer) / width, 0.0, 1.0);
+        share *= cone * cone;
+    }
+    return intensity * share;
+}
+
+std::optional<double> typicalIlluminance(std::vector<LitPatch> patches) {
+    constexpr double kShare = 0.75;
+    std::erase_if(patches, [](const LitPatch& patch) {
+        return !std::isfinite(patch.illuminance) || patch.illuminance <= 0.0;
+    });
+    std::ranges::sort(patches, std::greater(), &LitPatch::illuminance);
+    double flux = 0.0;
+    for (const LitPatch& patch : patches) {
+        flux += patch.illuminance * patch.area;
+    }
+    double received = 0.0;
+    double area = 0.0;
+    double sum = 0.0;
+    for (const LitPatch& patch : patches) {
+        if (received >= kShare * flux) {
+            break;
+        }
+        received += patch.illuminance * patch.area;
+        area += patch.area;
+        sum += patch.area * std::log(patch.illuminance);
+    }
+    return area > 0.0 ? std::optional(std::exp(sum / area)) : std::nullopt;
+}
+
+double meanIlluminance(const SkyView& sky) {
+    // The gradient is linear in the height, and the area of the sphere is uniform over the height.
+    return std::numbers::pi * 0.25 *
+           (2.0 * luminanceOf(sky.horizon) + luminanceOf(sky.zenith) + luminanceOf(sky.ground));
+}
+
+SkyView SkyChoice::sky() const {
+    SkyView result;
+    for (std::array<float, 3>* const radiance : {&result.zenith, &result.horizon, &result.ground}) {
+        for (float& channel : *radiance) {
+            channel = static_cast<float>(channel * scale);
+        }
+    }
+    return result;
+}
+
+SkyChoice skyForLights(std::vector<LitPatch> patches) {
+    constexpr double kMost = 1e18;  // the same limit as for an environment map
+    SkyChoice choice;
+    choice.automatic = true;
+    choice.lights = typicalIlluminance(std::move(patches));
+    if (choice.lights) {
+        choice.scale = std::clamp(*choice.lights / meanIlluminance(SkyView{}), 1.0 / kMost, kMost);
+    }
+    return choice;
+}
+
+}  // namespace glint::scene_view
