@@ -1,19 +1,17 @@
-// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers: clearcoat over
-// sheen over a base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
+// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers over a
+// base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
 //
 // Appendix B.2 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
 // GLINT_PARTIAL_METAL has both bases; in any other key the base is all metal or all dielectric.
 #include "generated/scene.glsl"
-#include "hit/features.glsl"
+#include "bsdf/features.glsl"
 #include "bsdf/constants.glsl"
 #include "bsdf/exact.glsl"
 #include "bsdf/fresnel.glsl"
 #include "bsdf/ggx.glsl"
 #include "bsdf/albedo.glsl"
-#include "bsdf/sheen.glsl"
-#include "bsdf/iridescence.glsl"
 #include "bsdf/transmission.glsl"
-#include "bsdf/clearcoat.glsl"
+#include "generated/layers.glsl"
 
 // GLINT_RELAXED values are shares of light in [0, 1] and may have 16 bits (--precision 16). Directions, alphas, and
 // losses, which vanish with alpha², keep 32 bits. Vectors are in the frame of the surface: z is the shading normal on
@@ -29,18 +27,13 @@ struct Bsdf {
     GLINT_RELAXED vec3 transmitted;         // tint and share of light that passes the microfacets
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
-    GLINT_RELAXED float clearcoat;          // share of the surface that the coat covers
-    float clearcoatAlpha;
-    vec3 clearcoatNormal;     // unit
-    GLINT_RELAXED vec3 sheenColor;
-    float sheenAlpha;  // at least kMinSheenAlpha
+    Layers layers;
     // prepareBsdf() sets the following members, which depend on the view:
     vec3 view;         // unit, z >= kMinViewCosine
     float viewLoss;    // 1 - E: the share that white microfacets lose by single scattering
     float viewBias;    // the part of E that (1 - v·h)⁵ weights
     float meanLoss;    // 2 ∫ (1 - E(μ)) μ dμ
     float meanBias;
-    float sheenAlbedo;  // of the white sheen lobe; above 1 near grazing, and the lobe is then divided by it
 };
 
 // Returns what both bases together have of a quantity that is known of each.
@@ -118,10 +111,7 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     vec2 mean = hasLobe(features, GLINT_ANISOTROPY) ? anisotropicGgxMeanAlbedo(b.alpha) : ggxMeanAlbedo(b.alpha.x);
     b.meanLoss = mean.x;
     b.meanBias = mean.y;
-    b.sheenAlbedo = 0.0;
-    if (hasLobe(features, GLINT_SHEEN)) {
-        b.sheenAlbedo = sheenAlbedo(b.view.z, b.sheenAlpha);
-    }
+    prepareLayers(b.layers, features, b.view);
 }
 
 // Returns whether light passes without bending. The facets that reflect and those that let light through then differ,
@@ -228,67 +218,17 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     return result;
 }
 
-// The share of light that reaches the base below the sheen, for one cosine: KHR_materials_sheen, albedo scaling.
-GLINT_RELAXED float belowSheen(Bsdf b, float albedo) {
-    GLINT_RELAXED float color = largest(b.sheenColor);
-    GLINT_RELAXED float reflected = min(albedo, 1.0);
-    return max(1.0 - color * reflected, 0.0);
-}
-
-// The cosine between the view and the coat's normal.
-float coatViewCosine(Bsdf b) {
-    return clamp(accurateDot(b.clearcoatNormal, b.view), kMinViewCosine, 1.0);
-}
-
-// Returns whether the coat's normal faces the viewer.
-bool facesViewer(Bsdf b) {
-    return accurateDot(b.clearcoatNormal, b.view) >= kMinViewCosine;
-}
-
-// What lies below the coat: base and sheen, times |n·l|, without the coat's absorption.
-vec3 evaluateBelowCoat(Bsdf b, Features features, vec3 l) {
+// Returns what the base reflects or transmits, times |n·l|, without the layers above it.
+vec3 evaluateBase(Bsdf b, Features features, vec3 l) {
     bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
-    vec3 result = vec3(0.0);
     if (l.z > 0.0) {
-        result = baseReflection(b, features, l);
-    } else if (transmits && l.z < 0.0) {
-        result = baseTransmission(b, features, l);
+        return baseReflection(b, features, l);
     }
-    if (hasLobe(features, GLINT_SHEEN)) {
-        GLINT_RELAXED float below = belowSheen(b, b.sheenAlbedo);
-        if (l.z > 0.0) {
-            float lightAlbedo = sheenAlbedo(l.z, b.sheenAlpha);
-            below = min(below, belowSheen(b, lightAlbedo));
-            vec3 h = normalize(b.view + l);
-            float lobe = sheenDistribution(h.x * h.x + h.y * h.y, b.sheenAlpha) *
-                         sheenVisibility(l.z, b.view.z, b.sheenAlpha) /
-                         max(max(b.sheenAlbedo, lightAlbedo), 1.0);
-            result = result * below + b.sheenColor * (lobe * l.z);
-        } else {
-            result *= below;
-        }
-    }
-    return result;
-}
-
-// What the coat reflects, times the cosine to its own normal. The coat covers the hemisphere about that normal, whatever
-// the normal of the base is. If it turns away from the viewer, it covers only what is above the base, too.
-float evaluateCoat(Bsdf b, vec3 l) {
-    float nDotL = accurateDot(b.clearcoatNormal, l);
-    float nDotV = coatViewCosine(b);
-    if (nDotL <= 0.0 || (l.z <= 0.0 && !facesViewer(b))) {
-        return 0.0;
-    }
-    return clearcoatFresnel(b.clearcoat, nDotV) * nDotL *
-           clearcoatLobe(b.clearcoatNormal, nDotL, nDotV, b.view, l, b.clearcoatAlpha);
+    return transmits && l.z < 0.0 ? baseTransmission(b, features, l) : vec3(0.0);
 }
 
 // Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is
 // on the far side.
 vec3 evaluateBsdf(Bsdf b, Features features, vec3 l) {
-    vec3 result = evaluateBelowCoat(b, features, l);
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        result = result * clearcoatPassed(b.clearcoat, coatViewCosine(b)) + vec3(evaluateCoat(b, l));
-    }
-    return result;
+    return addLayers(b.layers, features, b.view, l, evaluateBase(b, features, l));
 }

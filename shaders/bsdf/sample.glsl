@@ -1,6 +1,5 @@
 // Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the mixture.
 #include "bsdf/bsdf.glsl"
-#include "hit/geometry.glsl"
 
 struct BsdfSample {
     vec3 direction;  // unit vector, in the frame of the surface
@@ -10,49 +9,35 @@ struct BsdfSample {
 
 // The probabilities of the lobes; they sum to 1.
 struct LobeChances {
-    float coat;         // visible normals of the coat
     float microfacets;  // visible normals of the base, for reflection and passage
-    float diffuse;      // cosine-weighted: diffuse, sheen, multiple scattering
+    float diffuse;      // cosine-weighted: diffuse, multiple scattering
     float passed;       // cosine-weighted, on the far side
+    LayerChances layers;
 };
 
 LobeChances lobeChances(Bsdf b, Features features) {
     vec3 single = singleScatterAlbedo(b, features, b.viewLoss, b.viewBias);
     vec3 all = specularAlbedo(b, features, b.viewLoss, b.viewBias);
     float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
-    float microfacets = luminance(single);
-    float diffuse = luminance(b.diffuse) * below + luminance(all - single);
-    float passed = 0.0;
+    LobeChances chances;
+    chances.microfacets = luminance(single);
+    chances.diffuse = luminance(b.diffuse) * below + luminance(all - single);
+    chances.passed = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        microfacets += luminance(b.transmitted) * below;
+        chances.microfacets += luminance(b.transmitted) * below;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        passed = luminance(b.diffuseTransmitted) * below;
+        chances.passed = luminance(b.diffuseTransmitted) * below;
     }
-    if (hasLobe(features, GLINT_SHEEN)) {
-        float base = belowSheen(b, b.sheenAlbedo);
-        microfacets *= base;
-        passed *= base;
-        diffuse = diffuse * base + luminance(b.sheenColor) * min(b.sheenAlbedo, 1.0);
-    }
-    float coat = 0.0;
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        float nDotV = coatViewCosine(b);
-        coat = clearcoatFresnel(b.clearcoat, nDotV);
-        float underCoat = clearcoatPassed(b.clearcoat, nDotV);
-        microfacets *= underCoat;
-        diffuse *= underCoat;
-        passed *= underCoat;
-        if (!facesViewer(b)) {
-            // If the coat's normal turns away from the view, it has no visible normals.
-            diffuse += coat;
-            coat = 0.0;
-        }
-    }
-    float total = coat + microfacets + diffuse + passed;
+    float base = layerChances(b.layers, features, b.view, chances.layers);
+    float total = base * (chances.microfacets + chances.diffuse + chances.passed) + sumOfChances(chances.layers);
     // A black surface samples its microfacets; the weight of these samples is 0.
-    return total > 0.0 ? LobeChances(coat / total, microfacets / total, diffuse / total, passed / total)
-                       : LobeChances(0.0, 1.0, 0.0, 0.0);
+    float scale = total > 0.0 ? 1.0 / total : 0.0;
+    chances.microfacets = total > 0.0 ? chances.microfacets * base * scale : 1.0;
+    chances.diffuse *= base * scale;
+    chances.passed *= base * scale;
+    scaleChances(chances.layers, scale);
+    return chances;
 }
 
 // The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine under which
@@ -122,37 +107,12 @@ float microfacetPdf(Bsdf b, Features features, vec3 l) {
     return pdf;
 }
 
-// The density of the coat's lobe: mirroredPdf() in the coat's frame.
-float coatPdf(Bsdf b, vec3 l) {
-    if (accurateDot(b.clearcoatNormal, l) <= 0.0) {
-        return 0.0;
-    }
-    float nDotV = coatViewCosine(b);
-    return 0.5 * clearcoatDistribution(b.clearcoatNormal, b.view, l, b.clearcoatAlpha) /
-           (nDotV + clearcoatProjection(nDotV, b.clearcoatAlpha));
-}
-
 // The density, by solid angle, with which sampleBsdf() chooses l.
 float bsdfPdf(Bsdf b, Features features, vec3 l) {
     LobeChances chances = lobeChances(b, features);
     float pdf = chances.microfacets * microfacetPdf(b, features, l);
     pdf += (l.z > 0.0 ? chances.diffuse * l.z : chances.passed * -l.z) * kInversePi;
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        pdf += chances.coat * coatPdf(b, l);
-    }
-    return pdf;
-}
-
-// Samples a cosine-weighted direction about z: Malley's method.
-vec3 sampleCosine(vec2 u) {
-    float radius = sqrt(u.x);
-    float phi = 2.0 * kPi * u.y;
-    return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(1.0 - u.x, 0.0)));
-}
-
-// Returns the mirror image of v about a facet's normal.
-vec3 reflectAbout(vec3 v, vec3 h) {
-    return 2.0 * dot(v, h) * h - v;
+    return pdf + layersDensity(b.layers, features, chances.layers, b.view, l);
 }
 
 // Samples a facet of the base and the direction to which it sends the view. u.z first chooses the colour, then
@@ -177,18 +137,6 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-// Samples a direction to which the coat reflects the view. Returns 0 if it points below the coat, where the coat has no
-// density.
-vec3 sampleCoat(Bsdf b, vec2 u) {
-    vec3 tangent;
-    vec3 bitangent;
-    buildBasis(b.clearcoatNormal, tangent, bitangent);
-    vec3 view = vec3(dot(tangent, b.view), dot(bitangent, b.view), coatViewCosine(b));
-    vec3 h = sampleVisibleNormal(normalize(view), vec2(b.clearcoatAlpha), u);
-    vec3 l = reflectAbout(b.view, tangent * h.x + bitangent * h.y + b.clearcoatNormal * h.z);
-    return accurateDot(b.clearcoatNormal, l) > 0.0 ? l : vec3(0.0);
-}
-
 // Samples a direction for the prepared view; u is uniform in [0, 1)³.
 BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
     LobeChances chances = lobeChances(b, features);
@@ -201,7 +149,8 @@ BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
     } else if (chooser < chances.microfacets + chances.diffuse + chances.passed) {
         l = sampleCosine(u.xy) * vec3(1.0, 1.0, -1.0);
     } else {
-        l = sampleCoat(b, u.xy);
+        chooser -= chances.microfacets + chances.diffuse + chances.passed;
+        l = sampleLayers(b.layers, features, chances.layers, b.view, u.xy, chooser);
     }
     BsdfSample result = BsdfSample(l, vec3(0.0), 0.0);
     if (l.z == 0.0) {

@@ -73,15 +73,3 @@ float refractedTransmission(vec3 v, vec3 l, vec2 alpha, float eta, out float cos
     return 4.0 * ggxVisibility(l, v, alpha) * ggxDistribution(facet.h, alpha) * facet.cosineV * facet.cosineL *
            facet.spread * -l.z;
 }
-
-// The share of light that passes a length of absorbing medium (Beer and Lambert): KHR_materials_volume. absorption is
-// per metre.
-vec3 volumeTransmittance(vec3 absorption, float distance) {
-    return exp(-absorption * distance);
-}
-
-// The indices of red, green and blue light: KHR_materials_dispersion. The spread is symmetric about green.
-vec3 dispersedIor(float ior, float dispersion) {
-    float halfSpread = (ior - 1.0) * 0.025 * dispersion;
-    return vec3(ior - halfSpread, ior, ior + halfSpread);
-}

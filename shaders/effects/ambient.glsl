@@ -2,6 +2,7 @@
 #include "bsdf/ggx.glsl"
 #include "effects/sky.glsl"
 #include "effects/sky_shares.glsl"
+#include "generated/layers_sky.glsl"
 #include "hit/geometry.glsl"
 #include "hit/surface.glsl"
 
@@ -84,15 +85,5 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
         back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * skyIrradianceOverPi(-surface.normal);
     }
-    vec3 result = (front * open + back) * baseShare(surface, features);
-    GLINT_RELAXED float coat = coatReflectance(surface, features);
-    if (hasLobe(features, GLINT_SHEEN)) {
-        result += surface.bsdf.sheenColor * min(surface.bsdf.sheenAlbedo, 1.0) * skyIrradianceOverPi(surface.normal) *
-                  (open * (1.0 - coat));
-    }
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        vec3 direction = reflect(-view, toWorld(surface, surface.bsdf.clearcoatNormal));
-        result += skyAround(direction, sqrt(surface.bsdf.clearcoatAlpha)) * (coat * sky.coated * open);
-    }
-    return result;
+    return addSkyOfLayers(surface, features, view, sky, open, front * open + back);
 }

@@ -16,6 +16,7 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "hit/primary.glsl"
 #include "hit/sequence.glsl"
 #include "hit/trace.glsl"
+#include "materials/volume/volume.glsl"
 
 // The pairs of dimensions of the sequence: each interface has two.
 const uint kPairInterface = 512u;
@@ -69,15 +70,6 @@ Features walkFeatures(GeometryRecord geometry) {
     return Features(GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
                     (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
                     geometry.featureInputs | GLINT_DOUBLE_SIDED);
-}
-
-// The index of the surface's own medium.
-vec3 mediumIor(Hit hit, Features features) {
-    float ior = hasLobe(features, GLINT_IOR) ? GLINT_MATERIAL_IOR(hit) : 1.5;
-    if (hasLobe(features, GLINT_DISPERSION)) {
-        return dispersedIor(ior, GLINT_MATERIAL_DISPERSION(hit));
-    }
-    return vec3(ior);
 }
 
 float channelOf(vec3 color, uint channel) {
@@ -179,7 +171,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
 // Sets the indices on both sides of a volume's surface, for the media that the ray is in. Returns the place of the
 // medium that the ray leaves if it passes, or 0 if it enters one.
 uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
-    vec3 own = mediumIor(hit, features);
+    vec3 own = mediumIors(hit, features);
     uint place = hit.frontFace ? 0u : placeOf(media, hit.material);
     // The index of the medium outside of the surface.
     uint around = media.count;
@@ -198,7 +190,7 @@ uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
 // Enters the surface's medium, or leaves the one at `place`.
 void passInterface(Hit hit, Features features, uint place, inout Media media) {
     if (hit.frontFace) {
-        enterMedium(media, hit.material, mediumIor(hit, features));
+        enterMedium(media, hit.material, mediumIors(hit, features));
     } else if (place > 0u) {
         leaveMedium(media, place);
     }

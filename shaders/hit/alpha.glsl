@@ -1,6 +1,6 @@
 // The alpha of a candidate, for ray traversal over masked geometry.
 #include "hit/bindings.glsl"
-#include "hit/features.glsl"
+#include "bsdf/features.glsl"
 
 // Returns whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. It reads mip 0, because
 // traversal knows no footprint. The module's own cases do not matter here: a ray of any case meets masks of all cases.

@@ -1,7 +1,7 @@
 // A hit with its vertex attributes fetched and interpolated: everything that materials read apart from their own
 // record.
 #include "hit/bindings.glsl"
-#include "hit/features.glsl"
+#include "bsdf/features.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
 

@@ -83,7 +83,7 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
 ShadeResult shade(Hit hit, Features features) {
     ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     if (hasLobe(features, GLINT_UNLIT)) {
-        result.radiance = baseColor(hit, features).rgb;
+        result.radiance = surfaceValues(hit, features).color.rgb;
         return result;
     }
     Surface surface = evaluateSurface(hit, features);

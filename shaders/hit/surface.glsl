@@ -25,27 +25,13 @@ vec3 toWorld(Surface surface, vec3 direction) {
 vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, vec3 toLight) {
     vec3 l = toSurface(surface, toLight);
     float height = dot(geometricNormal, toLight);
-    vec3 result = l.z * height > 0.0 ? evaluateBelowCoat(surface.bsdf, features, l) : vec3(0.0);
-    if (hasLobe(features, GLINT_CLEARCOAT)) {
-        result *= clearcoatPassed(surface.bsdf.clearcoat, coatViewCosine(surface.bsdf));
-        result += vec3(height > 0.0 ? evaluateCoat(surface.bsdf, l) : 0.0);
-    }
-    return result;
+    vec3 base = l.z * height > 0.0 ? evaluateBase(surface.bsdf, features, l) : vec3(0.0);
+    return addLayersAbove(surface.bsdf.layers, features, surface.bsdf.view, l, height, base);
 }
 
-// The share of a uniform white sky that the coat reflects; 0 without a coat.
-GLINT_RELAXED float coatReflectance(Surface surface, Features features) {
-    return hasLobe(features, GLINT_CLEARCOAT) ? clearcoatFresnel(surface.bsdf.clearcoat, coatViewCosine(surface.bsdf))
-                                              : 0.0;
-}
-
-// The share of the base's reflected or transmitted light that coat and sheen let out again.
+// The share of the base's reflected or transmitted light that the layers above it let out again.
 GLINT_RELAXED float baseShare(Surface surface, Features features) {
-    GLINT_RELAXED float share = 1.0 - coatReflectance(surface, features);
-    if (hasLobe(features, GLINT_SHEEN)) {
-        share *= belowSheen(surface.bsdf, surface.bsdf.sheenAlbedo);
-    }
-    return share;
+    return passedByLayers(surface.bsdf.layers, features, surface.bsdf.view);
 }
 
 // The share of a uniform sky's light that the microfacets let through to the diffuse lobes.

@@ -1,7 +1,7 @@
 #version 460
 // G-buffer: stores which triangle each pixel sees. The lighting pass reads materials, once for each pixel.
 #include "hit/bindings.glsl"
-#include "hit/features.glsl"
+#include "bsdf/features.glsl"
 
 layout(location = 0) flat in uint primitive;
 layout(location = 3) flat in uint geometryIndex;

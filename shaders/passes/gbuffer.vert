@@ -2,7 +2,7 @@
 // G-buffer: vertices are pulled by address. Each triangle has its own three, so its number needs no geometry shader
 // capability.
 #include "hit/bindings.glsl"
-#include "hit/features.glsl"
+#include "bsdf/features.glsl"
 #include "hit/geometry.glsl"
 
 layout(location = 0) flat out uint primitive;

@@ -223,7 +223,7 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
             randomMaterial(engine, kAll).seenFrom(direction(cosine, uniform(engine, 0.0, 2.0 * kPi)));
         // If the coat's normal turns away from the view, it has no visible normals that the quadrature could
         // follow.
-        if (seen.has(GLINT_CLEARCOAT) && glm::dot(seen.bsdf.clearcoatNormal, seen.bsdf.view) < 0.01) {
+        if (seen.has(GLINT_CLEARCOAT) && glm::dot(seen.bsdf.layers.clearcoat.normal, seen.bsdf.view) < 0.01) {
             continue;
         }
         double most = largestOf(albedo(seen, 256));

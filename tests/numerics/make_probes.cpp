@@ -3,7 +3,9 @@
 //
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
+#include "emit/builtin.h"
 #include "emit/flatten.h"
+#include "emit/material_code.h"
 #include "plan/material_model.h"
 #include "translate.h"
 
@@ -53,6 +55,18 @@ public:
             "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";
     }
 
+    // Adds what Glint generates for a package that has every feature.
+    glint::Status addGenerated() {
+        glint::SourceSet generated;
+        for (const glint::BuiltinFile& file : glint::builtinFiles()) {
+            generated.add(std::string(file.name), std::string(file.text));
+        }
+        glint::Status status =
+            glint::addMaterialCode(generated, glint::builtinMaterialModel(), ~glint::FeatureMask{0});
+        texts_["generated/layers.glsl"] = std::string(generated.find("generated/layers.glsl").value_or(""));
+        return status;
+    }
+
     std::optional<std::string_view> find(std::string_view name) {
         const auto known = texts_.find(name);
         if (known != texts_.end()) {
@@ -88,6 +102,9 @@ std::string listProbes(const std::string& glsl) {
 
 glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     Sources sources(std::move(folders));
+    if (glint::Status status = sources.addGenerated(); !status) {
+        return status;
+    }
     const glint::Result<std::string> glsl = glint::flatten(
         "probes", kRoot, [&](std::string_view name) { return sources.find(name); }, glint::FlattenSide::Glsl);
     if (!glsl) {

@@ -45,9 +45,9 @@ struct TestMaterial {
     material.bsdf.f90 = 1.0;
     material.bsdf.alpha = glm::dvec2(alpha);
     material.bsdf.eta = glm::dvec3(1.5);
-    material.bsdf.clearcoatAlpha = 0.01;
-    material.bsdf.clearcoatNormal = {0.0, 0.0, 1.0};
-    material.bsdf.sheenAlpha = 0.25;
+    material.bsdf.layers.clearcoat.alpha = 0.01;
+    material.bsdf.layers.clearcoat.normal = {0.0, 0.0, 1.0};
+    material.bsdf.layers.sheen.alpha = 0.25;
     return material;
 }
 
@@ -101,12 +101,12 @@ using Engine = std::mt19937_64;
     b.transmitted = colour(engine) * (dielectric * transmission);
     b.diffuse = colour(engine) * (dielectric * (1.0 - transmission) * (1.0 - through));
     b.diffuseTransmitted = colour(engine) * (dielectric * (1.0 - transmission) * through);
-    b.clearcoat = uniform(engine);
-    b.clearcoatAlpha = randomAlpha(engine, leastAlpha);
-    b.clearcoatNormal =
+    b.layers.clearcoat.factor = uniform(engine);
+    b.layers.clearcoat.alpha = randomAlpha(engine, leastAlpha);
+    b.layers.clearcoat.normal =
         direction(1.0 - 0.1 * uniform(engine) * uniform(engine), uniform(engine, 0.0, 2.0 * kPi));
-    b.sheenColor = colour(engine);
-    b.sheenAlpha = std::max(randomAlpha(engine, leastAlpha), glsl::kMinSheenAlpha);
+    b.layers.sheen.color = colour(engine);
+    b.layers.sheen.alpha = std::max(randomAlpha(engine, leastAlpha), glsl::kMinSheenAlpha);
     return material;
 }
 
@@ -116,7 +116,7 @@ using Engine = std::mt19937_64;
     Quadrature quadrature(b.view);
     quadrature.addReflection(b.alpha);
     if (material.has(GLINT_CLEARCOAT)) {
-        quadrature.addReflection(glm::dvec2(b.clearcoatAlpha), b.clearcoatNormal);
+        quadrature.addReflection(glm::dvec2(b.layers.clearcoat.alpha), b.layers.clearcoat.normal);
     }
     if (material.has(GLINT_TRANSMISSION)) {
         for (int channel = 0; channel < (material.has(GLINT_DISPERSION) ? 3 : 1); ++channel) {
@@ -157,10 +157,10 @@ using Engine = std::mt19937_64;
     put("transmitted", b.transmitted);
     put("diffuse transmitted", b.diffuseTransmitted);
     put("eta", b.eta);
-    out << ", coat " << b.clearcoat << " of alpha " << b.clearcoatAlpha;
-    put("coat's normal", b.clearcoatNormal);
-    put("sheen", b.sheenColor);
-    out << " of alpha " << b.sheenAlpha;
+    out << ", coat " << b.layers.clearcoat.factor << " of alpha " << b.layers.clearcoat.alpha;
+    put("coat's normal", b.layers.clearcoat.normal);
+    put("sheen", b.layers.sheen.color);
+    out << " of alpha " << b.layers.sheen.alpha;
     put("view", b.view);
     return out;
 }

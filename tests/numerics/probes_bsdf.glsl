@@ -4,10 +4,10 @@
 #include "bsdf/fresnel.glsl"
 #include "bsdf/ggx.glsl"
 #include "bsdf/albedo.glsl"
-#include "bsdf/sheen.glsl"
-#include "bsdf/iridescence.glsl"
+#include "materials/sheen/sheen.glsl"
+#include "materials/iridescence/iridescence.glsl"
 #include "bsdf/transmission.glsl"
-#include "bsdf/clearcoat.glsl"
+#include "materials/clearcoat/clearcoat.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/probe_vectors.glsl"
@@ -102,7 +102,7 @@ PROBE(VisibleNormalPdf) {
     o[1] = 2.0 / (kPi * i[6] * i[7] * (i[2] + ggxProjection(VEC3(0), VEC2(6))));
 }
 
-// bsdf/sheen.glsl
+// materials/sheen/sheen.glsl
 
 PROBE(SheenDistribution) {
     o[0] = sheenDistribution(i[0], i[1]);
@@ -112,7 +112,7 @@ PROBE(SheenVisibility) {
     o[0] = sheenVisibility(i[0], i[1], i[2]);
 }
 
-// bsdf/iridescence.glsl
+// materials/iridescence/iridescence.glsl
 
 PROBE(IridescentFresnel) {
     vec3 f = iridescentFresnel(i[0], VEC3(1), i[4], i[5]);
@@ -158,7 +158,7 @@ PROBE(DispersedIor) {
     WRITE3(0, n);
 }
 
-// bsdf/clearcoat.glsl
+// materials/clearcoat/clearcoat.glsl
 
 PROBE(ClearcoatLobe) {
     float nDotV = accurateDot(VEC3(0), VEC3(3));
@@ -219,11 +219,11 @@ Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 al
     Features(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]) & ~GLINT_SHEEN, GIVEN_INPUTS)
 #define GIVEN_BSDF(b)                                                                                       \
     Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));              \
-    b.clearcoat = i[19];                                                                                    \
-    b.clearcoatAlpha = i[20];                                                                               \
-    b.clearcoatNormal = VEC3(21);                                                                           \
-    b.sheenColor = VEC3(24);                                                                                \
-    b.sheenAlpha = i[27];                                                                                   \
+    b.layers.clearcoat.factor = i[19];                                                                                \
+    b.layers.clearcoat.alpha = i[20];                                                                               \
+    b.layers.clearcoat.normal = VEC3(21);                                                                           \
+    b.layers.sheen.color = VEC3(24);                                                                                \
+    b.layers.sheen.alpha = i[27];                                                                                   \
     b.metalF0 = VEC3(34);                                                                                   \
     b.metallic = i[37];                                                                                     \
     prepareBsdf(b, GIVEN_FEATURES, VEC3(28))

@@ -44,11 +44,11 @@ glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view)
     bsdf.metallic = base.metallic;
     bsdf.alpha = glm::dvec2(std::max(squared(material["roughnessFactor"]), glsl::kMinAlpha));
     bsdf.eta = Vec3(1.0);
-    bsdf.clearcoat = material["clearcoatFactor"];
-    bsdf.clearcoatAlpha = std::max(squared(material["clearcoatRoughnessFactor"]), glsl::kMinAlpha);
-    bsdf.clearcoatNormal = {0.0, 0.0, 1.0};
-    bsdf.sheenColor = toVec(material["sheenColorFactor"]);
-    bsdf.sheenAlpha = std::max(squared(material["sheenRoughnessFactor"]), glsl::kMinSheenAlpha);
+    bsdf.layers.clearcoat.factor = material["clearcoatFactor"];
+    bsdf.layers.clearcoat.alpha = std::max(squared(material["clearcoatRoughnessFactor"]), glsl::kMinAlpha);
+    bsdf.layers.clearcoat.normal = {0.0, 0.0, 1.0};
+    bsdf.layers.sheen.color = toVec(material["sheenColorFactor"]);
+    bsdf.layers.sheen.alpha = std::max(squared(material["sheenRoughnessFactor"]), glsl::kMinSheenAlpha);
     glsl::prepareBsdf(bsdf, featuresOf(material), view);
     return bsdf;
 }

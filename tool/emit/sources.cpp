@@ -3,6 +3,7 @@
 #include "emit/builtin.h"
 #include "emit/context.h"
 #include "emit/effects.h"
+#include "emit/material_code.h"
 #include "emit/material_layout.h"
 
 #include <fmt/format.h>
@@ -105,6 +106,10 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     sources.add("generated/features.glsl", plan.model->featureDefines());
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
+    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    if (Status status = addMaterialCode(sources, *plan.model, used); !status) {
+        return status.error();
+    }
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     addEffects(context, plan.effects.effects);
     for (const std::string_view name : kGenerated) {

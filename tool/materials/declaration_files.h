@@ -7,7 +7,8 @@
 
 namespace glint {
 
-// Returns the declarations of shaders/materials, sorted by name ("materials/sheen/sheen.json"). They have static storage.
+// Returns the declarations of shaders/materials, sorted by name ("materials/sheen/sheen.json"). They have
+// static storage.
 std::span<const BuiltinFile> declarationFiles();
 
 }  // namespace glint

@@ -153,6 +153,22 @@ struct Feature {
     std::string neutralText() const;
 };
 
+// The GLSL of a feature, in files of its folder. Its functions begin with the feature's name.
+struct FeatureCode {
+    std::string name;  // of the declaration: "clearcoat"
+    int feature = -1;  // Keys without this feature do not run the code; -1: all keys run it.
+    int unless = -1;   // Keys with this feature do not run it.
+    // Names of files as an #include gives them, empty where there is no such function. surface:
+    // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); layer: the struct Clearcoat
+    // and the functions that shaders/bsdf/layer.glsl lists.
+    std::string surface{};
+    std::string bsdf{};
+    std::string layer{};
+    std::string emission{};
+    bool coversEmission = false;  // the layer takes what it reflects from the emission, too
+    bool isTraced = false;        // rays may trace the layer's reflection
+};
+
 // What a material may do with light, by which effects are chosen.
 enum class Behaviour : std::uint8_t { Reflects, Transmits, Scatters, Emits };
 
@@ -196,6 +212,7 @@ public:
     std::vector<int> order;         // indices into `features`, in the order of evaluation
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
+    std::vector<FeatureCode> code;          // in the order in which it runs
     FeatureMask unlit = 0;                  // features without light
     int valueCount = 0;                     // length of Material::values
     std::vector<std::array<int, 2>> pairs;  // textures that same() compares

@@ -76,9 +76,9 @@ struct SurfaceLobes {
         const Vec3 normal = side * inputs.mappedNormal("normalTexture", material["normalScale"]);
         frame = frameAbout(normal);
         bsdf.eta = Vec3(1.0);
-        bsdf.clearcoatAlpha = 1.0;
-        bsdf.clearcoatNormal = Vec3(0.0, 0.0, 1.0);
-        bsdf.sheenAlpha = 1.0;
+        bsdf.layers.clearcoat.alpha = 1.0;
+        bsdf.layers.clearcoat.normal = Vec3(0.0, 0.0, 1.0);
+        bsdf.layers.sheen.alpha = 1.0;
         const Base base = applyBase(inputs, bsdf);
         bsdf.alpha = glm::dvec2(std::max(squared(base.roughness), glsl::kMinAlpha));
         roughness = base.roughness;
@@ -218,8 +218,8 @@ struct SurfaceLobes {
             return;
         }
         lobes |= GLINT_SHEEN;
-        bsdf.sheenColor = toVec(given["sheenColorFactor"]) * Vec3(inputs.texel("sheenColorTexture"));
-        bsdf.sheenAlpha =
+        bsdf.layers.sheen.color = toVec(given["sheenColorFactor"]) * Vec3(inputs.texel("sheenColorTexture"));
+        bsdf.layers.sheen.alpha =
             std::max(squared(given["sheenRoughnessFactor"] * inputs.texel("sheenRoughnessTexture").a),
                      glsl::kMinSheenAlpha);
     }
@@ -231,22 +231,25 @@ struct SurfaceLobes {
             return;
         }
         lobes |= GLINT_CLEARCOAT;
-        bsdf.clearcoat = given["clearcoatFactor"] * inputs.texel("clearcoatTexture").r;
-        bsdf.clearcoatAlpha =
+        bsdf.layers.clearcoat.factor = given["clearcoatFactor"] * inputs.texel("clearcoatTexture").r;
+        bsdf.layers.clearcoat.alpha =
             std::max(squared(given["clearcoatRoughnessFactor"] * inputs.texel("clearcoatRoughnessTexture").g),
                      glsl::kMinAlpha);
-        bsdf.clearcoatNormal =
+        bsdf.layers.clearcoat.normal =
             toFrame(side * inputs.mappedNormal("clearcoatNormalTexture", given["clearcoatNormalScale"]));
     }
 
     // Returns the share that the coat reflects at the view.
     double coat() const {
-        return has(GLINT_CLEARCOAT) ? glsl::clearcoatFresnel(bsdf.clearcoat, glsl::coatViewCosine(bsdf))
-                                    : 0.0;
+        return has(GLINT_CLEARCOAT)
+                   ? glsl::clearcoatFresnel(bsdf.layers.clearcoat.factor,
+                                            glsl::clearcoatViewCosine(bsdf.layers.clearcoat, bsdf.view))
+                   : 0.0;
     }
     double baseShare() const {
         const double share = 1.0 - coat();
-        return has(GLINT_SHEEN) ? share * glsl::belowSheen(bsdf, bsdf.sheenAlbedo) : share;
+        return has(GLINT_SHEEN) ? share * glsl::belowSheen(bsdf.layers.sheen, bsdf.layers.sheen.albedo)
+                                : share;
     }
 
     double tracedShare(double lobeRoughness) const {
@@ -260,7 +263,7 @@ struct SurfaceLobes {
         return 1.0 - fade * fade * (3.0 - 2.0 * fade);
     }
     double tracedCoat() const {
-        return has(GLINT_CLEARCOAT) ? tracedShare(std::sqrt(bsdf.clearcoatAlpha)) : 0.0;
+        return has(GLINT_CLEARCOAT) ? tracedShare(std::sqrt(bsdf.layers.clearcoat.alpha)) : 0.0;
     }
 };
 

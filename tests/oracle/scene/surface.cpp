@@ -82,12 +82,12 @@ struct LitSurface::Lobes : SurfaceLobes {
         }
         result *= baseShare();
         if (has(GLINT_SHEEN)) {
-            result += bsdf.sheenColor * std::min(bsdf.sheenAlbedo, 1.0) * diffuseSky(sky, n) *
+            result += bsdf.layers.sheen.color * std::min(bsdf.layers.sheen.albedo, 1.0) * diffuseSky(sky, n) *
                       (occlusion * (1.0 - coat()));
         }
         if (has(GLINT_CLEARCOAT)) {
-            const Vec3 direction = glm::reflect(-view, frame * bsdf.clearcoatNormal);
-            result += skyAround(sky, direction, std::sqrt(bsdf.clearcoatAlpha)) *
+            const Vec3 direction = glm::reflect(-view, frame * bsdf.layers.clearcoat.normal);
+            result += skyAround(sky, direction, std::sqrt(bsdf.layers.clearcoat.alpha)) *
                       (coat() * (1.0 - tracedCoat()) * occlusion);
         }
         return result;
@@ -134,14 +134,8 @@ Vec3 LitSurface::scattered(const Vec3& toLight) const {
     const Lobes& l = *lobes_;
     const Vec3 light = l.toFrame(toLight);
     const double height = glm::dot(geometricNormal(), toLight);
-    Vec3 result(0.0);
-    if (light.z * height > 0.0) {
-        result = glsl::evaluateBelowCoat(l.bsdf, l.features(), light) * (1.0 - l.coat());
-    }
-    if (l.has(GLINT_CLEARCOAT) && height > 0.0) {
-        result += glsl::evaluateCoat(l.bsdf, light);
-    }
-    return result;
+    const Vec3 base = light.z * height > 0.0 ? glsl::evaluateBase(l.bsdf, l.features(), light) : Vec3(0.0);
+    return glsl::addLayersAbove(l.bsdf.layers, l.features(), l.bsdf.view, light, height, base);
 }
 
 Vec3 LitSurface::ambient(const GradientSky& sky) const {
@@ -161,7 +155,7 @@ std::vector<Mirror> LitSurface::mirrors() const {
         }
     }
     if (const double weight = l.tracedCoat() * l.coat(); weight > 0.0) {
-        mirrors.push_back({l.mirrorDirection(l.frame * l.bsdf.clearcoatNormal), Vec3(weight)});
+        mirrors.push_back({l.mirrorDirection(l.frame * l.bsdf.layers.clearcoat.normal), Vec3(weight)});
     }
     return mirrors;
 }

@@ -1,0 +1,19 @@
+// What a material says about a surface: what the stage "surface" of the features sets, before a BSDF is made of it.
+#include "hit/surface.glsl"
+#include "hit/texture.glsl"
+
+struct SurfaceValues {
+    GLINT_RELAXED vec4 color;       // of the base, with the coverage
+    GLINT_RELAXED float metallic;
+    float roughness;                // perceptual: the square root of alpha. It is compared with limits, so it keeps 32 bits.
+    GLINT_RELAXED vec3 f0;          // reflectance of the dielectric at normal incidence
+    GLINT_RELAXED float f90;        // and at grazing angles
+    vec3 normal;                    // unit, in the world, on the side that the surface's front faces
+    GLINT_RELAXED float occlusion;  // of ambient light
+    GLINT_RELAXED float dielectric; // share of the light below the microfacets that no feature has taken yet
+};
+
+// The normals of double-sided materials turn to the viewer.
+float facing(Hit hit, Features features) {
+    return hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace ? -1.0 : 1.0;
+}

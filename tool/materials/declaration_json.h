@@ -1,0 +1,147 @@
+// Reads the JSON of declarations, and fails with the place of what is wrong.
+#pragma once
+
+#include "base/suggest.h"
+#include "plan/interval.h"
+
+#include <glint/result.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <initializer_list>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+using DeclarationJson = nlohmann::ordered_json;
+
+// Carries a diagnostic to readDeclarations(), which returns it.
+struct DeclarationFault {
+    Diagnostic diagnostic;
+};
+
+[[noreturn]] inline void failAt(const std::string& where, std::string message, std::string hint = {}) {
+    throw DeclarationFault{makeError("declaration", where, std::move(message), std::move(hint))};
+}
+
+// One object of a declaration. Members that nothing may ask for are errors, so that a misspelt one is found.
+class Members {
+public:
+    Members(const DeclarationJson& json, std::string where, std::initializer_list<std::string_view> known)
+        : Members(json, std::move(where), std::span(known.begin(), known.size())) {}
+    Members(const DeclarationJson& json, std::string where, std::span<const std::string_view> known)
+        : json_(json), where_(std::move(where)) {
+        if (!json.is_object()) {
+            failAt(where_, "must be an object");
+        }
+        const std::vector<std::string> names(known.begin(), known.end());
+        for (const auto& [name, value] : json.items()) {
+            if (std::ranges::find(names, name) == names.end()) {
+                failAt(at(name), fmt::format("there is no member \"{}\"{}", name, suggestion(name, names)));
+            }
+        }
+    }
+
+    const std::string& where() const {
+        return where_;
+    }
+    std::string at(std::string_view member) const {
+        return fmt::format("{}/{}", where_, member);
+    }
+    bool has(std::string_view member) const {
+        return json_.contains(member);
+    }
+    const DeclarationJson& operator[](std::string_view member) const {
+        const auto found = json_.find(member);
+        if (found == json_.end()) {
+            failAt(where_, fmt::format("has no \"{}\"", member));
+        }
+        return *found;
+    }
+    std::string text(std::string_view member) const {
+        const DeclarationJson& value = (*this)[member];
+        if (!value.is_string() || value.get_ref<const std::string&>().empty()) {
+            failAt(at(member), "must be a text that is not empty");
+        }
+        return value.get<std::string>();
+    }
+    std::string text(std::string_view member, std::string fallback) const {
+        return has(member) ? text(member) : std::move(fallback);
+    }
+    bool flag(std::string_view member, bool fallback) const {
+        if (!has(member)) {
+            return fallback;
+        }
+        if (!(*this)[member].is_boolean()) {
+            failAt(at(member), "must be true or false");
+        }
+        return (*this)[member].get<bool>();
+    }
+    double number(std::string_view member, double fallback) const {
+        return has(member) ? toNumber((*this)[member], at(member)) : fallback;
+    }
+    // Returns the elements of an array, with their places; none if there is no such member.
+    std::vector<std::pair<const DeclarationJson*, std::string>> list(std::string_view member) const {
+        std::vector<std::pair<const DeclarationJson*, std::string>> elements;
+        if (has(member)) {
+            const DeclarationJson& array = (*this)[member];
+            if (!array.is_array()) {
+                failAt(at(member), "must be an array");
+            }
+            for (std::size_t i = 0; i < array.size(); ++i) {
+                elements.emplace_back(&array[i], fmt::format("{}/{}", at(member), i));
+            }
+        }
+        return elements;
+    }
+    std::vector<std::string> texts(std::string_view member) const {
+        std::vector<std::string> result;
+        for (const auto& [value, place] : list(member)) {
+            if (!value->is_string()) {
+                failAt(place, "must be a text");
+            }
+            result.push_back(value->get<std::string>());
+        }
+        return result;
+    }
+
+    // A number, or "infinity".
+    static double toNumber(const DeclarationJson& value, const std::string& place) {
+        if (value.is_string() && value.get_ref<const std::string&>() == "infinity") {
+            return kUnlimited;
+        }
+        if (!value.is_number()) {
+            failAt(place, "must be a number, or \"infinity\"");
+        }
+        return value.get<double>();
+    }
+
+private:
+    const DeclarationJson& json_;
+    std::string where_;
+};
+
+// Returns the row of `table` that is called `name`.
+template <typename Row, std::size_t Count>
+const Row& choose(const Row (&table)[Count], const Members& members, std::string_view member,
+                  std::string_view name) {
+    const auto found = std::ranges::find(table, name, &Row::name);
+    if (found == std::end(table)) {
+        std::vector<std::string> names;
+        for (const Row& row : table) {
+            names.emplace_back(row.name);
+        }
+        failAt(members.at(member),
+               fmt::format("there is no \"{}\"{}", name, suggestion(std::string(name), names)));
+    }
+    return *found;
+}
+
+}  // namespace glint

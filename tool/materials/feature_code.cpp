@@ -1,0 +1,91 @@
+#include "materials/feature_code.h"
+
+#include <cctype>
+
+namespace glint {
+
+namespace {
+
+// A name that an #include may have, and that stays in its folder.
+bool isFileName(std::string_view name) {
+    return name.ends_with(".glsl") && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {
+               return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+           });
+}
+
+}  // namespace
+
+DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
+    const Members members(declaration["glsl"], declaration.at("glsl"),
+                          {"surface", "bsdf", "layer", "emission", "after", "coversEmission", "traced"});
+    DeclaredCode declared;
+    declared.where = members.where();
+    FeatureCode& code = declared.code;
+    code.name = declaration.text("name");
+    code.feature = feature;
+    const std::string_view folder = file.substr(0, file.rfind('/') + 1);
+    struct {
+        std::string_view member;
+        std::string& file;
+    } const stages[] = {
+        {"surface", code.surface}, {"bsdf", code.bsdf}, {"layer", code.layer}, {"emission", code.emission}};
+    for (const auto& [member, place] : stages) {
+        if (members.has(member)) {
+            const std::string name = members.text(member);
+            if (!isFileName(name)) {
+                failAt(members.at(member),
+                       fmt::format("\"{}\" must be the name of a .glsl file beside the declaration", name));
+            }
+            place = std::string(folder) + name;
+        }
+    }
+    declared.after = members.texts("after");
+    code.coversEmission = members.flag("coversEmission", false);
+    code.isTraced = members.flag("traced", false);
+    for (const std::string_view ofLayer : {"coversEmission", "traced"}) {
+        if (members.has(ofLayer) && code.layer.empty()) {
+            failAt(members.at(ofLayer), "is for layers; there is no \"layer\"");
+        }
+    }
+    if (!code.layer.empty() && feature < 0) {
+        failAt(members.at("layer"), "a layer needs a feature of its own: give the declaration \"neutral\"");
+    }
+    if (!code.layer.empty() && code.bsdf.empty()) {
+        failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");
+    }
+    return declared;
+}
+
+std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code) {
+    std::ranges::sort(code, {}, [](const DeclaredCode& declared) { return declared.code.name; });
+    std::vector<std::string> names;
+    for (const DeclaredCode& declared : code) {
+        names.push_back(declared.code.name);
+    }
+    for (const DeclaredCode& declared : code) {
+        for (const std::string& name : declared.after) {
+            if (std::ranges::find(names, name) == names.end()) {
+                failAt(declared.where + "/after", fmt::format("no declaration with GLSL is called \"{}\"{}",
+                                                              name, suggestion(name, names)));
+            }
+        }
+    }
+    std::vector<FeatureCode> ordered;
+    const auto has = [&](const std::string& name) {
+        return std::ranges::find(ordered, name, &FeatureCode::name) != ordered.end();
+    };
+    while (ordered.size() < code.size()) {
+        const auto next = std::ranges::find_if(code, [&](const DeclaredCode& declared) {
+            return !has(declared.code.name) && std::ranges::all_of(declared.after, has);
+        });
+        if (next == code.end()) {
+            const auto waiting = std::ranges::find_if(
+                code, [&](const DeclaredCode& declared) { return !has(declared.code.name); });
+            failAt(waiting->where + "/after", "waits for itself by what it names");
+        }
+        ordered.push_back(next->code);
+    }
+    return ordered;
+}
+
+}  // namespace glint

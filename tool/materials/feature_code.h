@@ -1,0 +1,26 @@
+// Reads the member "glsl" of declarations: which GLSL runs for a feature, and when.
+#pragma once
+
+#include "materials/declaration_json.h"
+#include "plan/material_model.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+struct DeclaredCode {
+    FeatureCode code;
+    std::vector<std::string> after;  // names of declarations whose code runs before
+    std::string where;               // of the member "glsl"
+};
+
+// Reads "glsl" of the declaration in `file`, whose own feature is `feature` or -1. Throws DeclarationFault.
+DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature);
+
+// Puts the code into an order in which each comes after what it names, and by name otherwise. Throws
+// DeclarationFault if a name is unknown, or if two wait for each other.
+std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code);
+
+}  // namespace glint
