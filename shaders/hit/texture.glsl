@@ -12,13 +12,10 @@ bool readsSecondSet(Hit hit, uint slot, Features features) {
            (!hasInput(features, GLINT_TEX_COORD_0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
 }
 
-// Returns the value of one texture slot of the hit's material. Texture and coordinates are read in 32 bits, whatever
-// the precision of the result.
-GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
+// Returns the value of a texture slot at coordinates of the caller's own. uvEdges has their change along both edges of the
+// triangle, (Δu, Δv) each. Texture and coordinates are read in 32 bits, whatever the precision of the result.
+GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, vec4 uvEdges) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
-    bool second = readsSecondSet(hit, slot, features);
-    vec2 uv = second ? hit.texCoords[1] : hit.texCoords[0];
-    vec4 uvEdges = second ? hit.uvEdges[1] : hit.uvEdges[0];
     if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
         uv = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         uvEdges = vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy),
@@ -31,6 +28,13 @@ GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
     vec4 gradients = coneGradients(hit.footprint, uvEdges, record.texels, record.anisotropy);
     vec4 texel = textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
     return texel;
+}
+
+// Returns the value of one texture slot of the hit's material.
+GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
+    bool second = readsSecondSet(hit, slot, features);
+    return sampleSlotAt(hit, slot, features, second ? hit.texCoords[1] : hit.texCoords[0],
+                        second ? hit.uvEdges[1] : hit.uvEdges[0]);
 }
 
 // Returns tangent and bitangent at the hit, from the TANGENT attribute or from the derivatives of position by the UV

@@ -8,6 +8,8 @@
 #include "materials/iridescence/iridescence.glsl"
 #include "bsdf/transmission.glsl"
 #include "materials/clearcoat/clearcoat.glsl"
+#include "materials/dispersion/dispersion.glsl"
+#include "materials/volume/attenuation.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/probe_vectors.glsl"

@@ -51,11 +51,11 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    ImportOptions import;
-    import.decodeImages = true;
-    import.variant = arguments.render.reading.variant;
-    import.strictPaths = arguments.render.reading.strictPaths;
-    const Result<Scene> scene = importScene(arguments.render.scene, import);
+    const Result<ImportOptions> import = importOptions(arguments.render.reading, true);
+    if (!import) {
+        return fail(import.error());
+    }
+    const Result<Scene> scene = importScene(arguments.render.scene, *import);
     if (!scene) {
         return fail(scene.error());
     }

@@ -61,8 +61,8 @@ Json shadersToJson(const Outcome& outcome) {
         }
         list.push_back(Json{{"id", shader.shaderId},
                             {"name", shader.name},
-                            {"always", featuresToJson(shader.always)},
-                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"always", featuresToJson(*outcome.plan.model, shader.always)},
+                            {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
                             {"keys", shader.keys.size()},
                             {"share", shareToJson(shader.share)},
                             {"reason", toString(shader.reason)},
@@ -294,7 +294,9 @@ bool addOutputs(const CompiledPackage& package, const CompileArguments& argument
 int compile(const Console& console, const CompileArguments& given) {
     const Clock::time_point start = Clock::now();
     CompileArguments arguments = given;
-    CompileCache cache(arguments.cache, arguments.options);
+    // The names of further inputs belong to the key: a new file in a pack is a new run.
+    const std::vector<std::filesystem::path> further = furtherInputs(arguments);
+    CompileCache cache(arguments.cache, arguments.options, further);
     const std::optional<int> done = arguments.dryRun || !arguments.planOnly.empty()
                                         ? std::nullopt
                                         : repeatEarlier(console, arguments, cache, start);
@@ -302,17 +304,17 @@ int compile(const Console& console, const CompileArguments& given) {
         return *done;
     }
     ActionRecord run;
-    const std::vector<std::filesystem::path> further = furtherInputs(arguments);
     const bool known = addFiles(run.inputs, further);
     const auto report = [&](const std::vector<Diagnostic>& diagnostics) {
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
     console.progress("reading " + join(arguments.scenes));
-    ImportOptions import;
-    import.variant = arguments.reading.variant;
-    import.strictPaths = arguments.reading.strictPaths;
-    const Result<std::vector<Scene>> scenes = readScenes(arguments.scenes, import);
+    const Result<ImportOptions> import = importOptions(arguments.reading, false);
+    if (!import) {
+        return fail(console, import.error());
+    }
+    const Result<std::vector<Scene>> scenes = readScenes(arguments.scenes, *import);
     if (!scenes) {
         return fail(console, scenes.error());
     }

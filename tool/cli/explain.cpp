@@ -103,7 +103,7 @@ std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int
 Json primaryToJson(const Planned& planned, const Key& key, int material) {
     Json list = Json::array();
     for (const FeatureMask mask : primaryMasksOf(planned, key, material)) {
-        list.push_back(featuresToJson(mask));
+        list.push_back(featuresToJson(*planned.plan.model, mask));
     }
     return list;
 }
@@ -121,7 +121,7 @@ Json toJson(const Planned& planned, int material) {
     for (const Key* key : keysOf(planned, material)) {
         const Case& shader = caseOf(planned, *key);
         keys.push_back(Json{{"mask", fmt::format("0x{:016x}", key->mask)},
-                            {"features", featuresToJson(key->mask)},
+                            {"features", featuresToJson(*planned.plan.model, key->mask)},
                             {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
                             {"share", shareToJson(key->share)},
                             {"case",
@@ -130,8 +130,8 @@ Json toJson(const Planned& planned, int material) {
                               {"keys", shader.keys.size()},
                               {"share", shareToJson(shader.share)},
                               {"reason", toString(shader.reason)},
-                              {"always", featuresToJson(shader.always)},
-                              {"sometimes", featuresToJson(shader.sometimes)}}},
+                              {"always", featuresToJson(*planned.plan.model, shader.always)},
+                              {"sometimes", featuresToJson(*planned.plan.model, shader.sometimes)}}},
                             {"primitives", primitivesOf(planned, *key, material)}});
     }
     Json dropped = Json::array();
@@ -172,17 +172,17 @@ std::string toText(const Planned& planned, int material, Detail detail) {
         const std::string more =
             primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
-        rows.push_back({"    features", featureList(key->mask)});
+        rows.push_back({"    features", featureList(*planned.plan.model, key->mask)});
         for (const FeatureMask mask : primaryMasksOf(planned, *key, material)) {
             if (mask != key->mask) {
-                rows.push_back({"    primary only", featureList(mask & ~key->mask)});
+                rows.push_back({"    primary only", featureList(*planned.plan.model, mask & ~key->mask)});
             }
         }
         rows.push_back(
             {"    case", shaderTitle(static_cast<std::uint64_t>(shader.shaderId), shader.name, detail)});
         rows.push_back({"    why", whyText(shader)});
         rows.push_back({"    hits", sharesText(planned, *key, shader)});
-        rows.push_back({"    branches on", featureList(shader.sometimes)});
+        rows.push_back({"    branches on", featureList(*planned.plan.model, shader.sometimes)});
         rows.push_back({"    primitives", primitives.front() + more});
     }
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
@@ -240,10 +240,12 @@ Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& p
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    ImportOptions import;
-    import.variant = arguments.reading.variant;
-    import.strictPaths = arguments.reading.strictPaths;
-    const Result<Scene> scene = importScene(arguments.scene, import);
+    const Result<ImportOptions> import = importOptions(arguments.reading, false);
+    if (!import) {
+        console.report(import.error());
+        return kExitFailed;
+    }
+    const Result<Scene> scene = importScene(arguments.scene, *import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;
@@ -297,7 +299,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         Json result{{"scene", arguments.scene},
                     {"merge", arguments.plan.merge},
                     {"alpha", std::string(toString(planned.options.keys.alpha))},
-                    {"hitLobes", featuresToJson(planned.options.keys.keptLobes)},
+                    {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
                     {"variant", textOrNull(scene->variant)},
                     {"variants", scene->variants}};
         if (arguments.wholePlan) {

@@ -60,8 +60,8 @@ Json shadersToJson(const inspect::InspectedPackage& inspected) {
         }
         list.push_back(Json{{"id", id},
                             {"name", std::string(inspected.package.string(shader.name))},
-                            {"always", featuresToJson(shader.always)},
-                            {"sometimes", featuresToJson(shader.sometimes)},
+                            {"always", featuresToJson(inspected.manifest.features, shader.always)},
+                            {"sometimes", featuresToJson(inspected.manifest.features, shader.sometimes)},
                             {"keys", shader.keyCount},
                             {"materials", materials},
                             {"stages", stagesOf(inspected, id)}});
@@ -119,8 +119,8 @@ std::string materialsText(const inspect::InspectedPackage& inspected, std::uint3
 }
 
 // Features that a shader has; their names where there is room for them.
-std::string featuresText(FeatureMask mask, Detail detail) {
-    return detail == Detail::Whole ? featureList(mask) : fmt::format("{}", std::popcount(mask));
+std::string featuresText(const MaterialModel& model, FeatureMask mask, Detail detail) {
+    return detail == Detail::Whole ? featureList(model, mask) : fmt::format("{}", std::popcount(mask));
 }
 
 std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detail) {
@@ -128,8 +128,10 @@ std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detai
     std::uint32_t id = 0;
     for (const package::CaseEntry& shader : inspected.package.cases()) {
         rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
-                        fmt::format("{}", shader.keyCount), featuresText(shader.always, detail),
-                        featuresText(shader.sometimes, detail), materialsText(inspected, id)});
+                        fmt::format("{}", shader.keyCount),
+                        featuresText(inspected.manifest.features, shader.always, detail),
+                        featuresText(inspected.manifest.features, shader.sometimes, detail),
+                        materialsText(inspected, id)});
         ++id;
     }
     return formatTable(rows, detail);
@@ -161,9 +163,8 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == builtinMaterialModel().names(kLobeMask).size()
-               ? "all"
-               : join(manifest.hitLobes);
+    return manifest.hitLobes.size() == manifest.features.names(kLobeMask).size() ? "all"
+                                                                                 : join(manifest.hitLobes);
 }
 
 Json toJson(const inspect::InspectedPackage& inspected) {

@@ -321,11 +321,12 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    ImportOptions import;
-    import.decodeImages = true;
-    import.variant = arguments.reading.variant;
-    import.strictPaths = arguments.reading.strictPaths;
-    Result<Scene> scene = importScene(arguments.scene, import);
+    const Result<ImportOptions> import = importOptions(arguments.reading, true);
+    if (!import) {
+        console.report(import.error());
+        return kExitFailed;
+    }
+    Result<Scene> scene = importScene(arguments.scene, *import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;

@@ -37,9 +37,9 @@ Json toJson(std::span<const Diagnostic> diagnostics) {
     return list;
 }
 
-Json featuresToJson(FeatureMask mask) {
+Json featuresToJson(const MaterialModel& model, FeatureMask mask) {
     Json list = Json::array();
-    for (const std::string_view name : builtinMaterialModel().names(mask)) {
+    for (const std::string_view name : model.names(mask)) {
         list.push_back(std::string(name));
     }
     return list;
@@ -65,9 +65,9 @@ Json droppedToJson(const SceneList& scenes, const Plan& plan) {
     return list;
 }
 
-std::string featureList(FeatureMask mask) {
+std::string featureList(const MaterialModel& model, FeatureMask mask) {
     std::vector<std::string> names;
-    for (const std::string_view name : builtinMaterialModel().names(mask)) {
+    for (const std::string_view name : model.names(mask)) {
         names.emplace_back(name);
     }
     return join(names);

@@ -19,14 +19,14 @@ namespace glint {
 
 Json toJson(const Diagnostic& diagnostic);
 Json toJson(std::span<const Diagnostic> diagnostics);
-Json featuresToJson(FeatureMask mask);
+Json featuresToJson(const MaterialModel& model, FeatureMask mask);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
 Json materialsToJson(const SceneList& scenes, std::span<const int> materials);
 // Returns [{"feature", "reason", "materials"}].
 Json droppedToJson(const SceneList& scenes, const Plan& plan);
 
 // Returns the names of the features of a mask, "a, b", or "-".
-std::string featureList(FeatureMask mask);
+std::string featureList(const MaterialModel& model, FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const Plan& plan);
 

@@ -51,7 +51,7 @@ ManifestJson features(const MaterialModel& model) {
 }
 
 ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& settings) {
-    return {{"hitLobes", model.names(settings.plan.keys.keptLobes & kLobeMask)},
+    return {{"hitLobes", model.names(settings.plan.keys.keptLobes & model.lobes)},
             {"energyCompensation", settings.energyCompensation},
             {"textureLod", toString(settings.textureLod)},
             {"precision", package::bitsOf(settings.precision)},

@@ -25,7 +25,7 @@ std::string typeName(std::string name) {
 }
 
 std::string hasFeature(const Feature& feature) {
-    return fmt::format("{}(features, {})", feature.isLobe() ? "hasLobe" : "hasInput", feature.macro);
+    return fmt::format("{}(features, {})", feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
 }
 
 // The condition under which code runs; empty if it always runs.

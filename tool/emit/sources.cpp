@@ -103,6 +103,9 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     for (const BuiltinFile& file : builtinFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
+    for (const ModelSource& source : plan.model->sources) {
+        sources.add(source.name, source.text);
+    }
     sources.add("generated/features.glsl", plan.model->featureDefines());
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));

@@ -97,7 +97,11 @@ std::string nameOf(Tokens tokens) {
 class PointerResolver {
 public:
     PointerResolver(const Document& document, const Scene& scene, const NodeNumbers& numbers, Tokens tokens)
-        : json_(document.json()), scene_(scene), numbers_(numbers), tokens_(tokens) {}
+        : json_(document.json()),
+          model_(*document.options().materialModel),
+          scene_(scene),
+          numbers_(numbers),
+          tokens_(tokens) {}
 
     PointerTarget resolve() const {
         if (tokens_[0] == "extensions" && tokens_.size() >= 3 && tokens_[1] == "KHR_lights_punctual" &&
@@ -211,14 +215,13 @@ private:
     }
 
     PointerTarget material(std::size_t index, Tokens rest) const {
-        const std::optional<int> property = findMaterialProperty(builtinMaterialModel(), nameOf(rest));
+        const std::optional<int> property = findMaterialProperty(model_, nameOf(rest));
         if (!property) {
             return unknown();
         }
-        return hasOwner()
-                   ? known(AnimationPath::Material, materialPropertyWidth(builtinMaterialModel(), *property),
-                           {static_cast<int>(index)}, *property)
-                   : undefined();
+        return hasOwner() ? known(AnimationPath::Material, materialPropertyWidth(model_, *property),
+                                  {static_cast<int>(index)}, *property)
+                          : undefined();
     }
 
     template <typename Object>
@@ -257,6 +260,7 @@ private:
     }
 
     const Json& json_;
+    const MaterialModel& model_;
     const Scene& scene_;
     const NodeNumbers& numbers_;
     Tokens tokens_;

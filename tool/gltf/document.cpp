@@ -72,7 +72,7 @@ Status Document::parse() {
     if (Status status = checkExtensions(*this); !status) {
         return status;
     }
-    auto failure = checkDocument(json_);
+    auto failure = checkDocument(json_, *options_.materialModel);
     if (!failure) {
         failure = checkCompression(json_);
     }
@@ -88,7 +88,7 @@ Status Document::parseModel() {
     tinygltf::TinyGLTF parser;
     std::string problems;
     std::string ignored;
-    const std::string text = projectDocument(json_).dump();
+    const std::string text = projectDocument(json_, *options_.materialModel).dump();
     bool parsed = false;
     try {
         parsed = parser.LoadASCIIFromString(&model_, &problems, &ignored, text.data(),

@@ -53,8 +53,7 @@ std::string extensionHint(std::string_view name) {
 
 }  // namespace
 
-bool isSupportedExtension(std::string_view name) {
-    const MaterialModel& model = builtinMaterialModel();
+bool isSupportedExtension(const MaterialModel& model, std::string_view name) {
     const int object = model.findObject(name);
     return (object >= 0 && model.objects[static_cast<std::size_t>(object)].isExtension) ||
            std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
@@ -88,7 +87,7 @@ Status checkExtensions(Document& document) {
     const Json& required = arrayMember(document.json(), "extensionsRequired");
     for (std::size_t i = 0; i < required.size(); ++i) {
         const std::string& name = required[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(name) && !changesNoPicture(name)) {
+        if (!isSupportedExtension(*document.options().materialModel, name) && !changesNoPicture(name)) {
             return unsupportedExtension(document, name, fmt::format("/extensionsRequired/{}", i));
         }
     }
@@ -96,7 +95,8 @@ Status checkExtensions(Document& document) {
     const Json& used = arrayMember(document.json(), "extensionsUsed");
     for (std::size_t i = 0; i < used.size(); ++i) {
         const std::string& name = used[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(name) && !changesNoPicture(name) && warned.insert(name).second) {
+        if (!isSupportedExtension(*document.options().materialModel, name) && !changesNoPicture(name) &&
+            warned.insert(name).second) {
             document.warn("extension-ignored", fmt::format("/extensionsUsed/{}", i),
                           fmt::format("the extension {} is not supported; what it adds is left out", name));
         }

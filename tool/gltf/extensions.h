@@ -1,6 +1,8 @@
 // Defines which glTF extensions Glint reads, and which messages others cause.
 #pragma once
 
+#include "plan/material_model.h"
+
 #include <glint/result.h>
 
 #include <string>
@@ -14,7 +16,7 @@ class Document;
 // it doesn't read. One note names all those that change no picture.
 Status checkExtensions(Document& document);
 
-bool isSupportedExtension(std::string_view name);
+bool isSupportedExtension(const MaterialModel& model, std::string_view name);
 
 // Returns whether the extension holds only data that no picture shows: metadata, and choices for users.
 bool changesNoPicture(std::string_view name);

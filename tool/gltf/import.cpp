@@ -61,7 +61,7 @@ Status fillScene(Document& document, Scene& scene) {
     }
     if (usesMaterial(scene, scene.materials.size())) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
-        scene.materials.emplace_back().name = "default";
+        scene.materials.emplace_back(*document.options().materialModel).name = "default";
     }
     scene.files = document.files();
     scene.warnings = std::move(document.warnings());

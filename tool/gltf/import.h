@@ -26,6 +26,9 @@ struct ImportOptions {
     // The name of the variant (KHR_materials_variants) whose materials are used. An empty name selects the
     // default materials.
     std::string variant{};
+    // What materials are made of: loadMaterialModel() adds features of a user's own. It must outlive the
+    // scene.
+    const MaterialModel* materialModel = &builtinMaterialModel();
 };
 
 // Reads `path` (.gltf or .glb), its buffers and its images. It refuses a URI that is absolute or leads above

@@ -146,7 +146,7 @@ void readParameters(Document& document, const Json& json, const std::string& poi
     }
     if (const Json* extensions = find(json, "extensions")) {
         for (const auto& [name, ignored] : extensions->items()) {
-            if (!isSupportedExtension(name) && !changesNoPicture(name)) {
+            if (!isSupportedExtension(model, name) && !changesNoPicture(name)) {
                 material.unsupportedExtensions.push_back(name);
             }
         }
@@ -161,7 +161,7 @@ Status importMaterials(Document& document, Scene& scene) {
     for (std::size_t i = 0; i < document.model().materials.size(); ++i) {
         const Json& json = document.json()["materials"][i];
         const std::string pointer = fmt::format("/materials/{}", i);
-        Material material;
+        Material material(*document.options().materialModel);
         material.name = document.model().materials[i].name;
         const tinygltf::Material& source = document.model().materials[i];
         material.alphaMode = readAlphaMode(document, source.alphaMode, pointer);

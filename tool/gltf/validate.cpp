@@ -114,31 +114,37 @@ constexpr std::array kVariants{objects("variants", kVariant, true)};
 constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
                                      object("KHR_materials_variants", kVariants)};
 
-std::vector<Rule> makeRoot() {
-    static const MaterialRules kMaterial(builtinMaterialModel());
-    return {
-        object("extensions", kRootExtensions),
-        objects("buffers", kBuffer),
-        objects("bufferViews", kBufferView),
-        objects("accessors", {}),
-        objects("meshes", kMesh),
-        objects("materials", kMaterial.rules()),
-        objects("textures", kTexture),
-        objects("samplers", kSampler),
-        objects("images", kImage),
-        objects("nodes", kNode),
-        objects("scenes", kScene),
-        objects("cameras", kCamera),
-        objects("animations", kAnimation),
-        objects("skins", kSkin),
-        index("scene", "/scenes"),
-    };
-}
+// The rules of a whole document whose materials are made as `model` says.
+class RootRules {
+public:
+    explicit RootRules(const MaterialModel& model)
+        : material_(model),
+          root_{
+              object("extensions", kRootExtensions),
+              objects("buffers", kBuffer),
+              objects("bufferViews", kBufferView),
+              objects("accessors", {}),
+              objects("meshes", kMesh),
+              objects("materials", material_.rules()),
+              objects("textures", kTexture),
+              objects("samplers", kSampler),
+              objects("images", kImage),
+              objects("nodes", kNode),
+              objects("scenes", kScene),
+              objects("cameras", kCamera),
+              objects("animations", kAnimation),
+              objects("skins", kSkin),
+              index("scene", "/scenes"),
+          } {}
 
-std::span<const Rule> rootRules() {
-    static const std::vector<Rule> kRoot = makeRoot();
-    return kRoot;
-}
+    std::span<const Rule> rules() const {
+        return root_;
+    }
+
+private:
+    MaterialRules material_;
+    std::vector<Rule> root_;
+};
 
 // Calls `use(index, isIndices)` for every accessor to which the member of that name refers, if there is such
 // a member.
@@ -265,8 +271,9 @@ std::optional<SchemaError> checkCameras(const Json& root) {
 
 }  // namespace
 
-std::optional<SchemaError> checkDocument(Json& root) {
-    if (auto error = checkObject(root, root, rootRules(), "")) {
+std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model) {
+    const RootRules rules(model);
+    if (auto error = checkObject(root, root, rules.rules(), "")) {
         return error;
     }
     if (auto error = checkStrides(root)) {
@@ -286,8 +293,9 @@ std::optional<SchemaError> checkDocument(Json& root) {
     return error;
 }
 
-Json projectDocument(const Json& root) {
-    Json projection = project(root, rootRules());
+Json projectDocument(const Json& root, const MaterialModel& model) {
+    const RootRules rules(model);
+    Json projection = project(root, rules.rules());
     projection["asset"] = {{"version", "2.0"}};
     projection.erase("buffers");
     projection.erase("images");

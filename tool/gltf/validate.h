@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf/schema.h"
+#include "plan/material_model.h"
 
 #include <optional>
 #include <vector>
@@ -9,13 +10,14 @@
 namespace glint::gltf {
 
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
-// that a mesh, an animation or a skin uses. It ignores `extras`.
-std::optional<SchemaError> checkDocument(Json& root);
+// that a mesh, an animation or a skin uses. It ignores `extras`
+// that the model does not declare.
+std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model);
 
 // Returns the part of a checked document that tinygltf gets. It has no buffers and images, which the importer
 // opens itself; no animations, skins and morph targets, which the importer reads from the JSON; and no
 // extras. Accessors that nothing uses are replaced by stand-ins, so that indices stay valid.
-Json projectDocument(const Json& root);
+Json projectDocument(const Json& root, const MaterialModel& model);
 
 // Returns the index of a buffer view that projectDocument() appends; it equals the number of the file's
 // buffer views. Index accessors without a buffer view refer to it, because tinygltf refuses them otherwise.

@@ -107,6 +107,11 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
         manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
         manifest.textureLod = settings.at("textureLod").get<std::string>();
+        for (const auto& row : json.at("features")) {
+            Feature& feature = manifest.features.features.emplace_back();
+            feature.name = row.at("name").get<std::string>();
+            feature.bit = std::clamp(row.at("bit").get<int>(), 0, kFeatureBits - 1);
+        }
         for (const auto& shader : json.at("shaders")) {
             for (const auto& material : shader.at("materials")) {
                 const auto name = material.at("name").get<std::string>();

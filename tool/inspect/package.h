@@ -1,6 +1,7 @@
 // What a package holds: its modules with statistics, its materials, and what manifest.json says.
 #pragma once
 
+#include "plan/material_model.h"
 #include "spirv/statistics.h"
 
 #include <glint/package.h>
@@ -24,6 +25,7 @@ struct Manifest {
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
     std::string textureLod;
+    MaterialModel features;  // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
 };

@@ -143,6 +143,7 @@ public:
             if (members.has("glsl")) {
                 code.push_back(readFeatureCode(members, file.name, file.mainFeature));
                 code.back().code.unless = replacing(file.object);
+                code.back().code.isOfPack = file.isOfPack;
             }
         }
         model_.code = orderCode(std::move(code));
@@ -156,6 +157,7 @@ private:
         DeclarationJson json;
         int object = 0;
         int mainFeature = -1;  // index into pending_, until bits are assigned
+        bool isOfPack = false;
     };
     // A feature before bits are assigned.
     struct Pending {
@@ -163,6 +165,7 @@ private:
         double order = kNoOrder;
         std::string where;
         bool isLit = true;
+        bool isOfPack = false;
     };
 
     static constexpr std::string_view kFileMembers[] = {
@@ -171,8 +174,9 @@ private:
         "neutral", "features", "effects",  "gltf",      "cost",       "ofBase",  "glsl"};
     static constexpr std::string_view kFeatureMembers[] = {"name",  "about", "stage", "short",   "order",
                                                            "needs", "gltf",  "given", "neutral", "cost"};
-    static constexpr std::string_view kTextureMembers[] = {
-        "name", "about", "short", "order", "needs", "color", "scales", "of", "is", "neutral", "cost"};
+    static constexpr std::string_view kTextureMembers[] = {"name",  "about",   "short",  "order",
+                                                           "needs", "color",   "scales", "of",
+                                                           "is",    "neutral", "cost",   "coordinates"};
     static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
                                                              "unit", "of", "is",   "about",   "record"};
 
@@ -188,7 +192,7 @@ private:
     }
 
     void parse(const DeclarationFile& file) {
-        File parsed{std::string(file.name), {}, 0, -1};
+        File parsed{std::string(file.name), {}, 0, -1, file.isOfPack};
         const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.text.data());
         if (nestsTooDeep({bytes, file.text.size()})) {
             failAt(parsed.name, "nests too deep");
@@ -252,11 +256,13 @@ private:
             const Members cost(members["cost"], members.at("cost"), {"instructions", "fetches"});
             feature.cost = {cost.number("instructions", 0.0), cost.number("fetches", 0.0)};
         }
-        pending_.push_back({std::move(feature), members.number("order", kNoOrder), members.where(), isLit});
+        pending_.push_back(
+            {std::move(feature), members.number("order", kNoOrder), members.where(), isLit, isOfPack_});
         return static_cast<int>(pending_.size()) - 1;
     }
 
     void collect(File& file) {
+        isOfPack_ = file.isOfPack;
         const Members members = membersOf(file);
         const std::string name = newName(members);
         const std::string stageName = members.text("stage");
@@ -380,6 +386,12 @@ private:
         feature.name = texture.name;
         feature.gltf = gltfPlace(file.object, texture.name);
         feature.texture = static_cast<int>(model_.textures.size());
+        if (members.has("coordinates")) {
+            if (members.text("coordinates") != "own") {
+                failAt(members.at("coordinates"), "the only other coordinates are \"own\"");
+            }
+            feature.hasOwnCoordinates = true;
+        }
         texture.feature = addFeature(members, std::move(feature), true);
         model_.textures.push_back(std::move(texture));
     }
@@ -432,17 +444,23 @@ private:
         }
         std::ranges::sort(sorted, {}, [this](int i) {
             const Pending& row = pending_[static_cast<std::size_t>(i)];
-            return std::tuple(!isLobe(row.feature), row.order, std::string_view(row.feature.name));
+            // The bits of Glint's own features are the same with packs as without.
+            return std::tuple(row.isOfPack, !isLobe(row.feature), row.order,
+                              std::string_view(row.feature.name));
         });
         std::vector<int> indexOf(pending_.size());
         int lobe = 0;
         int input = kFirstInput;
+        int further = kFirstInput;  // inputs that find no place in their word go down from here
         for (const int i : sorted) {
             Pending& row = pending_[static_cast<std::size_t>(i)];
-            row.feature.bit = isLobe(row.feature) ? lobe++ : input++;
-            if (lobe > kFirstInput || input > kFeatureBits) {
-                failAt(row.where, "there are more features than a key has bits");
+            row.feature.isLobe = isLobe(row.feature);
+            row.feature.bit = row.feature.isLobe ? lobe++ : input < kFeatureBits ? input++ : --further;
+            if (lobe > further) {
+                failAt(row.where,
+                       fmt::format("there are more features than the {} bits of a key", kFeatureBits));
             }
+            model_.lobes |= row.feature.isLobe ? row.feature.mask() : 0;
             indexOf[static_cast<std::size_t>(i)] = static_cast<int>(model_.features.size());
             if (!row.isLit) {
                 model_.unlit |= row.feature.mask();
@@ -575,7 +593,7 @@ private:
         const int slot = model_.findTexture(members.text("name"));
         const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
         linkFeature(members, feature, -1);
-        const bool ofLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).isLobe();
+        const bool ofLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).isLobe;
         featureAt(feature).lobe = members.has("of") ? featureNamed(members.text("of"), members.at("of"))
                                   : ofLayer         ? file.mainFeature
                                                     : -1;
@@ -770,6 +788,7 @@ private:
     }
 
     MaterialModel model_;
+    bool isOfPack_ = false;  // of the file that collect() reads
     std::vector<File> files_;
     std::vector<Pending> pending_;
     std::map<std::string, std::string> named_;  // where each name is declared

@@ -14,6 +14,7 @@ namespace glint {
 struct DeclarationFile {
     std::string_view name;  // for diagnostics: "materials/sheen/sheen.json"
     std::string_view text;
+    bool isOfPack = false;  // of a user's own; its features have bits after those of Glint's own
 };
 
 // Makes the model of all files together, as they may refer to each other. The result depends on neither the

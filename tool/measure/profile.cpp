@@ -24,9 +24,9 @@ constexpr std::uint64_t kMaxProfileBytes = 1ULL << 26;
 constexpr std::uint64_t kMaxHits = 1ULL << 48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
 
-std::vector<std::string> namesOf(FeatureMask mask) {
+std::vector<std::string> namesOf(const MaterialModel& model, FeatureMask mask) {
     std::vector<std::string> names;
-    for (const std::string_view name : builtinMaterialModel().names(mask)) {
+    for (const std::string_view name : model.names(mask)) {
         names.emplace_back(name);
     }
     return names;
@@ -69,10 +69,10 @@ Profile readMembers(JsonReader& reader, const Json& json) {
 }
 
 // Returns nothing if this version of Glint lacks one of the features.
-std::optional<FeatureMask> maskOf(const std::vector<std::string>& features) {
+std::optional<FeatureMask> maskOf(const MaterialModel& model, const std::vector<std::string>& features) {
     FeatureMask mask = 0;
     for (const std::string& name : features) {
-        const FeatureMask feature = builtinMaterialModel().mask(name);
+        const FeatureMask feature = model.mask(name);
         if (feature == 0) {
             return std::nullopt;
         }
@@ -120,12 +120,13 @@ bool isStale(const Profile& profile, const Profile& expected) {
 }
 
 // Compares the keys of the profile with those of the scene, and takes its hits over.
-void takeHits(const Profile& profile, const Profile& expected, const std::string& file, PlanChoice& choice) {
+void takeHits(const Profile& profile, const Profile& expected, const MaterialModel& model,
+              const std::string& file, PlanChoice& choice) {
     std::vector<std::string> gone;
     std::uint64_t hits = 0;
     for (const ProfileKey& key : profile.keys) {
         const auto here = std::ranges::find(expected.keys, key.features, &ProfileKey::features);
-        const std::optional<FeatureMask> mask = maskOf(key.features);
+        const std::optional<FeatureMask> mask = maskOf(model, key.features);
         if (here == expected.keys.end() || !mask) {
             gone.push_back(describe(key.features, key.materials));
             continue;
@@ -195,10 +196,10 @@ Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions&
     }
     profile.variant = scenes.variant();
     profile.alpha = toString(options.alpha);
-    profile.hitLobes = namesOf(options.keptLobes & kLobeMask);
+    profile.hitLobes = namesOf(*plan.model, options.keptLobes & plan.model->lobes);
     for (const Key& key : plan.keys) {
         ProfileKey entry;
-        entry.features = namesOf(key.mask);
+        entry.features = namesOf(*plan.model, key.mask);
         for (const int material : key.materials) {
             entry.materials.push_back(scenes.materialName(material));
         }
@@ -255,7 +256,7 @@ Result<PlanChoice> choosePlan(const PlanSettings& settings, const SceneList& sce
         choice.notes.push_back({Severity::Note, "profile-stale", settings.profile,
                                 "was counted in another version of the scene", ""});
     }
-    takeHits(*profile, expected, settings.profile, choice);
+    takeHits(*profile, expected, *plan.model, settings.profile, choice);
     return choice;
 }
 

@@ -41,7 +41,7 @@ void forEachFeature(const MaterialModel& model, FeatureMask mask, const Use& use
 
 // Returns the surplus of an average hit of a case in which the share p of the hits have the feature.
 double surplusOf(const Feature& feature, bool isUnlit, double p) {
-    double cost = feature.isLobe() ? fitted::kLobeBranch : fitted::kInputBranch;
+    double cost = feature.isLobe ? fitted::kLobeBranch : fitted::kInputBranch;
     cost += (feature.cost.instructions + kFetchCost * feature.cost.fetches) * idleShare(p);
     if (isUnlit) {
         cost += fitted::kLitInstructions * idleShare(1.0 - p);

@@ -28,7 +28,7 @@ public:
         : model_(material.model()),
           material_(material),
           primitive_(primitive),
-          kept_(~kLobeMask | options.keptLobes | model_.baseModels()),
+          kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
           facts_(material, primitive, options, key_) {}
 
     FeatureMask make(Drops* dropped) {
@@ -100,10 +100,13 @@ private:
                 return reason.because;
             }
         }
-        if (info != nullptr && info->texCoord > 1) {
+        if (info == nullptr || feature.hasOwnCoordinates) {
+            return std::nullopt;
+        }
+        if (info->texCoord > 1) {
             return fmt::format("it reads TEXCOORD_{}; Glint reads sets 0 and 1", info->texCoord);
         }
-        if (info != nullptr && !primitive_.hasTexCoords(info->texCoord)) {
+        if (!primitive_.hasTexCoords(info->texCoord)) {
             return fmt::format("the primitive has no TEXCOORD_{}", info->texCoord);
         }
         return std::nullopt;
@@ -129,7 +132,7 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
     if (dropped != nullptr) {
         for (const Feature& feature : model.features) {
             if ((whole & ~kept & feature.mask()) != 0) {
-                dropped->emplace_back(feature.name, feature.isLobe()
+                dropped->emplace_back(feature.name, feature.isLobe
                                                         ? "hits do not keep it (--hit-lobes)"
                                                         : "nothing that hits keep reads it (--hit-lobes)");
             }

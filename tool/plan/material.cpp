@@ -102,7 +102,10 @@ bool Material::reads(int object) const {
 
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
     const TextureInfo& info = material.textures[static_cast<std::size_t>(texture)];
-    return info.texture >= 0 && primitive.hasTexCoords(info.texCoord);
+    const MaterialModel& model = material.model();
+    const MaterialTexture& slot = model.textures[static_cast<std::size_t>(texture)];
+    return info.texture >= 0 && (model.features[static_cast<std::size_t>(slot.feature)].hasOwnCoordinates ||
+                                 primitive.hasTexCoords(info.texCoord));
 }
 
 MaterialFacts::MaterialFacts(const Material& material, const PrimitiveInputs& primitive,
@@ -159,7 +162,8 @@ bool MaterialFacts::readsTexCoord(int set) const {
             continue;
         }
         if (feature.texture >= 0) {
-            if (material_.textures[static_cast<std::size_t>(feature.texture)].texCoord == set) {
+            if (!feature.hasOwnCoordinates &&
+                material_.textures[static_cast<std::size_t>(feature.texture)].texCoord == set) {
                 return true;
             }
             continue;

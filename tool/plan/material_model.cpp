@@ -89,6 +89,8 @@ std::string MaterialModel::featureDefines() const {
     for (const Feature& feature : features) {
         text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
                             1U << (static_cast<unsigned>(feature.bit) % 32U));
+        text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", feature.macro.substr(6),
+                            feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
     }
     return text;
 }

@@ -15,10 +15,12 @@
 
 namespace glint {
 
-// A set of features by their bits. The low 32 bits are lobes, the high 32 bits are inputs.
+// A set of features by their bits.
 //
 //   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
 //   bits 32..63  inputs: where the surface's parameters are read from
+//
+// If materials of a user's own have more inputs than fit, these take bits from 31 downwards.
 using FeatureMask = std::uint64_t;
 
 inline constexpr FeatureMask kLobeMask = 0xFFFFFFFFULL;
@@ -128,6 +130,7 @@ struct FeatureCost {
 
 struct Feature {
     int bit = 0;
+    bool isLobe = false;
     std::string name;       // name in the manifest: "baseColorTexture"
     std::string shortName;  // part of a case's name: "BaseTex"
     std::string macro;      // macro in GLSL: "GLINT_BASE_COLOR_TEXTURE"
@@ -140,14 +143,12 @@ struct Feature {
     int texture = -1;  // index into MaterialModel::textures: the feature is that this is read
     int lobe = -1;     // the feature without which the texture is not read, or -1
     bool needsTangents = false;
-    bool isOfBase = false;  // Hits keep it with --hit-lobes base.
+    bool hasOwnCoordinates = false;  // the texture's GLSL makes its coordinates; it needs no UV set
+    bool isOfBase = false;           // Hits keep it with --hit-lobes base.
     FeatureCost cost{};
 
     FeatureMask mask() const {
         return bitMask(bit);
-    }
-    bool isLobe() const {
-        return bit < kFirstInput;
     }
     // Returns when the feature is given but changes nothing, in words.
     std::string neutralText() const;
@@ -167,6 +168,7 @@ struct FeatureCode {
     std::string emission{};
     bool coversEmission = false;  // the layer takes what it reflects from the emission, too
     bool isTraced = false;        // rays may trace the layer's reflection
+    bool isOfPack = false;        // of a user's own
 };
 
 // What a material may do with light, by which effects are chosen.
@@ -202,6 +204,12 @@ enum class Fact : std::uint8_t {
     Count
 };
 
+// A file of GLSL, by the name that an #include gives.
+struct ModelSource {
+    std::string name;
+    std::string text;
+};
+
 class MaterialModel {
 public:
     std::vector<MaterialObject> objects;  // The first is the material itself.
@@ -213,7 +221,9 @@ public:
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
     std::vector<FeatureCode> code;          // in the order in which it runs
+    std::vector<ModelSource> sources;       // GLSL of packs; that of Glint's own features is embedded
     FeatureMask unlit = 0;                  // features without light
+    FeatureMask lobes = 0;                  // features that are lobes
     int valueCount = 0;                     // length of Material::values
     std::vector<std::array<int, 2>> pairs;  // textures that same() compares
 
@@ -230,7 +240,7 @@ public:
     // Returns the base models, without which no hit can do.
     FeatureMask baseModels() const;
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
-    // their own word.
+    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it.
     std::string featureDefines() const;
 
     // Numbers of symbols. The kinds follow each other.

@@ -118,7 +118,7 @@ std::string nameCase(const MaterialModel& model, const Case& shaderCase, bool ha
         if ((shaderCase.always & feature.mask()) == 0) {
             continue;
         }
-        if (feature.isLobe()) {
+        if (feature.isLobe) {
             lobes += feature.shortName;
         } else {
             inputs += fmt::format("_{}", feature.shortName);

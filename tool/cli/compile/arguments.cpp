@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "cli/options/settings_option.h"
 #include "emit/embed_source.h"
+#include "materials/packs.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -165,6 +166,11 @@ std::vector<std::filesystem::path> furtherInputs(const CompileArguments& argumen
         if (!file.empty()) {
             files.emplace_back(file);
         }
+    }
+    // Where the folders can't be listed, reading the packs says so.
+    if (const Result<std::vector<std::filesystem::path>> packs = packFiles(arguments.reading.materials);
+        packs) {
+        files.insert(files.end(), packs->begin(), packs->end());
     }
     return files;
 }

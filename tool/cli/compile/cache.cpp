@@ -20,7 +20,8 @@ constexpr std::string_view kAction = "action";
 
 }  // namespace
 
-CompileCache::CompileCache(const CacheArguments& arguments, const std::string& options) {
+CompileCache::CompileCache(const CacheArguments& arguments, const std::string& options,
+                           std::span<const fs::path> inputs) {
     const std::optional<fs::path> folder = cacheFolder(arguments);
     if (!folder) {
         return;
@@ -35,6 +36,9 @@ CompileCache::CompileCache(const CacheArguments& arguments, const std::string& o
                   .add(fs::current_path(error).string())
                   .add(std::string_view(options))
                   .take();
+    for (const fs::path& input : inputs) {
+        action_ += Packer().add(input.string()).take();
+    }
 }
 
 std::optional<ActionRecord> CompileCache::findUpToDate() {

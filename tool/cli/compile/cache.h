@@ -21,8 +21,9 @@ namespace glint {
 class CompileCache {
 public:
     // `options` comes from describeOptions(). Together with the program and the working folder it decides
-    // what a run does with its inputs.
-    CompileCache(const CacheArguments& arguments, const std::string& options);
+    // what a run does with its inputs, whose names are `inputs`.
+    CompileCache(const CacheArguments& arguments, const std::string& options,
+                 std::span<const std::filesystem::path> inputs = {});
 
     // Returns null without a folder.
     ModuleCache* modules() {

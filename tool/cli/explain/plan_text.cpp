@@ -114,7 +114,7 @@ std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Deta
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
               {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
                                        counted(shaderCase.keys.size() - 1, "case"))},
-              {"  all have", featureList(shaderCase.always)}};
+              {"  all have", featureList(*planned.plan.model, shaderCase.always)}};
     std::string label = "  branches on";
     for (const BranchCost& branch : entry.branches) {
         rows.push_back({label, fmt::format("{}, in {} of its hits: {:.2f}", branch.feature->name,
@@ -128,7 +128,8 @@ std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Deta
                                            materialsText(planned, planKey.materials), percent(planKey.share),
                                            key.own.instructions, fetchesText(key.own), leavingText(key))});
         const FeatureMask besides = planKey.mask & ~shaderCase.always;
-        rows.push_back({"", besides != 0 ? "  with " + featureList(besides) : "  with nothing else"});
+        rows.push_back({"", besides != 0 ? "  with " + featureList(*planned.plan.model, besides)
+                                         : "  with nothing else"});
         label.clear();
     }
     if (entry.nearest) {
@@ -180,7 +181,7 @@ Json toJson(const CodeEstimate& code) {
 Json keyToJson(const PlannedScenes& planned, const KeyCost& cost) {
     const Key& key = planned.plan.keys[static_cast<std::size_t>(cost.key)];
     return {{"mask", fmt::format("0x{:016x}", key.mask)},
-            {"features", featuresToJson(key.mask)},
+            {"features", featuresToJson(*planned.plan.model, key.mask)},
             {"materials", materialsToJson(planned.scenes, key.materials)},
             {"share", shareToJson(key.share)},
             {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
@@ -207,8 +208,8 @@ Json caseToJson(const PlannedScenes& planned, const CaseCost& cost) {
             {"name", shaderCase.name},
             {"reason", toString(shaderCase.reason)},
             {"share", shareToJson(shaderCase.share)},
-            {"always", featuresToJson(shaderCase.always)},
-            {"sometimes", featuresToJson(shaderCase.sometimes)},
+            {"always", featuresToJson(*planned.plan.model, shaderCase.always)},
+            {"sometimes", featuresToJson(*planned.plan.model, shaderCase.sometimes)},
             {"estimate", toJson(cost.code)},
             {"ownInstructions", cost.ownInstructions},
             {"inVain", cost.inVain},

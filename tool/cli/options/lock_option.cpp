@@ -22,9 +22,9 @@ namespace {
 // A key takes less than a kilobyte.
 constexpr std::uint64_t kMaxLockBytes = 1ULL << 26;
 
-Diagnostic formatError(const std::string& file, const LockTextError& error) {
+Diagnostic formatError(const std::string& file, const LockTextError& error, const MaterialModel& model) {
     std::vector<std::string> features;
-    for (const Feature& info : builtinMaterialModel().features) {
+    for (const Feature& info : model.features) {
         features.emplace_back(info.name);
     }
     const std::string meant =
@@ -33,13 +33,17 @@ Diagnostic formatError(const std::string& file, const LockTextError& error) {
                      error.hint);
 }
 
+const MaterialModel& modelOf(const SceneList& scenes) {
+    return scenes.materials().empty() ? builtinMaterialModel() : scenes.materials().front().model();
+}
+
 bool isToBeMade(const LockArguments& arguments) {
     std::error_code ignored;
     return arguments.isWritten && !arguments.frozen && !std::filesystem::exists(arguments.file, ignored);
 }
 
 // The result is empty if there is no file yet.
-Result<LockText> readLock(const LockArguments& arguments) {
+Result<LockText> readLock(const LockArguments& arguments, const MaterialModel& model) {
     if (isToBeMade(arguments)) {
         if (Status possible = checkOutputFile(arguments.file); !possible) {
             return possible.error();
@@ -51,9 +55,9 @@ Result<LockText> readLock(const LockArguments& arguments) {
         return bytes.error();
     }
     std::variant<LockText, LockTextError> parsed =
-        parseLock({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+        parseLock({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, model);
     if (const auto* error = std::get_if<LockTextError>(&parsed)) {
-        return formatError(arguments.file, *error);
+        return formatError(arguments.file, *error, model);
     }
     return std::get<LockText>(std::move(parsed));
 }
@@ -77,7 +81,7 @@ std::string count(std::size_t number, std::string_view what) {
 std::string describeKey(FeatureMask mask, const Plan& plan, const SceneList& scenes) {
     const auto key = std::ranges::find(plan.keys, mask, &Key::mask);
     const bool known = key != plan.keys.end() && !key->materials.empty();
-    return lockKeyName(mask) +
+    return lockKeyName(mask, *plan.model) +
            (known ? fmt::format(" ({})", scenes.materialName(key->materials.front())) : std::string());
 }
 
@@ -148,7 +152,7 @@ private:
             return;
         }
         const std::string list = listSome(update_.stale, [&](FeatureMask mask) {
-            return fmt::format("{} {}", before_.ids.at(mask), lockKeyName(mask));
+            return fmt::format("{} {}", before_.ids.at(mask), lockKeyName(mask, *plan_.model));
         });
         const bool many = update_.stale.size() > 1;
         if (arguments_.prune) {
@@ -210,7 +214,7 @@ Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& sc
     if (arguments.file.empty()) {
         return choice;
     }
-    const Result<LockText> before = readLock(arguments);
+    const Result<LockText> before = readLock(arguments, modelOf(scenes));
     if (!before) {
         return before.error();
     }
@@ -223,7 +227,7 @@ Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& sc
     }
     teller.tell(choice);
     if (teller.changes() || isToBeMade(arguments)) {
-        choice.text = formatLock(update.ids);
+        choice.text = formatLock(update.ids, *plan.model);
     }
     choice.plan = std::move(plan);
     return choice;

@@ -1,6 +1,7 @@
 #include "cli/options/options.h"
 
 #include "base/suggest.h"
+#include "materials/packs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -324,6 +325,23 @@ void addReadingOptions(CLI::App& command, measure::ReadingSettings& arguments) {
             "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
     addFlag(command, "--strict-paths", arguments.strictPaths,
             "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
+    addTexts(command, "--materials", arguments.materials, "DIR",
+             "add the material features that this folder declares\n"
+             "(docs/material_features.md); may be repeated")
+        .allow_extra_args(false);
+}
+
+Result<ImportOptions> importOptions(const measure::ReadingSettings& arguments, bool decodeImages) {
+    const Result<const MaterialModel*> model = loadMaterialModel(arguments.materials);
+    if (!model) {
+        return model.error();
+    }
+    ImportOptions options;
+    options.decodeImages = decodeImages;
+    options.variant = arguments.variant;
+    options.strictPaths = arguments.strictPaths;
+    options.materialModel = *model;
+    return options;
 }
 
 }  // namespace glint

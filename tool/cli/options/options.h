@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/console.h"
+#include "gltf/import.h"
 
 #include <glint/measure/render_settings.h>
 
@@ -65,5 +66,7 @@ std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, measure::Accurac
 
 // --variant NAME, --strict-paths.
 void addReadingOptions(CLI::App& command, measure::ReadingSettings& arguments);
+// Has the errors of loadMaterialModel().
+Result<ImportOptions> importOptions(const measure::ReadingSettings& arguments, bool decodeImages);
 
 }  // namespace glint

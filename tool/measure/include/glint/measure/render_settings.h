@@ -60,6 +60,7 @@ struct EnvironmentSettings {
 struct ReadingSettings {
     std::string variant;  // of KHR_materials_variants; empty: none
     bool strictPaths = false;
+    std::vector<std::string> materials;  // folders of packs: material features of a user's own
 };
 
 // Which permutations a scene has, and which of them share code.

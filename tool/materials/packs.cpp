@@ -1,0 +1,138 @@
+#include "materials/packs.h"
+
+#include "base/files.h"
+#include "materials/declaration_files.h"
+#include "materials/declarations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kMaxFileBytes = 16ULL << 20;
+
+Diagnostic folderError(const std::string& folder, std::string message) {
+    return makeError(
+        "materials-folder", folder, std::move(message),
+        "name a folder that holds <feature>/<feature>.json, as docs/material_features.md describes");
+}
+
+bool isPackFile(const fs::path& path) {
+    return path.extension() == ".json" || path.extension() == ".glsl";
+}
+
+// Adds the files of one folder.
+Status addFolder(const std::string& folder, std::vector<fs::path>& files) {
+    std::error_code error;
+    const std::size_t before = files.size();
+    fs::recursive_directory_iterator place(folder, fs::directory_options::follow_directory_symlink, error);
+    for (; !error && place != fs::recursive_directory_iterator(); place.increment(error)) {
+        if (place.depth() > 0) {
+            place.disable_recursion_pending();
+        }
+        if (isPackFile(place->path()) && place->is_regular_file(error)) {
+            files.push_back(place->path());
+        }
+    }
+    if (error) {
+        return folderError(folder, fmt::format("can't be listed: {}", error.message()));
+    }
+    const auto begin = files.begin() + static_cast<std::ptrdiff_t>(before);
+    if (std::none_of(begin, files.end(), [](const fs::path& path) { return path.extension() == ".json"; })) {
+        return folderError(folder, "holds no declaration of a material feature");
+    }
+    return okStatus();
+}
+
+Status checkCode(const MaterialModel& model) {
+    const auto isThere = [&](const std::string& name) {
+        return std::ranges::find(model.sources, name, &ModelSource::name) != model.sources.end();
+    };
+    for (const FeatureCode& code : model.code) {
+        // The build checks the files of Glint's own features.
+        if (!code.isOfPack) {
+            continue;
+        }
+        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission}) {
+            if (!file.empty() && !isThere(file)) {
+                return makeError(
+                    "materials-glsl", file,
+                    fmt::format("is named by the declaration of {}, but is not there", code.name),
+                    "write the file, or correct the member \"glsl\" of the declaration");
+            }
+        }
+    }
+    return okStatus();
+}
+
+// Keeps a model for as long as the program runs.
+const MaterialModel& keep(MaterialModel model) {
+    static std::mutex mutex;
+    static std::deque<MaterialModel> models;
+    const std::lock_guard lock(mutex);
+    return models.emplace_back(std::move(model));
+}
+
+}  // namespace
+
+Result<std::vector<fs::path>> packFiles(std::span<const std::string> folders) {
+    std::vector<fs::path> files;
+    for (const std::string& folder : folders) {
+        if (Status status = addFolder(folder, files); !status) {
+            return status.error();
+        }
+    }
+    std::ranges::sort(files);
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    return files;
+}
+
+Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders) {
+    if (folders.empty()) {
+        return &builtinMaterialModel();
+    }
+    const Result<std::vector<fs::path>> files = packFiles(folders);
+    if (!files) {
+        return files.error();
+    }
+    std::deque<std::string> names;
+    std::deque<std::string> texts;
+    std::vector<DeclarationFile> declarations;
+    std::vector<ModelSource> sources;
+    for (const BuiltinFile& file : declarationFiles()) {
+        declarations.push_back({file.name, file.text});
+    }
+    for (const fs::path& file : *files) {
+        const Result<Bytes> bytes = readFile(file, kMaxFileBytes);
+        if (!bytes) {
+            return bytes.error();
+        }
+        std::string text(bytes->begin(), bytes->end());
+        if (file.extension() == ".glsl") {
+            sources.push_back({file.generic_string(), std::move(text)});
+        } else {
+            declarations.push_back(
+                {names.emplace_back(file.generic_string()), texts.emplace_back(std::move(text)), true});
+        }
+    }
+    Result<MaterialModel> model = readDeclarations(declarations);
+    if (!model) {
+        return model.error();
+    }
+    model->sources = std::move(sources);
+    if (Status status = checkCode(*model); !status) {
+        return status.error();
+    }
+    return &keep(std::move(*model));
+}
+
+}  // namespace glint
