@@ -10,8 +10,8 @@ import math
 import struct
 import sys
 
-SEGMENTS = 48
-RINGS = 24
+SEGMENTS = 32
+RINGS = 16
 
 
 def sphere():

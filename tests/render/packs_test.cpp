@@ -1,0 +1,176 @@
+// Materials of packs: the example packs, and the pack that docs/material_features.md makes as it is printed.
+#include "materials/packs.h"
+
+#include "base/files.h"
+#include "gltf/import.h"
+#include "render/pixel_test.h"
+#include "support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+namespace fs = std::filesystem;
+
+const std::string kPacks = GLINT_SOURCE_DIR "/examples/materials";
+
+const MaterialModel& packs() {
+    static const Result<const MaterialModel*> kModel = loadMaterialModel(std::vector{kPacks});
+    EXPECT_TRUE(kModel) << toString(kModel.error());
+    return **kModel;
+}
+
+TEST(Packs, StrategiesAndMergePoliciesGiveOneImage) {
+    ImportOptions import;
+    import.decodeImages = true;
+    import.materialModel = &packs();
+    const Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
+    RenderSetup setup = defaultSetup(*scene, 75, 30);
+    setup.frame.maxReflectionRoughness = 1.0F;
+    LinearImage reference;
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::All}) {
+        PlanOptions plan;
+        plan.merge = merge;
+        const LoadedScene loaded(*scene, plan);
+        ASSERT_TRUE(loaded.ok());
+        for (const auto strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
+            const LinearImage image = loaded.render(strategy, setup);
+            ASSERT_FALSE(image.pixels.empty());
+            reference = reference.pixels.empty() ? image : reference;
+            expectSameImage(image, reference, std::string(toString(merge)));
+        }
+    }
+    expectNoValidationMessages();
+}
+
+// A black wall with a layer, under one directional light without a sky. Returns the radiance along the axis
+// of the camera, whose direction is the wall's normal turned by `tilt` radians about x.
+Pixel litWall(const Material& material, double tilt, Float3 light) {
+    Scene scene = emptyScene();
+    addCamera(scene);
+    const auto cosine = static_cast<float>(std::cos(tilt));
+    const auto sine = static_cast<float>(std::sin(tilt));
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-4, -4 * cosine, -4 - 4 * sine},
+                                               {8, 0, 0}, {0, 8 * cosine, 8 * sine})));
+    addDirectionalLight(scene, light, 2.0F);
+    RenderSetup setup = defaultSetup(scene, 33, 33);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.effects = {};
+    const LoadedScene loaded(scene, settings);
+    const LinearImage image =
+        loaded.ok() ? loaded.render(package::kStrategyVisibility, setup) : LinearImage{};
+    return image.pixels.empty() ? Pixel{-1, -1, -1, -1} : at(image, 16, 16);
+}
+
+struct Direction {
+    double x, y, z;
+};
+
+// The wall of litWall() has x along the picture, y up the slope and its normal for z.
+Direction toWall(Float3 world, double tilt) {
+    return {world[0], world[1] * std::cos(tilt) + world[2] * std::sin(tilt),
+            -world[1] * std::sin(tilt) + world[2] * std::cos(tilt)};
+}
+
+// Returns a material that reflects nothing but what layers add.
+Material blackMaterial(const MaterialModel& model) {
+    Material material(model);
+    material["baseColorFactor"] = {0, 0, 0, 1};
+    material["metallicFactor"] = 0.0F;
+    material.give("KHR_materials_specular");
+    material["specularFactor"] = 0.0F;
+    return material;
+}
+
+constexpr double kTilt = -0.5;
+constexpr Float3 kLight{0.18F, -0.1F, -0.97857550F};  // unit; light goes this way
+
+TEST(Packs, RetroreflectionIsThatOfDoublePrecision) {
+    Material material = blackMaterial(packs());
+    material.give("EXAMPLE_materials_retroreflection");
+    material["retroreflectionFactor"] = 0.75F;
+    material["retroreflectionColor"] = {1.0F, 0.5F, 0.25F};
+    material["retroreflectionRoughness"] = 0.6F;
+    const Pixel pixel = litWall(material, kTilt, kLight);
+    const Direction v = toWall({0, 0, 1}, kTilt);
+    const Direction l = toWall({-kLight[0], -kLight[1], -kLight[2]}, kTilt);
+    // D and V of GGX (Walter et al. 2007, Heitz 2014) about the view mirrored at the normal.
+    const double alpha2 = std::pow(0.6, 4.0);
+    const Direction sum{l.x - v.x, l.y - v.y, l.z + v.z};
+    const double cosine = sum.z / std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
+    const double d = alpha2 / (std::numbers::pi * std::pow(cosine * cosine * (alpha2 - 1.0) + 1.0, 2.0));
+    const auto projection = [&](double c) { return std::sqrt(alpha2 + (1.0 - alpha2) * c * c); };
+    const double visibility = 0.5 / (l.z * projection(v.z) + v.z * projection(l.z));
+    const double expected = 2.0 * 0.75 * d * visibility * l.z;
+    ASSERT_GT(expected, 0.01);
+    EXPECT_NEAR(pixel[0], expected, 1e-4 * expected);
+    EXPECT_NEAR(pixel[1], 0.5 * expected, 1e-4 * expected);
+    EXPECT_NEAR(pixel[2], 0.25 * expected, 1e-4 * expected);
+}
+
+TEST(Packs, FibresAreThoseOfDoublePrecision) {
+    Material material = blackMaterial(packs());
+    material.give("EXAMPLE_materials_fibre");
+    material["fibreFactor"] = 0.5F;
+    material["fibreWidth"] = 0.2F;
+    material["fibreRotation"] = 0.4F;
+    const Pixel pixel = litWall(material, kTilt, kLight);
+    const Direction v = toWall({0, 0, 1}, kTilt);
+    const Direction l = toWall({-kLight[0], -kLight[1], -kLight[2]}, kTilt);
+    const auto along = [](const Direction& d) { return std::cos(0.4) * d.x + std::sin(0.4) * d.y; };
+    const double centre = -along(v);
+    const double distance = (along(l) - centre) / 0.2;
+    const double range = std::atan((1.0 - centre) / 0.2) - std::atan((-1.0 - centre) / 0.2);
+    const double expected = 2.0 * 0.5 / (0.2 * (1.0 + distance * distance) * range * std::numbers::pi);
+    ASSERT_GT(expected, 0.01);
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(pixel[static_cast<std::size_t>(channel)], expected, 1e-4 * expected);
+    }
+}
+
+// Returns the code of a document that stands below a line with the file's name in bold: "**wax/wax.json**".
+std::string printedFile(std::string_view document, const std::string& name) {
+    const std::size_t title = document.find("**" + name + "**");
+    const std::size_t begin = document.find('\n', document.find("```", title)) + 1;
+    return title == std::string_view::npos
+               ? ""
+               : std::string(document.substr(begin, document.find("```", begin) - begin));
+}
+
+// The page's lobe is added by the three files that it prints, and by nothing else.
+TEST(Packs, ThePageAddsALobe) {
+    const Result<Bytes> page = readFile(GLINT_SOURCE_DIR "/docs/material_features.md");
+    ASSERT_TRUE(page);
+    const std::string_view text(reinterpret_cast<const char*>(page->data()), page->size());
+    const test::TemporaryFolder folder;
+    for (const char* const name : {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"}) {
+        const std::string file = printedFile(text, name);
+        ASSERT_FALSE(file.empty()) << name;
+        fs::create_directories((folder.path() / name).parent_path());
+        ASSERT_TRUE(writeFile(folder.path() / name, file));
+    }
+    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
+    ASSERT_TRUE(model) << toString(model.error());
+    Material material = blackMaterial(**model);
+    material.give("EXAMPLE_materials_wax");
+    material["waxFactor"] = 0.5F;
+    const Pixel pixel = litWall(material, kTilt, kLight);
+    // Lambert's law.
+    const Direction l = toWall({-kLight[0], -kLight[1], -kLight[2]}, kTilt);
+    EXPECT_NEAR(pixel[0], 2.0 * 0.5 * l.z / std::numbers::pi, 1e-4);
+    expectNoValidationMessages();
+}
+
+}  // namespace
