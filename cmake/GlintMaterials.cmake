@@ -1,8 +1,8 @@
 # glint_add_materials(TARGET target SCENES file… [NAME name] [STRATEGY list] [TRACER list] [MERGE policy] [MAX_SHADERS n]
-#                     [ALPHA policy] [LOCK file] [EMBED] [OUTPUT_DIRECTORY dir] [OPTIONS option…])
+#                     [ALPHA policy] [MATERIALS folder…] [LOCK file] [EMBED] [OUTPUT_DIRECTORY dir] [OPTIONS option…])
 #
 # Compiles the materials of glTF scenes into a package before TARGET, and again whenever a scene, a file that it reads, the
-# lock or the tool changes. docs/integration.md describes each argument and what TARGET gets.
+# lock, a pack of materials or the tool changes. docs/integration.md describes each argument and what TARGET gets.
 
 # Functions keep the policies that are set where they are defined.
 cmake_policy(PUSH)
@@ -58,7 +58,7 @@ endfunction()
 function(glint_add_materials)
   set(passed STRATEGY TRACER MERGE MAX_SHADERS ALPHA EFFECTS)
   cmake_parse_arguments(PARSE_ARGV 0 arg "EMBED" "TARGET;NAME;MERGE;MAX_SHADERS;ALPHA;LOCK;OUTPUT_DIRECTORY"
-                        "SCENES;STRATEGY;TRACER;EFFECTS;OPTIONS")
+                        "SCENES;STRATEGY;TRACER;EFFECTS;MATERIALS;OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "glint_add_materials: unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -100,6 +100,14 @@ function(glint_add_materials)
   if(lock)
     list(APPEND options --lock "${lock}")
   endif()
+  # The depfile knows the files that a pack has now; the glob finds new ones.
+  _glint_resolve_inputs(packs ${arg_MATERIALS})
+  set(pack_files "")
+  foreach(pack IN LISTS packs)
+    list(APPEND options --materials "${pack}")
+    file(GLOB files CONFIGURE_DEPENDS "${pack}/*.json" "${pack}/*.glsl" "${pack}/*/*.json" "${pack}/*/*.glsl")
+    list(APPEND pack_files ${files})
+  endforeach()
   set(products "${base}/glint_tables.h" "${base}/manifest.json" "${base}/tables.bin")
   if(arg_EMBED)
     set(source "${base}_package.cpp")
@@ -116,7 +124,7 @@ function(glint_add_materials)
     COMMAND "${tool}" compile ${scenes} -o "${base}" ${options} ${arg_OPTIONS} --depfile "${base}.d" --depfile-target
             "${stamp}"
     COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
-    DEPENDS ${scenes} "${tool}"
+    DEPENDS ${scenes} ${pack_files} "${tool}"
     DEPFILE "${base}.d"
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     COMMENT "Compiling the materials of ${arg_NAME}"

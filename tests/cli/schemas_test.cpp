@@ -206,7 +206,7 @@ TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
 }
 
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
-    expectFits("material_feature", exampleIn("material_features.md", "## An example"));
+    expectFits("material_feature", exampleIn("material_features.md", "## A declaration"));
     expectFits("compile", exampleIn("cli.md", "## glint compile"));
     expectFits("lint", exampleIn("lint.md", "## JSON"));
     const Json diagnostic = exampleIn("cli.md", "## What is reported");

@@ -1,8 +1,8 @@
 // Fuzzes KTX2 images of glTF scenes, and the transcoder of Basis Universal behind them if the build has it.
 #include "fuzz/fuzz_target.h"
-#include "gltf/basisu.h"
-#include "gltf/codecs.h"
-#include "gltf/ktx2.h"
+#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
+#include "gltf/codecs/ktx2.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // Fuzzes manifest.json, as `glint compile` reads the one that it replaces. The files that it lists may be
 // deleted, so no name may lead out of the package's folder.
-#include "emit/manifest.h"
+#include "emit/package/manifest.h"
 #include "fuzz/fuzz_target.h"
 
 #include <algorithm>

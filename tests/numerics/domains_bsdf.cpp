@@ -1,5 +1,5 @@
 #include "domains.h"
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <algorithm>
 #include <cmath>

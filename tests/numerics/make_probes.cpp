@@ -4,9 +4,9 @@
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
 #include "emit/builtin.h"
-#include "emit/flatten.h"
+#include "emit/glsl/flatten.h"
 #include "emit/material_code.h"
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 #include "translate.h"
 
 #include <fmt/format.h>

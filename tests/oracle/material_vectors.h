@@ -1,8 +1,8 @@
 // Parameters of materials as vectors.
 #pragma once
 
+#include "materials/material.h"
 #include "oracle/vectors.h"
-#include "plan/material.h"
 
 namespace glint::oracle {
 

@@ -2,8 +2,8 @@
 // parameters from the factors of a glTF material. It is for scenes whose truth needs a whole renderer.
 #pragma once
 
+#include "materials/material.h"
 #include "oracle/world.h"
-#include "plan/material.h"
 
 namespace glint::oracle {
 

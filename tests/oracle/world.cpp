@@ -1,6 +1,6 @@
 #include "oracle/world.h"
 
-#include "gltf/transform.h"
+#include "gltf/motion/transform.h"
 
 #include <algorithm>
 #include <array>

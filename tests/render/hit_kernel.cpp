@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "context/context_state.h"
 #include "context/vulkan_error.h"
-#include "emit/flatten.h"
+#include "emit/glsl/flatten.h"
 #include "emit/sources.h"
 #include "package/shader_modules.h"
 #include "scene/gpu_scene_state.h"

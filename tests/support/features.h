@@ -1,7 +1,7 @@
 // Names of features as masks, for tests.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 #include "support/features.h"
 
 #include <cstdlib>

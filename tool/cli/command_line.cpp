@@ -4,7 +4,7 @@
 #include "cli/options/diagnostics_options.h"
 #include "cli/options/settings_option.h"
 #include "cli/options/usage.h"
-#include "gltf/basisu.h"
+#include "gltf/codecs/basisu.h"
 
 #include <CLI/CLI.hpp>
 

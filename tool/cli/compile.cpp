@@ -15,8 +15,8 @@
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/effects.h"
-#include "emit/embed_source.h"
-#include "emit/json.h"
+#include "emit/package/embed_source.h"
+#include "emit/package/json.h"
 #include "gltf/import.h"
 
 #include <glint/measure/profile.h>

@@ -9,7 +9,7 @@
 #include "cli/options/tracing_options.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/json.h"
+#include "emit/package/json.h"
 #include "gltf/import.h"
 
 #include <glint/measure/profile.h>

@@ -3,7 +3,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/json.h"
+#include "emit/package/json.h"
 #include "inspect/package.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emit/sources.h"
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <glint/result.h>
 

@@ -1,7 +1,7 @@
 #include "emit/module_text.h"
 
 #include "base/files.h"
-#include "emit/prune.h"
+#include "emit/glsl/prune.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "emit/context.h"
 #include "emit/effects.h"
-#include "emit/prune.h"
+#include "emit/glsl/prune.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>

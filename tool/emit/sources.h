@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
-#include "emit/flatten.h"
+#include "emit/glsl/flatten.h"
 #include "gltf/scene_list.h"
 
 #include <cstdint>

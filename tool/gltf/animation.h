@@ -18,7 +18,7 @@ enum class AnimationPath : std::uint8_t {
     Weights,
     Weight,    // the weight of one morph target
     Visible,   // KHR_node_visibility: 0 or 1
-    Material,  // these have a row in the tables of gltf/animatable.h
+    Material,  // these have a row in the tables of gltf/motion/animatable.h
     Light,
     Camera
 };

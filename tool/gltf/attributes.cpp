@@ -1,8 +1,8 @@
 #include "gltf/attributes.h"
 
-#include "gltf/accessor.h"
-#include "gltf/draco.h"
-#include "gltf/skinning.h"
+#include "gltf/codecs/draco.h"
+#include "gltf/document/accessor.h"
+#include "gltf/motion/skinning.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Reads vertex attributes and the vertex order of one primitive, from accessors or from Draco data.
 #pragma once
 
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

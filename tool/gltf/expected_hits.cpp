@@ -1,7 +1,7 @@
 #include "gltf/expected_hits.h"
 
 #include "base/vectors.h"
-#include "gltf/transform.h"
+#include "gltf/motion/transform.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 #include "gltf/import.h"
 
-#include "gltf/animations.h"
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/expected_hits.h"
-#include "gltf/instancing.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
-#include "gltf/morphs.h"
-#include "gltf/nodes.h"
-#include "gltf/skinning.h"
+#include "gltf/motion/animations.h"
+#include "gltf/motion/instancing.h"
+#include "gltf/motion/morphs.h"
+#include "gltf/motion/nodes.h"
+#include "gltf/motion/skinning.h"
 #include "gltf/variants.h"
 
 #include <algorithm>

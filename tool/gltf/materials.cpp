@@ -1,7 +1,7 @@
 #include "gltf/materials.h"
 
-#include "gltf/extensions.h"
-#include "gltf/object_reader.h"
+#include "gltf/document/extensions.h"
+#include "gltf/document/object_reader.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>

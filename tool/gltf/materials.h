@@ -1,7 +1,7 @@
 // Imports materials: core metallic-roughness and the extensions that Glint shades.
 #pragma once
 
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

@@ -1,8 +1,8 @@
 #include "gltf/meshes.h"
 
 #include "gltf/attributes.h"
-#include "gltf/morphs.h"
-#include "gltf/repair.h"
+#include "gltf/document/repair.h"
+#include "gltf/motion/morphs.h"
 #include "gltf/triangles.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Imports meshes: attributes, indices, modes.
 #pragma once
 
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gltf/animation.h"
-#include "plan/material.h"
+#include "materials/material.h"
 
 #include <glint/result.h>
 

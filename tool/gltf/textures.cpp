@@ -1,9 +1,9 @@
 #include "gltf/textures.h"
 
-#include "gltf/basisu.h"
-#include "gltf/compression.h"
-#include "gltf/extensions.h"
-#include "gltf/images.h"
+#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/compression.h"
+#include "gltf/codecs/images.h"
+#include "gltf/document/extensions.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Imports the textures and samplers that materials use, in the order of first use.
 #pragma once
 
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

@@ -1,7 +1,7 @@
 // Imports KHR_materials_variants, which gives other materials to the same primitives.
 #pragma once
 
-#include "gltf/document.h"
+#include "gltf/document/document.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

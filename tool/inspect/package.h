@@ -1,7 +1,7 @@
 // What a package holds: its modules with statistics, its materials, and what manifest.json says.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 #include "spirv/statistics.h"
 
 #include <glint/package.h>

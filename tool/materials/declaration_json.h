@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/suggest.h"
-#include "plan/interval.h"
+#include "materials/interval.h"
 
 #include <glint/result.h>
 

@@ -2,7 +2,7 @@
 // members docs/schemas/material_feature.schema.json describes.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <glint/result.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "materials/declaration_json.h"
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 // Packs: material features of a user's own, beside those that Glint has.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <glint/result.h>
 

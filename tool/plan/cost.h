@@ -17,7 +17,7 @@
 // measured (cost_constants.h, and "cost" in each declaration). The constants in this file are chosen.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 
 #include <array>
 #include <span>

@@ -2,7 +2,7 @@
 // functions.
 #pragma once
 
-#include "plan/material.h"
+#include "materials/material.h"
 
 #include <glint/effects.h>
 

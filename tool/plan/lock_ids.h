@@ -1,7 +1,7 @@
 // Assigns shader IDs to cases so that they stay the same from build to build.
 #pragma once
 
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 #include "plan/merge.h"
 
 #include <map>

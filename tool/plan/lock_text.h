@@ -10,8 +10,8 @@
 // names, and repeated lines mean nothing.
 #pragma once
 
+#include "materials/material_model.h"
 #include "plan/lock_ids.h"
-#include "plan/material_model.h"
 
 #include <string>
 #include <string_view>

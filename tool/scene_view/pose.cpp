@@ -1,6 +1,6 @@
 #include "base/vectors.h"
-#include "gltf/animatable.h"
-#include "gltf/transform.h"
+#include "gltf/motion/animatable.h"
+#include "gltf/motion/transform.h"
 #include "scene_view/interpolate.h"
 
 #include <glint/scene_view/pose.h>

@@ -1,5 +1,5 @@
 #include "base/vectors.h"
-#include "gltf/transform.h"
+#include "gltf/motion/transform.h"
 
 #include <glint/scene_view/pose.h>
 #include <glint/scene_view/scene_view.h>

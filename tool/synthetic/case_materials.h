@@ -1,7 +1,7 @@
 // The materials of the cases: as many sets of features as wanted, with nearly the same work on average.
 #pragma once
 
-#include "plan/material.h"
+#include "materials/material.h"
 #include "synthetic/cases_scene.h"
 
 #include <vector>

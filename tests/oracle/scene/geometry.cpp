@@ -1,6 +1,6 @@
 #include "oracle/scene/geometry.h"
 
-#include "gltf/transform.h"
+#include "gltf/motion/transform.h"
 
 #include <algorithm>
 #include <cmath>

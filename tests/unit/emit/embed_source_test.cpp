@@ -1,5 +1,5 @@
 // Tests a package as C++ source: a program must get from it the same as from the package's folder.
-#include "emit/embed_source.h"
+#include "emit/package/embed_source.h"
 
 #include "sample_scene.h"
 

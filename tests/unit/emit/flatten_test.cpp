@@ -1,4 +1,4 @@
-#include "emit/flatten.h"
+#include "emit/glsl/flatten.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "emit/header.h"
+#include "emit/package/header.h"
 
 #include "unit/emit/sample_scene.h"
 

@@ -1,4 +1,4 @@
-#include "emit/prune.h"
+#include "emit/glsl/prune.h"
 
 #include "emit/compile.h"
 #include "unit/emit/sample_scene.h"

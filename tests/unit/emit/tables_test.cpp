@@ -1,4 +1,4 @@
-#include "emit/tables.h"
+#include "emit/package/tables.h"
 
 #include "emit/sources.h"
 #include "gltf/import.h"

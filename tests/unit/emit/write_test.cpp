@@ -1,5 +1,5 @@
 #include "emit/compile.h"
-#include "emit/manifest.h"
+#include "emit/package/manifest.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"
 

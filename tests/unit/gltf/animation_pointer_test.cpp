@@ -1,6 +1,6 @@
 // Tests KHR_animation_pointer: the targets of pointers, the messages about wrong ones, and how planning uses
 // the values.
-#include "gltf/animatable.h"
+#include "gltf/motion/animatable.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "support/features.h"

@@ -1,5 +1,5 @@
 // Tests files: containers, buffers, URIs, JSON.
-#include "gltf/uri.h"
+#include "gltf/document/uri.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Tests EXT_mesh_gpu_instancing and KHR_node_visibility: what is read, and how planning sees it.
-#include "gltf/transform.h"
+#include "gltf/motion/transform.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Tests conditions on intervals: against plain arithmetic at every value of small intervals, and what they
 // refuse.
-#include "plan/expression.h"
+#include "materials/expression.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

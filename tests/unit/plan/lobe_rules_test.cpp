@@ -107,7 +107,7 @@ TEST(LobeKey, TangentsServeEachOfTheirReaders) {
     material["anisotropyStrength"] = 1.0F;
     material["roughnessFactor"] = 0.5F;
     EXPECT_TRUE(hasTangents(material));
-    material = {};
+    material = Material();
     material["clearcoatFactor"] = 1.0F;
     EXPECT_FALSE(hasTangents(material));
     material.texture("clearcoatNormalTexture").texture = 0;

@@ -1,7 +1,7 @@
 // Tests what the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
 #include "context/requirements.h"
 #include "context/vulkan_error.h"
-#include "plan/material_model.h"
+#include "materials/material_model.h"
 #include "renderer/camera.h"
 #include "renderer/draw_batches.h"
 #include "scene/instance_math.h"

@@ -2,7 +2,7 @@
 
 #include "base/text.h"
 #include "cli/options/settings_option.h"
-#include "emit/embed_source.h"
+#include "emit/package/embed_source.h"
 #include "materials/packs.h"
 
 #include <CLI/CLI.hpp>

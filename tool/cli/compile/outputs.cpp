@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "base/staged_file.h"
 #include "cli/compile/held_signals.h"
-#include "emit/embed_source.h"
+#include "emit/package/embed_source.h"
 
 #include <utility>
 #include <vector>

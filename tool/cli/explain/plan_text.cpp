@@ -1,7 +1,7 @@
 #include "cli/explain/plan_text.h"
 
 #include "cli/table.h"
-#include "emit/json.h"
+#include "emit/package/json.h"
 #include "plan/plan_cost.h"
 
 #include <fmt/format.h>

@@ -143,6 +143,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"manifest-format", kError, "A manifest can't be read."},
     {"material-range", kWarning, "A value of a material is outside of its range and clamped."},
     {"material-unknown", kError, "The scene has no such material."},
+    {"materials-folder", kError, "A folder of `--materials` can't be listed, or has no declaration."},
+    {"materials-glsl", kError, "A declaration of a pack names a GLSL file that is not there."},
     {"max-error", kError, "`glint compare`: the images differ by more than `--max-error`."},
     {"max-shaders", kWarning | kError,
      "The scene needs more shaders than `--max-shaders` (a warning from `explain`)."},

@@ -2,7 +2,7 @@
 
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/json.h"
+#include "emit/package/json.h"
 
 #include <fmt/format.h>
 

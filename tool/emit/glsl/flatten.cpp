@@ -1,0 +1,228 @@
+#include "emit/glsl/flatten.h"
+
+#include "emit/glsl/glsl_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+enum class FrameKind {
+    Side,   // a condition on __cplusplus, decided here; its directives are dropped
+    Guard,  // an include guard; its directives are dropped
+    Other   // left to the compiler
+};
+
+struct Frame {
+    FrameKind kind = FrameKind::Other;
+    bool taken = true;
+    int line = 0;  // where the conditional opens
+};
+
+class Flattener {
+public:
+    Flattener(const SourceLookup& lookup, FlattenSide side) : lookup_(lookup), side_(side) {}
+
+    Status addFile(std::string_view name, std::string_view text);
+    std::string takeText() {
+        return std::move(out_);
+    }
+    bool sawVersion() const {
+        return sawVersion_;
+    }
+
+private:
+    struct File {
+        std::string name;
+        std::vector<std::string_view> lines;
+        std::vector<Frame> frames;
+    };
+
+    // Handles the directive at `index` if flatten() decides it itself. Returns whether it did.
+    Result<bool> addDirective(File& file, std::size_t index);
+    Result<bool> addConditional(File& file, std::size_t index, const Directive& directive);
+    Status addInclude(const File& file, int line, std::string_view argument);
+    bool opensGuard(const File& file, std::size_t index) const;
+    void addLine(const File& file, int line, std::string_view text);
+
+    const SourceLookup& lookup_;
+    FlattenSide side_;
+    std::string out_;
+    std::set<std::string, std::less<>> added_;
+    std::vector<std::string> open_;  // files being flattened, outermost first
+    // The file and line that the compiler assumes for the next line of out_.
+    std::string placeName_;
+    int placeLine_ = 0;
+    bool sawVersion_ = false;
+    bool afterBlank_ = true;
+};
+
+Diagnostic errorAt(std::string id, std::string_view name, int line, std::string message, std::string hint) {
+    return makeError(std::move(id), fmt::format("{}:{}", name, line), std::move(message), std::move(hint));
+}
+
+bool isActive(const std::vector<Frame>& frames) {
+    return std::ranges::all_of(frames, &Frame::taken);
+}
+
+Status Flattener::addFile(std::string_view name, std::string_view text) {
+    File file{std::string(name), splitLines(text), {}};
+    added_.insert(file.name);
+    open_.push_back(file.name);
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+        Result<bool> handled = addDirective(file, i);
+        if (!handled) {
+            return handled.error();
+        }
+        if (!*handled && isActive(file.frames)) {
+            addLine(file, static_cast<int>(i) + 1, file.lines[i]);
+        }
+    }
+    if (!file.frames.empty()) {
+        return errorAt("source-conditional", name, file.frames.back().line, "the conditional has no #endif",
+                       "close it in the same file");
+    }
+    open_.pop_back();
+    return okStatus();
+}
+
+Result<bool> Flattener::addDirective(File& file, std::size_t index) {
+    const Directive directive = parseDirective(file.lines[index]);
+    if (directive.word.empty()) {
+        return false;
+    }
+    const int line = static_cast<int>(index) + 1;
+    if (directive.word == "include" && isActive(file.frames)) {
+        const bool isSystem = directive.argument.starts_with('<');
+        if (isSystem) {
+            return side_ == FlattenSide::Glsl;
+        }
+        const Status status = addInclude(file, line, directive.argument);
+        return status ? Result<bool>(true) : Result<bool>(status.error());
+    }
+    if (directive.word == "version" && side_ == FlattenSide::Glsl && !sawVersion_) {
+        sawVersion_ = true;
+        addLine(file, line, file.lines[index]);
+        out_ += "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+        placeLine_ = 0;
+        return true;
+    }
+    // This is the guard's own #define.
+    const bool inGuard = !file.frames.empty() && file.frames.back().kind == FrameKind::Guard;
+    if (inGuard && directive.word == "define" && file.frames.back().line == line - 1) {
+        return true;
+    }
+    return addConditional(file, index, directive);
+}
+
+Result<bool> Flattener::addConditional(File& file, std::size_t index, const Directive& directive) {
+    const int line = static_cast<int>(index) + 1;
+    const std::string_view word = directive.word;
+    std::vector<Frame>& frames = file.frames;
+    if (word == "if" || word == "ifdef" || word == "ifndef") {
+        if (word == "if" && directive.argument.find("__cplusplus") != std::string_view::npos) {
+            return errorAt("source-conditional", file.name, line, "#if on __cplusplus can't be decided",
+                           "write #ifdef __cplusplus or #ifndef __cplusplus");
+        }
+        Frame frame{FrameKind::Other, true, line};
+        if (directive.argument == "__cplusplus") {
+            frame = {FrameKind::Side, (word == "ifdef") == (side_ == FlattenSide::Cpp), line};
+        } else if (word == "ifndef" && opensGuard(file, index)) {
+            frame.kind = FrameKind::Guard;
+        }
+        frames.push_back(frame);
+        return frame.kind != FrameKind::Other;
+    }
+    if (word != "else" && word != "elif" && word != "endif") {
+        return false;
+    }
+    if (frames.empty()) {
+        return errorAt("source-conditional", file.name, line, fmt::format("#{} without #if", word),
+                       "open the conditional in the same file");
+    }
+    const bool isOwn = frames.back().kind != FrameKind::Other;
+    if (word == "endif") {
+        // The frame is popped first, because an #endif belongs to the text around the conditional.
+        frames.pop_back();
+        return isOwn;
+    }
+    if (isOwn && (word == "elif" || frames.back().kind == FrameKind::Guard)) {
+        return errorAt("source-conditional", file.name, line,
+                       fmt::format("#{} can't follow this conditional", word),
+                       "use #else, with #ifdef __cplusplus");
+    }
+    if (isOwn) {
+        frames.back().taken = !frames.back().taken;
+    }
+    return isOwn;
+}
+
+// C++ keeps its include guards, so that the result can be included next to the headers that it was made from.
+bool Flattener::opensGuard(const File& file, std::size_t index) const {
+    if (side_ == FlattenSide::Cpp || !file.frames.empty() || index + 1 >= file.lines.size()) {
+        return false;
+    }
+    const Directive next = parseDirective(file.lines[index + 1]);
+    return next.word == "define" && next.argument == parseDirective(file.lines[index]).argument;
+}
+
+Status Flattener::addInclude(const File& file, int line, std::string_view argument) {
+    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') {
+        return errorAt("source-include", file.name, line, "#include without a name in quotes",
+                       "write #include \"folder/file.glsl\"");
+    }
+    const std::string_view name = argument.substr(1, argument.size() - 2);
+    if (std::ranges::find(open_, name) != open_.end()) {
+        return errorAt("source-include", file.name, line, fmt::format("\"{}\" includes itself", name),
+                       "break the cycle");
+    }
+    if (added_.contains(name)) {
+        return okStatus();
+    }
+    const std::optional<std::string_view> text = lookup_(name);
+    if (!text) {
+        return errorAt("source-include", file.name, line, fmt::format("there is no \"{}\"", name),
+                       "names are relative to the shader folder");
+    }
+    return addFile(name, *text);
+}
+
+void Flattener::addLine(const File& file, int line, std::string_view text) {
+    const bool blank = trim(text).empty();
+    if (blank && afterBlank_) {
+        return;
+    }
+    afterBlank_ = blank;
+    const bool inPlace = placeLine_ == line && placeName_ == file.name;
+    if (side_ == FlattenSide::Glsl && sawVersion_ && !inPlace && !blank &&
+        parseDirective(text).word != "version") {
+        out_ += fmt::format("#line {} \"{}\"\n", line, file.name);
+        placeName_ = file.name;
+        placeLine_ = line;
+    }
+    out_ += text;
+    out_ += '\n';
+    ++placeLine_;
+}
+
+}  // namespace
+
+Result<std::string> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
+                            FlattenSide side) {
+    Flattener flattener(lookup, side);
+    if (Status status = flattener.addFile(name, text); !status) {
+        return status.error();
+    }
+    if (side == FlattenSide::Glsl && !flattener.sawVersion()) {
+        return errorAt("source-version", name, 1, "has no #version", "begin the file with #version 460");
+    }
+    return flattener.takeText();
+}
+
+}  // namespace glint

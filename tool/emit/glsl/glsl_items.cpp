@@ -1,0 +1,337 @@
+#include "emit/glsl/glsl_items.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr std::string_view kItemBlanks = " \t\r";
+
+bool startsWord(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+bool continuesWord(char c) {
+    return startsWord(c) || (c >= '0' && c <= '9');
+}
+
+// Returns the identifier, or the number, at the start of `text`.
+std::string_view wordAt(std::string_view text) {
+    const auto* const end = std::ranges::find_if_not(text, continuesWord);
+    return text.substr(0, static_cast<std::size_t>(end - text.begin()));
+}
+
+std::string_view skipBlanks(std::string_view text) {
+    return text.substr(std::min(text.find_first_not_of(kItemBlanks), text.size()));
+}
+
+// Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
+std::size_t commentLength(std::string_view text) {
+    if (text.starts_with("//")) {
+        return std::min(text.find('\n'), text.size());
+    }
+    if (text.starts_with("/*")) {
+        const std::size_t end = text.find("*/", 2);
+        return end == std::string_view::npos ? text.size() : end + 2;
+    }
+    return 0;
+}
+
+// Calls `visit` for each identifier and each punctuation character of `text`. Comments and numbers are
+// skipped.
+template <typename Visit>
+void forEachToken(std::string_view text, const Visit& visit) {
+    while (!text.empty()) {
+        const std::size_t comment = commentLength(text);
+        const std::string_view word = comment == 0 ? wordAt(text) : std::string_view();
+        const std::size_t length = std::max({comment, word.size(), std::size_t{1}});
+        if (!word.empty() ? startsWord(word.front())
+                          : comment == 0 && kItemBlanks.find(text.front()) == std::string_view::npos) {
+            visit(text.substr(0, length));
+        }
+        text.remove_prefix(length);
+    }
+}
+
+// These words give the precision of a declaration, not its name or type.
+bool isPrecision(std::string_view word) {
+    return word == "GLINT_RELAXED" || word == "mediump" || word == "highp";
+}
+
+// Recognises the kind of a declaration from its tokens outside of all brackets.
+class Shape {
+public:
+    void add(std::string_view token) {
+        const char first = token.front();
+        if (first == '(' || first == '[' || first == '{') {
+            if (depth_++ == 0) {
+                open(first);
+            }
+        } else if (first == ')' || first == ']' || first == '}') {
+            if (--depth_ == 0) {
+                ended_ = first == '}' && isFunction_;
+            }
+            pinned_ = pinned_ || depth_ < 0;
+        } else if (depth_ == 0) {
+            addOuter(token);
+        }
+    }
+    void pin() {
+        pinned_ = true;
+    }
+    bool ended() const {
+        return ended_ && depth_ == 0;
+    }
+    bool isLoneWord() const {
+        return words_ == 1 && groups_ == 0 && depth_ == 0 && !assigned_;
+    }
+    // Returns the name of a declaration that is certainly a function or a constant, else an empty text.
+    std::string_view name() const {
+        const bool known = !pinned_ && ended() && (isFunction_ || isConstant_) && name_ != "main";
+        return known ? name_ : std::string_view();
+    }
+
+private:
+    void open(char bracket) {
+        if (bracket == '(' && words_ == 2 && !assigned_ && groups_ == 0) {
+            name_ = last_;
+            isHead_ = true;
+        } else if (bracket == '{' && isHead_ && groups_ == 1) {
+            isFunction_ = true;
+        } else if (bracket != '[' || words_ != 3) {
+            isHead_ = false;
+        }
+        ++groups_;
+    }
+    void addOuter(std::string_view token) {
+        if (isPrecision(token)) {
+            return;
+        }
+        ended_ = token == ";";
+        if (startsWord(token.front()) && !assigned_) {
+            isConst_ = words_ == 0 ? token == "const" : isConst_;
+            ++words_;
+            last_ = token;
+            isHead_ = false;
+        } else if (token == "=" && !assigned_) {
+            assigned_ = true;
+            // The words are const, type and name; an array's length may stand between them.
+            isConstant_ = isConst_ && words_ == 3;
+            name_ = last_;
+        } else if (token == ",") {
+            pinned_ = true;
+        }
+    }
+
+    int depth_ = 0;
+    int words_ = 0;   // before a "="
+    int groups_ = 0;  // pairs of brackets
+    std::string_view last_;
+    std::string_view name_;
+    bool isHead_ = false;  // has seen "type name(…)"
+    bool isConst_ = false;
+    bool assigned_ = false;
+    bool isFunction_ = false;
+    bool isConstant_ = false;
+    bool ended_ = false;
+    bool pinned_ = false;
+};
+
+// Returns the identifiers beside the ## of `macro`, the text that follows a macro's name. An empty view means
+// any identifier: parameters stand on both sides.
+std::vector<std::string_view> pastedBy(std::string_view macro) {
+    std::vector<std::string_view> parameters;
+    if (macro.starts_with('(')) {
+        const std::string_view list = macro.substr(0, macro.find(')'));
+        forEachToken(list, [&](std::string_view token) { parameters.push_back(token); });
+        macro.remove_prefix(list.size());
+    }
+    std::vector<std::string_view> pasted;
+    std::string_view before;
+    int signs = 0;
+    forEachToken(macro, [&](std::string_view token) {
+        if (token == "#") {
+            ++signs;
+            return;
+        }
+        if (signs == 2) {
+            const bool fixedBefore = std::ranges::find(parameters, before) == parameters.end();
+            const bool fixedAfter = std::ranges::find(parameters, token) == parameters.end();
+            if (fixedBefore) {
+                pasted.push_back(before);
+            }
+            if (fixedAfter) {
+                pasted.push_back(token);
+            }
+            if (!fixedBefore && !fixedAfter) {
+                pasted.emplace_back();
+            }
+        }
+        signs = 0;
+        before = token;
+    });
+    return pasted;
+}
+
+class Splitter {
+public:
+    explicit Splitter(std::string_view glsl) : rest_(glsl) {}
+
+    std::vector<GlslItem> split() {
+        while (!rest_.empty()) {
+            const std::string_view line = skipBlanks(lineAhead());
+            if (!takePlace(line)) {
+                addItem(line);
+            }
+        }
+        return std::move(items_);
+    }
+
+private:
+    // Returns the rest of the line without its line break.
+    std::string_view lineAhead() const {
+        return rest_.substr(0, rest_.find('\n'));
+    }
+    // A directive continues while its lines end in a backslash.
+    std::string_view directiveAhead() const {
+        std::size_t end = rest_.find('\n');
+        while (end != std::string_view::npos && end > 0 && rest_[end - 1] == '\\') {
+            end = rest_.find('\n', end + 1);
+        }
+        return rest_.substr(0, end);
+    }
+    // Takes `text` and the line break after it.
+    void take(std::string_view text) {
+        line_ += 1 + static_cast<int>(std::ranges::count(text, '\n'));
+        rest_.remove_prefix(std::min(text.size() + 1, rest_.size()));
+    }
+    bool takePlace(std::string_view line) {
+        constexpr std::string_view kLine = "#line ";
+        if (!line.starts_with(kLine)) {
+            return false;
+        }
+        take(lineAhead());
+        line.remove_prefix(kLine.size());
+        int number = 0;
+        std::from_chars(line.data(), line.data() + line.size(), number);
+        line_ = number;
+        const std::size_t open = line.find('"');
+        const std::size_t close = line.rfind('"');
+        if (open < close) {
+            file_ = line.substr(open + 1, close - open - 1);
+        }
+        return true;
+    }
+    void addItem(std::string_view line) {
+        GlslItem item;
+        item.file = file_;
+        item.line = line_;
+        const char* const begin = rest_.data();
+        if (line.empty()) {
+            item.kind = GlslItemKind::Blank;
+            take(lineAhead());
+        } else if (line.starts_with("//")) {
+            item.kind = GlslItemKind::Comment;
+            take(lineAhead());
+        } else if (line.front() == '#') {
+            takeDirective(item);
+        } else {
+            takeCode(item);
+        }
+        item.text = {begin, static_cast<std::size_t>(rest_.data() - begin)};
+        item.endFile = file_;
+        item.endLine = line_;
+        items_.push_back(std::move(item));
+    }
+    void takeDirective(GlslItem& item) {
+        const std::string_view directive = directiveAhead();
+        forEachToken(directive, [&](std::string_view token) {
+            if (startsWord(token.front())) {
+                item.words.push_back(token);
+            }
+        });
+        if (item.words.size() >= 2 && item.words.front() == "define") {
+            item.kind = GlslItemKind::Macro;
+            item.name = item.words[1];
+            const char* const end = item.name.data() + item.name.size();
+            item.pasted =
+                pastedBy({end, static_cast<std::size_t>(directive.data() + directive.size() - end)});
+        }
+        take(directive);
+    }
+    // Takes lines up to the end of the line that ends the declaration. A word alone on its line is a macro
+    // that needs no semicolon, like GLINT_INTEROP_BEGIN.
+    void takeCode(GlslItem& item) {
+        Shape shape;
+        int conditionals = 0;
+        while (!rest_.empty()) {
+            const std::string_view line = skipBlanks(lineAhead());
+            if (takePlace(line)) {
+                continue;
+            }
+            if (line.starts_with('#')) {
+                takeInnerDirective(item, shape, conditionals);
+                continue;
+            }
+            if (takeCodeLine(item, shape) || shape.isLoneWord()) {
+                break;
+            }
+        }
+        if (conditionals != 0) {
+            shape.pin();
+        }
+        item.name = shape.name();
+    }
+    void takeInnerDirective(GlslItem& item, Shape& shape, int& conditionals) {
+        GlslItem directive;
+        takeDirective(directive);
+        item.words.insert(item.words.end(), directive.words.begin(), directive.words.end());
+        const std::string_view word = directive.words.empty() ? std::string_view() : directive.words.front();
+        if (word.starts_with("if")) {
+            ++conditionals;
+        } else if (word == "endif") {
+            --conditionals;
+        } else if (word != "else" && word != "elif") {
+            shape.pin();
+        }
+        if (conditionals < 0) {
+            shape.pin();
+        }
+    }
+    // Takes a line, and all lines of a comment that begins on it. Returns whether the declaration ends there.
+    bool takeCodeLine(GlslItem& item, Shape& shape) {
+        std::size_t length = 0;
+        while (length < rest_.size() && rest_[length] != '\n') {
+            length += std::max<std::size_t>(commentLength(rest_.substr(length)), 1);
+        }
+        const std::string_view line = rest_.substr(0, length);
+        forEachToken(line, [&](std::string_view token) {
+            if (shape.ended()) {
+                shape.pin();
+            }
+            shape.add(token);
+            if (startsWord(token.front())) {
+                item.words.push_back(token);
+            }
+        });
+        take(line);
+        return shape.ended();
+    }
+
+    std::string_view rest_;
+    std::string_view file_;
+    int line_ = 1;
+    std::vector<GlslItem> items_;
+};
+
+}  // namespace
+
+std::vector<GlslItem> splitGlsl(std::string_view glsl) {
+    return Splitter(glsl).split();
+}
+
+}  // namespace glint

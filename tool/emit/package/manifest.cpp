@@ -1,0 +1,258 @@
+#include "emit/package/manifest.h"
+
+#include "base/json_depth.h"
+#include "emit/context.h"
+#include "emit/modules.h"
+#include "emit/package/json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+using ManifestJson = nlohmann::ordered_json;
+
+namespace {
+
+// Returns the path relative to the scene's folder, because a package must not tell where it was built.
+std::string relativeName(const std::string& path, const std::string& scenePath) {
+    const std::filesystem::path folder = std::filesystem::path(scenePath).parent_path().lexically_normal();
+    const std::filesystem::path file = std::filesystem::path(path).lexically_normal();
+    const std::filesystem::path relative = folder.empty() ? file : file.lexically_relative(folder);
+    const bool isBelow = !relative.empty() && relative.is_relative() && *relative.begin() != "..";
+    return (isBelow ? relative : file.filename()).generic_string();
+}
+
+ManifestJson sources(const Scene& scene) {
+    ManifestJson list = ManifestJson::array();
+    for (const SourceFile& file : scene.files) {
+        list.push_back({{"file", relativeName(file.path, scene.path)},
+                        {"bytes", file.bytes},
+                        {"hash", hexHash(file.hash)}});
+    }
+    return list;
+}
+
+ManifestJson features(const MaterialModel& model) {
+    ManifestJson list = ManifestJson::array();
+    for (const Feature& feature : model.features) {
+        list.push_back({{"name", feature.name},
+                        {"bit", feature.bit},
+                        {"macro", feature.macro},
+                        {"gltf", feature.gltf},
+                        {"neutral", feature.neutralText()}});
+    }
+    return list;
+}
+
+ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& settings) {
+    return {{"hitLobes", model.names(settings.plan.keys.keptLobes & model.lobes)},
+            {"energyCompensation", settings.energyCompensation},
+            {"textureLod", toString(settings.textureLod)},
+            {"precision", package::bitsOf(settings.precision)},
+            {"shadows", package::nameOf(settings.shadows)},
+            {"hitRecord", package::nameOf(settings.hitRecord)},
+            {"sky", settings.environmentMap ? "map" : "gradient"},
+            {"positionFetch", settings.positionFetch}};
+}
+
+// Returns the budget of cases, or null if there is none.
+ManifestJson maxShadersOf(const PlanOptions& options) {
+    const int budget = budgetOf(options);
+    return budget > 0 ? ManifestJson(budget) : ManifestJson(nullptr);
+}
+
+ManifestJson materialsToJson(const SceneList& scenes, const std::vector<int>& materials) {
+    ManifestJson list = ManifestJson::array();
+    for (const int material : materials) {
+        const SceneList::Place place = scenes.place(material);
+        list.push_back({{"scene", place.scene},
+                        {"index", place.index},
+                        {"name", scenes.materials()[static_cast<std::size_t>(material)].name}});
+    }
+    return list;
+}
+
+// The places have no names; shaders[] has those.
+ManifestJson materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
+    ManifestJson list = ManifestJson::array();
+    for (const int material : materials) {
+        const SceneList::Place place = scenes.place(material);
+        list.push_back({{"scene", place.scene}, {"index", place.index}});
+    }
+    return list;
+}
+
+ManifestJson sceneList(const SceneList& scenes) {
+    ManifestJson list = ManifestJson::array();
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const Scene& scene = scenes.scenes()[i];
+        list.push_back(
+            {{"name", scenes.name(i)},
+             {"source", std::filesystem::path(scene.path).filename().string()},
+             {"variant", scene.variant.empty() ? ManifestJson(nullptr) : ManifestJson(scene.variant)},
+             {"materials", scene.materials.size()},
+             {"primitives", scenes.primitivesOf(i).count},
+             {"sources", sources(scene)}});
+    }
+    return list;
+}
+
+ManifestJson moduleEntry(const CompiledModule& module) {
+    return {{"name", module.name},
+            {"file", module.file},
+            {"bytes", module.statistics.bytes},
+            {"instructions", module.statistics.instructions},
+            {"textureFetches", module.statistics.textureFetches},
+            {"rayQueries", module.statistics.rayQueries},
+            {"branches", module.statistics.branches},
+            {"hash", hexHash(module.hash)}};
+}
+
+// Lists a case's own modules by strategy. In the uber shader a case is a function, which is listed under
+// passes.
+ManifestJson stages(const CompiledPackage& package, int shaderId) {
+    ManifestJson object = ManifestJson::object();
+    for (const CompiledModule& module : package.modules) {
+        const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
+        if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
+            object[std::string(stageName(module.key))] = moduleEntry(module);
+        }
+    }
+    return object;
+}
+
+ManifestJson shaders(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
+    for (const Case& shaderCase : package.plan.cases) {
+        if (shaderCase.isRetired()) {
+            continue;
+        }
+        list.push_back({{"id", shaderCase.shaderId},
+                        {"name", shaderCase.name},
+                        {"always", package.plan.model->names(shaderCase.always)},
+                        {"sometimes", package.plan.model->names(shaderCase.sometimes)},
+                        {"keys", shaderCase.keys.size()},
+                        {"share", shareToJson(shaderCase.share)},
+                        {"reason", toString(shaderCase.reason)},
+                        {"materials", materialsToJson(scenes, shaderCase.materials)},
+                        {"stages", stages(package, shaderCase.shaderId)}});
+    }
+    return list;
+}
+
+ManifestJson passes(const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
+    for (const CompiledModule& module : package.modules) {
+        if (package::findRole(module.key.role)->repeated != package::Repeated::ByCase) {
+            ManifestJson entry = {{"role", package::roleName(module.key.role)}};
+            entry.update(moduleEntry(module));
+            list.push_back(std::move(entry));
+        }
+    }
+    return list;
+}
+
+ManifestJson keys(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
+    for (const Key& key : package.plan.keys) {
+        list.push_back({{"features", package.plan.model->names(key.mask)},
+                        {"mask", fmt::format("{:#018x}", key.mask)},
+                        {"primitives", key.primitives.size()},
+                        {"materials", materialPlaces(scenes, key.materials)},
+                        {"share", shareToJson(key.share)},
+                        {"shaderId", key.shaderId}});
+    }
+    return list;
+}
+
+ManifestJson dropped(const SceneList& scenes, const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
+    for (const DroppedFeature& feature : package.plan.dropped) {
+        list.push_back({{"feature", feature.feature},
+                        {"materials", materialPlaces(scenes, feature.materials)},
+                        {"reason", feature.reason}});
+    }
+    return list;
+}
+
+ManifestJson counts(const SceneList& scenes, const CompiledPackage& package) {
+    return {
+        {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
+        {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
+        {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
+        {"spirvBytes", package.spirvBytes}};
+}
+
+ManifestJson files(const CompiledPackage& package) {
+    ManifestJson list = ManifestJson::array();
+    for (const PackageFile& file : package.files) {
+        list.push_back(
+            {{"file", file.name}, {"bytes", file.bytes.size()}, {"hash", hexHash(hashBytes(file.bytes))}});
+    }
+    return list;
+}
+
+// The manifest may come from anywhere, so its names must not lead out of the package's folder.
+bool staysInside(const std::filesystem::path& name) {
+    return !name.empty() && name.is_relative() &&
+           std::ranges::all_of(name, [](const std::filesystem::path& part) {
+               return !part.empty() && part != "." && part != "..";
+           });
+}
+
+}  // namespace
+
+std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
+                         const CompileSettings& settings) {
+    ManifestJson manifest;
+    manifest["format"] = kManifestFormat;
+    manifest["version"] = package::kVersion;
+    manifest["toolVersion"] = toolVersion();
+    manifest["scenes"] = sceneList(scenes);
+    manifest["strategies"] = strategyNames(settings.strategies);
+    manifest["strategyChoice"] =
+        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : ManifestJson(nullptr);
+    manifest["tracers"] = tracerNames(settings.tracers);
+    manifest["merge"] = toString(settings.plan.merge);
+    manifest["maxShaders"] = maxShadersOf(settings.plan);
+    manifest["alpha"] = toString(settings.plan.keys.alpha);
+    manifest["settings"] = settingsOf(*package.plan.model, settings);
+    manifest["counts"] = counts(scenes, package);
+    manifest["buckets"] = 1 + package.plan.cases.size();
+    manifest["effects"] = effectsToJson(package.plan.effects);
+    manifest["features"] = features(*package.plan.model);
+    manifest["shaders"] = shaders(scenes, package);
+    manifest["passes"] = passes(package);
+    manifest["keys"] = keys(scenes, package);
+    manifest["dropped"] = dropped(scenes, package);
+    manifest["files"] = files(package);
+    // Names come from the scene. Bytes that are not UTF-8 are replaced rather than refused.
+    return manifest.dump(2, ' ', false, ManifestJson::error_handler_t::replace) + "\n";
+}
+
+std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
+    if (nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
+        return {};
+    }
+    const ManifestJson manifest = ManifestJson::parse(text, nullptr, false);
+    if (!manifest.is_object() || manifest.value("format", ManifestJson()) != ManifestJson(kManifestFormat)) {
+        return {};
+    }
+    std::set<std::string, std::less<>> names{package::kManifestFile, package::kTablesFile};
+    const ManifestJson list = manifest.value("files", ManifestJson::array());
+    for (const ManifestJson& file : list) {
+        const ManifestJson name = file.is_object() ? file.value("file", ManifestJson()) : ManifestJson();
+        if (name.is_string() && staysInside(name.get<std::string>())) {
+            names.insert(name.get<std::string>());
+        }
+    }
+    return names;
+}
+
+}  // namespace glint

@@ -1,0 +1,244 @@
+#include "emit/package/tables.h"
+
+#include "emit/sources.h"
+#include "scene/deformed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <interop/scene.h>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace glint {
+
+using namespace package;
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "tables.bin is little endian");
+
+// A table of distinct strings.
+class StringTable {
+public:
+    StringRef add(const std::string& text) {
+        const auto [place, isNew] = offsets_.try_emplace(text, static_cast<std::uint32_t>(bytes_.size()));
+        if (isNew) {
+            bytes_ += text;
+        }
+        return {place->second, static_cast<std::uint32_t>(text.size())};
+    }
+    const std::string& bytes() const {
+        return bytes_;
+    }
+
+private:
+    std::map<std::string, std::uint32_t> offsets_;
+    std::string bytes_;
+};
+
+// Collects sections. The header is written last, because it holds the hash of the rest.
+class TableWriter {
+public:
+    template <typename Elements>
+    void add(SectionKind kind, const Elements& elements) {
+        using Element = typename Elements::value_type;
+        static_assert(std::is_trivially_copyable_v<Element>);
+        add(kind, sizeof(Element),
+            {reinterpret_cast<const std::uint8_t*>(elements.data()), elements.size() * sizeof(Element)});
+    }
+    // `bytes` holds whole elements.
+    void add(SectionKind kind, std::size_t elementBytes, std::span<const std::uint8_t> bytes) {
+        sections_.push_back(
+            {kind, static_cast<std::uint32_t>(elementBytes), content_.size(), bytes.size() / elementBytes});
+        content_.insert(content_.end(), bytes.begin(), bytes.end());
+        constexpr std::size_t kAlignment = 8;
+        content_.resize((content_.size() + kAlignment - 1) / kAlignment * kAlignment);
+    }
+
+    Bytes finish(PackageHeader header) {
+        const std::size_t start = sizeof(PackageHeader) + sections_.size() * sizeof(PackageSection);
+        for (PackageSection& section : sections_) {
+            section.offset += start;
+        }
+        Bytes file(start);
+        std::memcpy(file.data() + sizeof header, sections_.data(), start - sizeof header);
+        file.insert(file.end(), content_.begin(), content_.end());
+        header.sectionCount = static_cast<std::uint32_t>(sections_.size());
+        header.fileBytes = file.size();
+        header.contentHash = 0;
+        std::memcpy(file.data(), &header, sizeof header);
+        const std::span whole(file);
+        header.contentHash = hashBytes(whole.subspan(sizeof header), hashBytes(whole.first(sizeof header)));
+        std::memcpy(file.data(), &header, sizeof header);
+        return file;
+    }
+
+private:
+    std::vector<PackageSection> sections_;
+    Bytes content_;
+};
+
+std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPolicy alpha) {
+    const bool tested = alpha == AlphaPolicy::Tested && (key & material.model().mask("alphaMask")) != 0;
+    return (tested ? gpu::kGeometryAlphaTested : 0U) |
+           (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
+           (material.alphaMode == AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
+}
+
+std::vector<PrimitiveEntry> makePrimitives(const SceneList& scenes, SceneList::Range range, const Plan& plan,
+                                           AlphaPolicy alpha) {
+    std::vector<PrimitiveEntry> entries;
+    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+        const PrimitiveInputs& inputs = scenes.primitives()[i];
+        const Key& key = plan.keys[plan.keyOfPrimitive[i]];
+        const Material& material = scenes.materials()[inputs.material];
+        PrimitiveEntry entry{};
+        entry.mesh = static_cast<std::uint32_t>(inputs.mesh);
+        entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
+        entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
+        entry.materialIndex = static_cast<std::uint32_t>(scenes.place(inputs.material).index);
+        const FeatureMask primary = plan.primaryMaskOfPrimitive[i];
+        entry.featureLobes = static_cast<std::uint32_t>(primary & kLobeMask);
+        entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
+        entry.geometryFlags = geometryFlags(material, key.mask, alpha);
+        entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
+        entries.push_back(entry);
+    }
+    std::ranges::sort(entries, {},
+                      [](const PrimitiveEntry& entry) { return std::pair(entry.mesh, entry.primitive); });
+    return entries;
+}
+
+std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
+    std::vector<SamplerEntry> entries;
+    for (const Sampler& sampler : scene.samplers) {
+        entries.push_back({static_cast<std::uint32_t>(sampler.wrapU),
+                           static_cast<std::uint32_t>(sampler.wrapV),
+                           static_cast<std::uint32_t>(sampler.magnification),
+                           static_cast<std::uint32_t>(sampler.minification),
+                           static_cast<std::uint32_t>(sampler.mip), sampler.mipmapped ? 1U : 0U});
+    }
+    return entries;
+}
+
+// The sections that each scene has its own part of.
+struct SceneTables {
+    std::vector<std::uint8_t> materials;
+    std::vector<PrimitiveEntry> primitives;
+    std::vector<TextureEntry> textures;
+    std::vector<SamplerEntry> samplers;
+    std::vector<SceneEntry> scenes;
+};
+
+// Appends a scene's elements to those of all scenes, and stores where they are.
+template <typename Element>
+void append(std::vector<Element>& all, const std::vector<Element>& own, std::uint32_t& first,
+            std::uint32_t& count) {
+    first = static_cast<std::uint32_t>(all.size());
+    count = static_cast<std::uint32_t>(own.size());
+    all.insert(all.end(), own.begin(), own.end());
+}
+
+Diagnostic indexError(const Scene& scene, std::string what) {
+    return makeError("scene-index", scene.path, std::move(what), "import the scene again");
+}
+
+bool within(int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
+}  // namespace
+
+Status checkScene(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        const Texture& texture = scene.textures[i];
+        if (!within(texture.image, scene.images.size()) || !within(texture.sampler, scene.samplers.size())) {
+            return indexError(scene, fmt::format("texture {} has no image or no sampler", i));
+        }
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        for (const TextureInfo& info : scene.materials[i].textures) {
+            if (info.texture >= 0 && !within(info.texture, scene.textures.size())) {
+                return indexError(scene, fmt::format("material {} has no texture {}", i, info.texture));
+            }
+        }
+    }
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) {
+            if (!within(primitive.material, scene.materials.size())) {
+                return indexError(
+                    scene, fmt::format("{} has no material {}", primitive.pointer, primitive.material));
+            }
+        }
+    }
+    return okStatus();
+}
+
+Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
+                 const CompileSettings& settings) {
+    StringTable strings;
+    std::vector<ModuleEntry> moduleEntries;
+    for (const CompiledModule& module : modules) {
+        moduleEntries.push_back({module.key.role, module.key.index, module.key.tracer, 0,
+                                 strings.add(module.file), module.statistics.bytes, module.hash});
+    }
+    std::vector<CaseEntry> cases;
+    for (const Case& shaderCase : plan.cases) {
+        cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
+                         static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
+    }
+    const AlphaPolicy alpha = settings.plan.keys.alpha;
+    const MaterialLayout layout = materialLayoutOf(plan);
+    SceneTables tables;
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const Scene& scene = scenes.scenes()[i];
+        const MaterialTables materials = makeMaterialTables(scene, layout);
+        SceneEntry entry{};
+        entry.name = strings.add(scenes.name(i));
+        entry.firstMaterial = static_cast<std::uint32_t>(tables.materials.size() / layout.bytes);
+        entry.materialCount = static_cast<std::uint32_t>(scene.materials.size());
+        tables.materials.insert(tables.materials.end(), materials.materials.begin(),
+                                materials.materials.end());
+        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha),
+               entry.firstPrimitive, entry.primitiveCount);
+        append(tables.textures, materials.textures, entry.firstTexture, entry.textureCount);
+        append(tables.samplers, makeSamplers(scene), entry.firstSampler, entry.samplerCount);
+        tables.scenes.push_back(entry);
+    }
+
+    TableWriter writer;
+    writer.add(SectionKind::Modules, moduleEntries);
+    writer.add(SectionKind::Materials, layout.bytes, tables.materials);
+    writer.add(SectionKind::Primitives, tables.primitives);
+    writer.add(SectionKind::Textures, tables.textures);
+    writer.add(SectionKind::Samplers, tables.samplers);
+    writer.add(SectionKind::Scenes, tables.scenes);
+    writer.add(SectionKind::Strings, strings.bytes());
+    writer.add(SectionKind::Cases, cases);
+
+    PackageHeader header{};
+    std::memcpy(header.magic, kMagic, sizeof header.magic);
+    header.version = kVersion;
+    header.strategies = settings.strategies;
+    header.tracers = settings.tracers;
+    header.shadows = settings.shadows;
+    header.hitRecord = settings.hitRecord;
+    header.environmentMap = settings.environmentMap ? 1 : 0;
+    header.positionFetch = settings.positionFetch ? 1 : 0;
+    header.precision = settings.precision;
+    header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
+    header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
+    header.effects = plan.effects.effects;
+    header.materialTextureOffset = layout.textureOffset;
+    header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
+    header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
+    header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
+    return writer.finish(header);
+}
+
+}  // namespace glint

@@ -1,0 +1,239 @@
+#include "base/staged_file.h"
+#include "emit/compile.h"
+#include "emit/glsl/in_place.h"
+#include "emit/glsl/swap.h"
+#include "emit/package/manifest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <set>
+#include <string>
+#include <system_error>
+
+namespace glint {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A manifest is small. A larger file of that name was not made by Glint.
+constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
+
+Diagnostic outputError(const fs::path& path, const std::string& why) {
+    return makeError("output-write", path.string(), "can't be written: " + why,
+                     "check the folder, its permissions and the free space; nothing was changed");
+}
+
+using Names = std::set<std::string, std::less<>>;
+
+// Returns the names of the files of the package in `folder`; empty if it holds none.
+Names packageFiles(const fs::path& folder) {
+    if (const Result<Bytes> bytes = readFile(folder / package::kManifestFile, kMaxManifestBytes)) {
+        return manifestFiles({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+    return {};
+}
+
+// Returns whether tables.bin has the right beginning. This recognises a package whose manifest is lost.
+bool hasTables(const fs::path& folder) {
+    const Result<Bytes> bytes = readFile(folder / package::kTablesFile);
+    return bytes && bytes->size() >= sizeof package::kMagic &&
+           std::memcmp(bytes->data(), package::kMagic, sizeof package::kMagic) == 0;
+}
+
+// Checks what the new package replaces: a missing or empty folder, or a package.
+Result<Names> inspectFolder(const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (!fs::exists(status)) {
+        return Names{};
+    }
+    if (!fs::is_directory(status)) {
+        return makeError("output-not-a-folder", folder.string(), "is not a folder",
+                         "choose another output folder");
+    }
+    const bool empty = fs::is_empty(folder, error);
+    if (error) {
+        return outputError(folder, error.message());
+    }
+    Names names = packageFiles(folder);
+    if (names.empty() && hasTables(folder)) {
+        names = {package::kManifestFile, package::kTablesFile};
+    }
+    if (names.empty() && !empty) {
+        return makeError("output-not-a-package", folder.string(), "holds files that are no package of Glint",
+                         "choose an empty folder, or one that an earlier run wrote");
+    }
+    return names;
+}
+
+bool holdsBytes(const fs::path& path, const Bytes& bytes) {
+    std::error_code error;
+    if (!fs::is_regular_file(fs::symlink_status(path, error)) || fs::file_size(path, error) != bytes.size() ||
+        error) {
+        return false;
+    }
+    const Result<Bytes> present = readFile(path);
+    return present && *present == bytes;
+}
+
+bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
+    const auto unchanged = [&](const PackageFile& file) {
+        return holdsBytes(folder / file.name, file.bytes);
+    };
+    const auto isPart = [&](const std::string& name) {
+        return std::ranges::find(package.files, name, &PackageFile::name) != package.files.end();
+    };
+    std::error_code error;
+    const auto isGone = [&](const std::string& name) { return !fs::exists(folder / name, error); };
+    return std::ranges::all_of(package.files, unchanged) &&
+           std::ranges::all_of(earlier,
+                               [&](const std::string& name) { return isPart(name) || isGone(name); });
+}
+
+// Gives the same file a second name, so that it keeps its time stamps. If the file system has no hard links,
+// it is copied.
+std::error_code keepFile(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::create_hard_link(from, to, error);
+    if (!error) {
+        return error;
+    }
+    fs::copy_file(from, to, error);
+    if (!error) {
+        fs::last_write_time(to, fs::last_write_time(from, error), error);
+    }
+    return error;
+}
+
+Status stagePackage(const CompiledPackage& package, const fs::path& folder, const fs::path& staging) {
+    for (const PackageFile& file : package.files) {
+        const fs::path target = staging / file.name;
+        std::error_code error;
+        fs::create_directories(target.parent_path(), error);
+        if (error) {
+            return outputError(target, error.message());
+        }
+        if (holdsBytes(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
+            continue;
+        }
+        if (Status status = writeStaged(target, file.bytes); !status) {
+            return outputError(folder / file.name, status.error().message);
+        }
+    }
+    return okStatus();
+}
+
+// Files that users keep beside the package, a dependency file for instance, stay.
+Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path& staging) {
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const fs::path name = entry->path().lexically_relative(folder);
+        const fs::path target = staging / name;
+        const fs::file_status status = entry->symlink_status(error);
+        std::error_code failure;
+        if (fs::is_directory(status)) {
+            const bool isParent = std::ranges::any_of(earlier, [&](const std::string& file) {
+                return file.starts_with(name.generic_string() + "/");
+            });
+            if (!isParent) {
+                fs::create_directories(target, failure);
+            }
+        } else if (!earlier.contains(name.generic_string())) {
+            fs::create_directories(target.parent_path(), failure);
+            if (!failure && fs::is_symlink(status)) {
+                fs::copy_symlink(entry->path(), target, failure);
+            } else if (!failure && fs::is_regular_file(status)) {
+                failure = keepFile(entry->path(), target);
+            } else if (!failure) {
+                failure = std::make_error_code(std::errc::not_supported);
+            }
+        }
+        if (failure) {
+            return makeError("output-write", entry->path().string(),
+                             "is in the way of the new package: " + failure.message(),
+                             "move it elsewhere; nothing was changed");
+        }
+    }
+    return error ? Status(outputError(folder, error.message())) : okStatus();
+}
+
+// Returns whether this process works in `folder` or below it. A shell would otherwise be left in a folder
+// that no longer exists.
+bool isWorkingFolder(const fs::path& folder) {
+    std::error_code error;
+    const fs::path current = fs::current_path(error);
+    return !error && std::ranges::mismatch(folder, current).in1 == folder.end();
+}
+
+// Has the same effect as a swap, but file by file.
+Status updateFolder(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
+    std::vector<const PackageFile*> changed;
+    std::vector<std::string> leaving;
+    Names kept;
+    for (const PackageFile& file : package.files) {
+        if (holdsBytes(folder / file.name, file.bytes)) {
+            kept.insert(file.name);
+        } else {
+            changed.push_back(&file);
+        }
+    }
+    std::error_code error;
+    std::ranges::copy_if(earlier, std::back_inserter(leaving), [&](const std::string& name) {
+        const fs::file_status status = fs::symlink_status(folder / name, error);
+        return !kept.contains(name) && fs::exists(status) && !fs::is_directory(status);
+    });
+    return replaceInPlace(changed, leaving, folder);
+}
+
+// A mount point can't be swapped, nor can a folder whose parent can't be written.
+Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs::path& folder,
+                 const Diagnostic& swapError) {
+    std::error_code error;
+    return fs::is_directory(folder, error) ? updateFolder(package, earlier, folder) : Status(swapError);
+}
+
+}  // namespace
+
+Status writePackage(const CompiledPackage& package, const fs::path& folder) {
+    const Result<fs::path> resolved = resolveOutput(folder);
+    if (!resolved) {
+        return resolved.error();
+    }
+    const Result<OutputLock> lock = OutputLock::acquire(*resolved);
+    if (!lock) {
+        return lock.error();
+    }
+    recoverInterrupted(*resolved);
+    const Result<Names> earlier = inspectFolder(*resolved);
+    if (!earlier) {
+        return earlier.error();
+    }
+    if (isCurrent(package, *earlier, *resolved)) {
+        return okStatus();
+    }
+    if (isWorkingFolder(*resolved)) {
+        return updateFolder(package, *earlier, *resolved);
+    }
+    Result<StagingFolder> staging = StagingFolder::create(*resolved);
+    if (!staging) {
+        return orInPlace(package, *earlier, *resolved, staging.error());
+    }
+    if (Status status = stagePackage(package, *resolved, staging->path()); !status) {
+        return status;
+    }
+    std::error_code error;
+    if (fs::exists(*resolved, error)) {
+        if (Status status = stageForeign(*earlier, *resolved, staging->path()); !status) {
+            return status;
+        }
+    }
+    Status swapped = staging->swapInto(*resolved);
+    return swapped ? swapped : orInPlace(package, *earlier, *resolved, swapped.error());
+}
+
+}  // namespace glint

@@ -1,0 +1,182 @@
+#include "gltf/codecs/images.h"
+
+#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
+#include "gltf/codecs/ktx2.h"
+#include "gltf/document/uri.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
+
+const Json& imageJson(const Document& document, int image) {
+    return document.json()["images"][static_cast<std::size_t>(image)];
+}
+
+std::string imagePointer(int image) {
+    return fmt::format("/images/{}", image);
+}
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::string textMember(const Json& object, std::string_view name) {
+    const Json* member = find(object, name);
+    return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
+}
+
+std::string nameOf(const Json& json, int image) {
+    if (std::string name = textMember(json, "name"); !name.empty()) {
+        return name;
+    }
+    const std::string uri = textMember(json, "uri");
+    if (!uri.empty() && !isDataUri(uri)) {
+        if (std::string file = std::filesystem::path(percentDecode(uri)).filename().string(); !file.empty()) {
+            return file;
+        }
+    }
+    return fmt::format("image {}", image);
+}
+
+// Returns the encoded bytes. `storage` owns them if they are not in a buffer view.
+Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
+    const Json& json = imageJson(document, image);
+    if (const Json* view = find(json, "bufferView")) {
+        return document.bufferView(view->get<int>());
+    }
+    const std::string uri = textMember(json, "uri");
+    if (isDataUri(uri)) {
+        std::optional<DataUri> data = decodeDataUri(uri);
+        if (!data) {
+            return document.error("data-uri", imagePointer(image) + "/uri", "is no valid data URI",
+                                  "export the scene again");
+        }
+        storage = std::move(data->bytes);
+    } else {
+        Result<Bytes> bytes = document.readFile(uri, imagePointer(image));
+        if (!bytes) {
+            return bytes.error();
+        }
+        storage = std::move(*bytes);
+    }
+    return ByteView(storage);
+}
+
+Status checkSize(Document& document, const Image& image) {
+    const int limit = document.options().maxImageSize;
+    if (image.width <= 0 || image.height <= 0 || image.width > limit || image.height > limit) {
+        return document.error(
+            "image-size", image.pointer,
+            fmt::format("is {} x {} pixels; the limit is {} either way", image.width, image.height, limit),
+            "scale the image down");
+    }
+    if (!document.chargeImageBytes(byteCount(image))) {
+        return document.error("image-size", image.pointer, "the scene's images ask for too much memory",
+                              "scale the images down");
+    }
+    return okStatus();
+}
+
+void warnOfDeviations(Document& document, ByteView bytes, const Image& image) {
+    std::string problem;
+    if (const std::optional<Ktx2> file = readKtx2(bytes, problem)) {
+        for (const std::string& deviation : file->deviations) {
+            document.warn("ktx2-metadata", image.pointer, deviation,
+                          "make the KTX2 file by the rules of KHR_texture_basisu");
+        }
+    }
+}
+
+Status decode(Document& document, ByteView bytes, Image& image) {
+    const auto fail = [&](std::string message, const char* hint) {
+        return document.error("image-decode", image.pointer, std::move(message), hint);
+    };
+    const Codec* codec = findCodec(bytes);
+    if (codec == nullptr) {
+        const std::string_view format = foreignFormat(bytes);
+        return fail(bytes.empty()    ? "is empty"
+                    : format.empty() ? "is neither PNG nor JPEG, WebP or KTX2"
+                                     : fmt::format("is a {} image, which Glint does not read", format),
+                    kStore);
+    }
+    const char* hint = codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore;
+    const auto failDecoding = [&](const std::string& problem) {
+        return fail(fmt::format("is a {} image that can't be decoded: {}", codec->name, problem), hint);
+    };
+    std::string problem;
+    if (!codec->readHeader(bytes, image, problem)) {
+        return failDecoding(problem);
+    }
+    if (Status status = checkSize(document, image); !status) {
+        return status;
+    }
+    if (!codec->decode(bytes, image, problem)) {
+        return failDecoding(problem);
+    }
+    if (codec == &kBasisu) {
+        warnOfDeviations(document, bytes, image);
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Decodable decodability(const Document& document, int image) {
+    const Json& json = imageJson(document, image);
+    std::string type = lowerCase(textMember(json, "mimeType"));
+    const std::string uri = lowerCase(textMember(json, "uri"));
+    if (type.empty() && isDataUri(uri)) {
+        type = uri.substr(5, uri.find_first_of(";,") - 5);
+    }
+    const auto endsWith = [&](std::string_view end) { return !isDataUri(uri) && uri.ends_with(end); };
+    if (type == "image/ktx2" || endsWith(".ktx2")) {
+        return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;
+    }
+    const bool isForeign = type == "image/vnd-ms.dds" || type == "image/avif" || endsWith(".ktx") ||
+                           endsWith(".dds") || endsWith(".avif");
+    return isForeign ? Decodable::No : Decodable::Yes;
+}
+
+Result<Image> importImage(Document& document, int index) {
+    const Json& json = imageJson(document, index);
+    Image image;
+    image.name = nameOf(json, index);
+    image.pointer = imagePointer(index);
+    const bool hasView = find(json, "bufferView") != nullptr;
+    const std::string uri = textMember(json, "uri");
+    if (hasView == !uri.empty()) {
+        return document.error("image-data", image.pointer,
+                              hasView ? "has both a \"uri\" and a \"bufferView\""
+                                      : "has neither a \"uri\" nor a \"bufferView\"",
+                              "export the scene again");
+    }
+    if (!document.options().decodeImages) {
+        return image;
+    }
+    Bytes storage;
+    const Result<ByteView> bytes = encodedBytes(document, index, storage);
+    if (!bytes) {
+        return bytes.error();
+    }
+    if (Status status = decode(document, *bytes, image); !status) {
+        return status.error();
+    }
+    return image;
+}
+
+}  // namespace glint::gltf

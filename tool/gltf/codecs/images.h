@@ -1,0 +1,26 @@
+// Finds which images can be used, and reads their pixels.
+#pragma once
+
+#include "gltf/document/document.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+
+namespace glint::gltf {
+
+enum class Decodable : std::uint8_t {
+    Yes,
+    No,
+    NeedsBasisu,  // a KTX2 image, in a build without hasBasisu()
+};
+
+// Returns whether Glint can decode the image, judging by its type and the name of its file. It opens no file.
+Decodable decodability(const Document& document, int image);
+
+// Reads the image's name, and its pixels if ImportOptions::decodeImages is set. Errors: "image-data" (no
+// source or two), "image-decode", "image-size", and those of reading files.
+Result<Image> importImage(Document& document, int image);
+
+}  // namespace glint::gltf

@@ -1,0 +1,102 @@
+// Decodes PNG and JPEG images.
+#include "base/png_bounds.h"
+#include "gltf/codecs/codecs.h"
+#include "gltf/codecs/jpeg_tables.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+
+#ifndef __clang_analyzer__  // the linter skips the library's code
+#define STB_IMAGE_IMPLEMENTATION
+#endif
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+
+namespace glint::gltf {
+
+namespace {
+
+// A block of 8 x 8 values takes at least one bit of its scan. Several pixels may share a block. With three
+// components that have 4 x 1, 1 x 4 and 1 x 1 values for each 4 x 4 pixels, 9 blocks make 32 x 32 pixels
+// (ITU-T T.81, A.1.1 and F.1.2.1).
+constexpr std::uint64_t kMaxPixelsPerJpegByte = 8ULL * 32 * 32 / 9 + 1;
+
+struct StbFree {
+    void operator()(void* pixels) const {
+        stbi_image_free(pixels);
+    }
+};
+
+bool readStbHeader(ByteView bytes, Image& image, std::string& problem) {
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        problem = "larger than 2 GiB";
+        return false;
+    }
+    const int size = static_cast<int>(bytes.size());
+    int components = 0;
+    if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &components) == 0) {
+        problem = stbi_failure_reason();
+        return false;
+    }
+    image.format =
+        stbi_is_16_bit_from_memory(bytes.data(), size) != 0 ? PixelFormat::Rgba16 : PixelFormat::Rgba8;
+    return true;
+}
+
+bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
+    if (!readStbHeader(bytes, image, problem)) {
+        return false;
+    }
+    problem = findPngExcess(bytes, image.width, image.height);
+    return problem.empty();
+}
+
+bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
+    // The header comes after tables, so these are checked first.
+    problem = findJpegExcess(bytes);
+    if (!problem.empty()) {
+        return false;
+    }
+    if (!readStbHeader(bytes, image, problem)) {
+        return false;
+    }
+    const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    if (pixels / kMaxPixelsPerJpegByte > bytes.size()) {
+        problem = fmt::format("it says it has {} x {} pixels, but has only {} bytes", image.width,
+                              image.height, bytes.size());
+        return false;
+    }
+    return true;
+}
+
+bool decodeStb(ByteView bytes, Image& image, std::string& problem) {
+    const int size = static_cast<int>(bytes.size());
+    const bool isDeep = image.format == PixelFormat::Rgba16;
+    int width = 0;
+    int height = 0;
+    int components = 0;
+    const std::unique_ptr<void, StbFree> pixels(
+        isDeep ? static_cast<void*>(stbi_load_16_from_memory(bytes.data(), size, &width, &height, &components,
+                                                             STBI_rgb_alpha))
+               : stbi_load_from_memory(bytes.data(), size, &width, &height, &components, STBI_rgb_alpha));
+    if (!pixels || width != image.width || height != image.height) {
+        problem = pixels ? "its size changes on the way" : stbi_failure_reason();
+        return false;
+    }
+    const auto* first = static_cast<const std::uint8_t*>(pixels.get());
+    image.pixels.assign(first, first + bytesPerPixel(image.format) * static_cast<std::size_t>(width) *
+                                           static_cast<std::size_t>(height));
+    return true;
+}
+
+}  // namespace
+
+const Codec kPng{"PNG", readPngHeader, decodeStb};
+const Codec kJpeg{"JPEG", readJpegHeader, decodeStb};
+
+}  // namespace glint::gltf

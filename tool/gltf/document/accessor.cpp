@@ -1,0 +1,320 @@
+#include "gltf/document/accessor.h"
+
+#include "gltf/document/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kDamaged = "the file is damaged: export it again";
+
+// The elements in a run of bytes.
+struct ElementLayout {
+    ByteView bytes;
+    std::size_t offset = 0;
+    std::size_t stride = 0;
+    std::size_t elementSize = 0;
+};
+
+bool fits(const ElementLayout& layout, std::size_t count) {
+    if (count == 0) {
+        return layout.offset <= layout.bytes.size();
+    }
+    if (layout.offset > layout.bytes.size() || layout.bytes.size() - layout.offset < layout.elementSize) {
+        return false;
+    }
+    return (layout.bytes.size() - layout.offset - layout.elementSize) / layout.stride >= count - 1;
+}
+
+std::string accessorPointer(int accessor) {
+    return fmt::format("/accessors/{}", accessor);
+}
+
+const tinygltf::Accessor& accessorOf(const Document& document, int accessor) {
+    return document.model().accessors[static_cast<std::size_t>(accessor)];
+}
+
+Diagnostic rangeError(const Document& document, const std::string& pointer, std::size_t count,
+                      const ElementLayout& layout) {
+    return document.error(
+        "accessor-range", pointer,
+        fmt::format("{} elements of {} bytes from byte {} at a stride of {} go beyond the {} "
+                    "bytes of the buffer view",
+                    count, layout.elementSize, layout.offset, layout.stride, layout.bytes.size()),
+        kDamaged);
+}
+
+template <typename T>
+T load(const std::uint8_t* bytes) {
+    T value{};
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
+    switch (componentType) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return load<std::uint8_t>(bytes);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return load<std::uint16_t>(bytes);
+        default:
+            return load<std::uint32_t>(bytes);
+    }
+}
+
+// Returns the largest value of an unsigned component type, or 0 for other types.
+std::uint32_t largestUnsigned(int componentType) {
+    switch (componentType) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return std::numeric_limits<std::uint8_t>::max();
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return std::numeric_limits<std::uint16_t>::max();
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return std::numeric_limits<std::uint32_t>::max();
+        default:
+            return 0;
+    }
+}
+
+// Copies the accessor's own elements, without substitutions, tightly packed.
+Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes& elements) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    if (accessor.bufferView < 0 || accessor.bufferView == standInBufferView(document.json())) {
+        if (!document.chargeZeroElements(accessor.count)) {
+            return document.error(
+                "accessor-count", accessorPointer(index),
+                fmt::format(
+                    "with its {} elements that no buffer view holds, the scene passes the limit of {}",
+                    accessor.count, Document::kMaxZeroElements),
+                "store the elements in a buffer");
+        }
+        elements.assign(accessor.count * elementSize, 0);
+        return okStatus();
+    }
+    const Result<ByteView> bytes = document.bufferView(accessor.bufferView);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const std::size_t viewStride =
+        document.model().bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
+    const std::size_t stride = viewStride == 0 ? elementSize : viewStride;
+    if (stride < elementSize) {
+        return document.error("accessor-stride",
+                              fmt::format("/bufferViews/{}/byteStride", accessor.bufferView),
+                              fmt::format("is {}, but the elements of {} have {} bytes", stride,
+                                          accessorPointer(index), elementSize),
+                              kDamaged);
+    }
+    const ElementLayout layout{*bytes, accessor.byteOffset, stride, elementSize};
+    if (!fits(layout, accessor.count)) {
+        return rangeError(document, accessorPointer(index), accessor.count, layout);
+    }
+    elements.resize(accessor.count * elementSize);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+        std::memcpy(&elements[i * elementSize], &layout.bytes[layout.offset + i * stride], elementSize);
+    }
+    return okStatus();
+}
+
+// Reads a part of a sparse accessor. The part is empty if `count` is 0.
+Result<ElementLayout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
+                                   std::size_t offset, std::size_t elementSize, std::size_t count) {
+    const Result<ByteView> bytes = document.bufferView(bufferView);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const ElementLayout layout{*bytes, offset, elementSize, elementSize};
+    if (!fits(layout, count)) {
+        return rangeError(document, pointer, count, layout);
+    }
+    return layout;
+}
+
+// Puts the substitutes of a sparse accessor into `elements`.
+Status substituteSparse(Document& document, int index, std::size_t elementSize, Bytes& elements) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const auto& sparse = accessor.sparse;
+    const auto count = static_cast<std::size_t>(sparse.count);
+    const std::string pointer = accessorPointer(index) + "/sparse";
+    if (count > accessor.count) {
+        return document.error("sparse-count", pointer + "/count",
+                              fmt::format("is {}, more than the {} elements", count, accessor.count),
+                              kDamaged);
+    }
+    const int indexType = sparse.indices.componentType;
+    if (largestUnsigned(indexType) == 0) {
+        return document.error("accessor-component-type", pointer + "/indices/componentType",
+                              fmt::format("{} is no unsigned integer", indexType), kDamaged);
+    }
+    const auto indexSize =
+        static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(indexType)));
+    const Result<ElementLayout> indices =
+        sparseLayout(document, pointer + "/indices", sparse.indices.bufferView, sparse.indices.byteOffset,
+                     indexSize, count);
+    if (!indices) {
+        return indices.error();
+    }
+    const Result<ElementLayout> values = sparseLayout(document, pointer + "/values", sparse.values.bufferView,
+                                                      sparse.values.byteOffset, elementSize, count);
+    if (!values) {
+        return values.error();
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t target =
+            loadUnsigned(&indices->bytes[indices->offset + i * indexSize], indexType);
+        if (target >= accessor.count) {
+            return document.error(
+                "sparse-index", pointer + "/indices",
+                fmt::format("index {} is {}, beyond the {} elements", i, target, accessor.count), kDamaged);
+        }
+        std::memcpy(&elements[target * elementSize], &values->bytes[values->offset + i * elementSize],
+                    elementSize);
+    }
+    return okStatus();
+}
+
+// Returns all elements, tightly packed.
+Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
+        return status.error();
+    }
+    Bytes elements;
+    if (Status status = gatherBase(document, index, elementSize, elements); !status) {
+        return status.error();
+    }
+    if (accessor.sparse.isSparse) {
+        if (Status status = substituteSparse(document, index, elementSize, elements); !status) {
+            return status.error();
+        }
+    }
+    return elements;
+}
+
+// Appends the integers of `bytes` as floats.
+template <typename T>
+void appendIntegers(const Bytes& bytes, bool normalized, std::vector<float>& values) {
+    const float largest = std::numeric_limits<T>::max();
+    values.reserve(bytes.size() / sizeof(T));
+    for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
+        const float value = load<T>(&bytes[i]);
+        // This divides instead of multiplying by the reciprocal, because the largest integer must give
+        // exactly 1.
+        values.push_back(normalized ? std::max(value / largest, -1.0F) : value);
+    }
+}
+
+}  // namespace
+
+Result<ElementFormat> floatFormat(const Document& document, int index) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const bool isVector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_VEC2 ||
+                          accessor.type == TINYGLTF_TYPE_VEC3 || accessor.type == TINYGLTF_TYPE_VEC4;
+    if (!isVector) {
+        return document.error("accessor-type", accessorPointer(index) + "/type",
+                              "a vertex attribute can't be a matrix", "export the scene again");
+    }
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+        return document.error("accessor-component-type", accessorPointer(index) + "/componentType",
+                              "a vertex attribute can't have 32-bit integers", "export the scene again");
+    }
+    return ElementFormat{
+        accessor.componentType,
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type))),
+        static_cast<std::size_t>(
+            tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)))};
+}
+
+FloatElements toFloats(const Document& document, int index, Integers integers, const Bytes& bytes) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    FloatElements result;
+    result.components =
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+    const bool normalized = accessor.normalized || integers == Integers::Normalized;
+    switch (accessor.componentType) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            appendIntegers<std::int8_t>(bytes, normalized, result.values);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            appendIntegers<std::uint8_t>(bytes, normalized, result.values);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            appendIntegers<std::int16_t>(bytes, normalized, result.values);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            appendIntegers<std::uint16_t>(bytes, normalized, result.values);
+            break;
+        default:
+            result.values.resize(bytes.size() / sizeof(float));
+            if (!result.values.empty()) {
+                std::memcpy(result.values.data(), bytes.data(), result.values.size() * sizeof(float));
+            }
+    }
+    result.count = result.values.size() / result.components;
+    return result;
+}
+
+Result<FloatElements> readFloats(Document& document, int index, Integers integers) {
+    const Result<ElementFormat> format = floatFormat(document, index);
+    if (!format) {
+        return format.error();
+    }
+    const Result<Bytes> bytes = gather(document, index, format->components * format->componentSize);
+    if (!bytes) {
+        return bytes.error();
+    }
+    return toFloats(document, index, integers, *bytes);
+}
+
+Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        return document.error("accessor-type", accessorPointer(index), "must have 4 x 4 matrices of floats",
+                              "export the scene again");
+    }
+    constexpr std::size_t kElements = std::tuple_size_v<Matrix4>;
+    const Result<Bytes> bytes = gather(document, index, kElements * sizeof(float));
+    if (!bytes) {
+        return bytes.error();
+    }
+    std::vector<Matrix4> matrices(accessor.count);
+    for (std::size_t i = 0; i < kElements * accessor.count; ++i) {
+        matrices[i / kElements][i % kElements] = load<float>(&(*bytes)[i * sizeof(float)]);
+    }
+    return matrices;
+}
+
+Result<IndexElements> readIndices(Document& document, int index) {
+    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const std::uint32_t restart = largestUnsigned(accessor.componentType);
+    if (accessor.type != TINYGLTF_TYPE_SCALAR || restart == 0) {
+        return document.error("accessor-component-type", accessorPointer(index),
+                              "indices must be scalars of unsigned integers", "export the scene again");
+    }
+    const auto size = static_cast<std::size_t>(
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+    const Result<Bytes> bytes = gather(document, index, size);
+    if (!bytes) {
+        return bytes.error();
+    }
+    IndexElements result;
+    result.restart = restart;
+    result.values.reserve(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+        result.values.push_back(loadUnsigned(&(*bytes)[i * size], accessor.componentType));
+    }
+    return result;
+}
+
+std::size_t elementCount(const Document& document, int accessor) {
+    return accessorOf(document, accessor).count;
+}
+
+}  // namespace glint::gltf

@@ -1,0 +1,57 @@
+// Reads accessors as typed values. Every byte is checked to lie inside its buffer view.
+#pragma once
+
+#include "gltf/document/document.h"
+#include "gltf/scene.h"
+
+#include <glint/result.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace glint::gltf {
+
+struct FloatElements {
+    std::size_t components = 0;  // 1 to 4
+    std::size_t count = 0;
+    std::vector<float> values;  // components * count
+};
+
+// How integers become floats if the accessor does not mark them as normalised.
+enum class Integers : std::uint8_t { AsValues, Normalized };
+
+// What the elements of an accessor look like.
+struct ElementFormat {
+    int componentType = 0;  // glTF's number
+    std::size_t components = 0;
+    std::size_t componentSize = 0;  // bytes
+};
+
+// Returns the format of a vector or scalar accessor. 32-bit integers are an error.
+Result<ElementFormat> floatFormat(const Document& document, int accessor);
+
+// Converts elements of that accessor's format, which are packed tightly.
+FloatElements toFloats(const Document& document, int accessor, Integers integers,
+                       const std::vector<std::uint8_t>& bytes);
+
+// Reads an accessor that floatFormat() accepts. Normalised integers map to [0, 1] or [-1, 1]. Floats stay as
+// they are stored, including NaN and infinities.
+Result<FloatElements> readFloats(Document& document, int accessor, Integers integers = Integers::AsValues);
+
+// Reads an accessor of 4 x 4 matrices of floats as they are stored. Any other accessor is the error
+// "accessor-type".
+Result<std::vector<Matrix4>> readMatrices(Document& document, int accessor);
+
+struct IndexElements {
+    std::vector<std::uint32_t> values;
+    std::uint32_t restart = 0;  // the component type's largest value, which glTF forbids
+};
+
+// Reads a scalar accessor of unsigned integers.
+Result<IndexElements> readIndices(Document& document, int accessor);
+
+// Returns how many elements the accessor has. It need not have been read.
+std::size_t elementCount(const Document& document, int accessor);
+
+}  // namespace glint::gltf

@@ -1,0 +1,30 @@
+// Reads the outer layer of a glTF file: splits GLB chunks and parses JSON text.
+#pragma once
+
+#include "base/files.h"
+#include "gltf/document/schema.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::gltf {
+
+struct Container {
+    std::span<const std::uint8_t> json;
+    std::optional<std::span<const std::uint8_t>> binary;  // the BIN chunk
+};
+
+// Splits a GLB. A file without GLB's magic number is JSON as a whole. The spans view `bytes`. Errors:
+// "glb-version", "glb-length", "glb-chunk".
+Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std::string& file,
+                                 std::vector<Diagnostic>& warnings);
+
+// Errors: "json-depth", "json-syntax", and "json-type" if the root is not an object.
+Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file);
+
+}  // namespace glint::gltf

@@ -1,0 +1,300 @@
+#include "gltf/document/document.h"
+
+#include "gltf/codecs/compression.h"
+#include "gltf/codecs/meshopt.h"
+#include "gltf/document/container.h"
+#include "gltf/document/extensions.h"
+#include "gltf/document/uri.h"
+#include "gltf/document/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace glint::gltf {
+
+namespace {
+
+// A hostile file can name one small image many times, and an image of one colour takes a few bytes whatever
+// its size. A scene's images may therefore decode to kFreeImageBytes plus kMaxImageRatio times the bytes of
+// its files, but to kMaxImageBytes at most. Photographs stay below 100 : 1, and drawings seldom reach 1000 :
+// 1.
+constexpr std::uint64_t kFreeImageBytes = 1ULL << 28;
+constexpr std::uint64_t kMaxImageRatio = 1024;
+constexpr std::uint64_t kMaxImageBytes = 1ULL << 33;
+
+// Chooses a hint by the kind of failure. The pointer and the message already say where and what.
+std::string hintFor(const std::string& id) {
+    if (id == "index-range") {
+        return "the file refers to something it does not hold: export it again";
+    }
+    return "correct the value, or export the file again; the Khronos glTF validator explains the rules";
+}
+
+}  // namespace
+
+Document::Document(const std::filesystem::path& path, const ImportOptions& options)
+    : name_(path.string()),
+      options_(options),
+      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow),
+      verticesLeft_(options.maxVertices),
+      unpackedBytesLeft_(options.maxFileBytes) {}
+
+Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
+                                                 const ImportOptions& options) {
+    std::unique_ptr<Document> document(new Document(path, options));
+    if (const Status status = document->parse(); !status) {
+        return status.error();
+    }
+    return document;
+}
+
+Status Document::parse() {
+    Result<Bytes> bytes = source_.readScene();
+    if (!bytes) {
+        return bytes.error();
+    }
+    file_ = std::move(*bytes);
+    const Result<Container> container = splitContainer(file_, name_, warnings_);
+    if (!container) {
+        return container.error();
+    }
+    binary_ = container->binary;
+    Result<Json> root = parseJson(container->json, name_);
+    if (!root) {
+        return root.error();
+    }
+    json_ = std::move(*root);
+    if (Status status = checkVersion(); !status) {
+        return status;
+    }
+    if (Status status = checkExtensions(*this); !status) {
+        return status;
+    }
+    auto failure = checkDocument(json_, *options_.materialModel);
+    if (!failure) {
+        failure = checkCompression(json_);
+    }
+    if (failure) {
+        return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
+    }
+    buffers_.resize(arraySize(json_, "/buffers"));
+    unpackedViews_.resize(arraySize(json_, "/bufferViews"));
+    return parseModel();
+}
+
+Status Document::parseModel() {
+    tinygltf::TinyGLTF parser;
+    std::string problems;
+    std::string ignored;
+    const std::string text = projectDocument(json_, *options_.materialModel).dump();
+    bool parsed = false;
+    try {
+        parsed = parser.LoadASCIIFromString(&model_, &problems, &ignored, text.data(),
+                                            static_cast<unsigned>(text.size()), "", tinygltf::NO_REQUIRE);
+    } catch (const std::exception& exception) {
+        problems = exception.what();
+    }
+    if (!parsed || !mirrorsJson()) {
+        std::replace(problems.begin(), problems.end(), '\n', ' ');
+        return error("gltf", "", problems.empty() ? "can't be read" : "can't be read: " + problems,
+                     hintFor("gltf"));
+    }
+    return okStatus();
+}
+
+// Returns whether tinygltf kept every element, so that the indices of one are valid for the other.
+bool Document::mirrorsJson() const {
+    const auto same = [&](std::size_t size, std::string_view pointer) {
+        return size == arraySize(json_, pointer);
+    };
+    if (!same(model_.meshes.size(), "/meshes")) {
+        return false;
+    }
+    for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
+        if (model_.meshes[i].primitives.size() != arraySize(json_["meshes"][i], "/primitives")) {
+            return false;
+        }
+    }
+    return same(model_.accessors.size(), "/accessors") &&
+           same(model_.bufferViews.size() - 1, "/bufferViews") &&
+           same(model_.materials.size(), "/materials") && same(model_.textures.size(), "/textures") &&
+           same(model_.samplers.size(), "/samplers") && same(model_.nodes.size(), "/nodes") &&
+           same(model_.scenes.size(), "/scenes") && same(model_.cameras.size(), "/cameras");
+}
+
+Status Document::checkVersion() const {
+    const Json* asset = find(json_, "asset");
+    const Json* version = asset == nullptr ? nullptr : find(*asset, "version");
+    if (version == nullptr || !version->is_string()) {
+        return error("asset-version", "/asset", "has no \"version\"", "check that this is a glTF 2.0 file");
+    }
+    const Json* minVersion = find(*asset, "minVersion");
+    const bool hasMin = minVersion != nullptr && minVersion->is_string();
+    const auto needed = (hasMin ? minVersion : version)->get<std::string>();
+    if ((hasMin && needed != "2.0") || !needed.starts_with("2.")) {
+        return error("asset-version", hasMin ? "/asset/minVersion" : "/asset/version",
+                     fmt::format("needs glTF {}; Glint reads 2.0", needed), "convert the file to glTF 2.0");
+    }
+    return okStatus();
+}
+
+Result<ByteView> Document::bufferView(int index) {
+    const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
+    const std::string pointer = fmt::format("/bufferViews/{}", index);
+    if (const Json* extension = findMeshopt(json_["bufferViews"][static_cast<std::size_t>(index)])) {
+        return unpackedView(index, *extension, pointer);
+    }
+    return bufferRange(view.buffer, view.byteOffset, view.byteLength, pointer);
+}
+
+Result<ByteView> Document::unpackedView(int index, const Json& extension, const std::string& pointer) {
+    std::optional<Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
+    if (!unpacked) {
+        const Json* offset = find(extension, "byteOffset");
+        const Result<ByteView> packed =
+            bufferRange(extension["buffer"].get<int>(), offset == nullptr ? 0 : offset->get<std::uint64_t>(),
+                        extension["byteLength"].get<std::uint64_t>(), pointer);
+        if (!packed) {
+            return packed.error();
+        }
+        Result<Bytes> bytes = unpackMeshopt(*this, extension, pointer, *packed,
+                                            model_.bufferViews[static_cast<std::size_t>(index)].byteLength);
+        if (!bytes) {
+            return bytes.error();
+        }
+        unpacked = std::move(*bytes);
+    }
+    return ByteView(*unpacked);
+}
+
+Result<ByteView> Document::bufferRange(int index, std::uint64_t offset, std::uint64_t length,
+                                       const std::string& pointer) {
+    const Result<ByteView> bytes = buffer(index);
+    if (!bytes) {
+        return bytes.error();
+    }
+    if (offset > bytes->size() || length > bytes->size() - offset) {
+        return error("buffer-view-range", pointer,
+                     fmt::format("bytes {} to {} go beyond the {} bytes of /buffers/{}", offset,
+                                 offset + length, bytes->size(), index),
+                     "the file is damaged: export it again");
+    }
+    return bytes->subspan(offset, length);
+}
+
+Result<ByteView> Document::buffer(int index) {
+    const auto slot = static_cast<std::size_t>(index);
+    const Json& json = json_["buffers"][slot];
+    const std::string pointer = fmt::format("/buffers/{}", index);
+    const auto length = json["byteLength"].get<std::uint64_t>();
+    ByteView bytes;
+    if (!json.contains("uri") && index == 0 && binary_) {
+        bytes = *binary_;
+    } else {
+        if (!buffers_[slot]) {
+            Result<Bytes> loaded = loadBuffer(json, pointer);
+            if (!loaded) {
+                return loaded.error();
+            }
+            buffers_[slot] = std::move(*loaded);
+        }
+        bytes = *buffers_[slot];
+    }
+    if (bytes.size() < length) {
+        return error("buffer-size", pointer,
+                     fmt::format("has {} bytes of data, {} are announced", bytes.size(), length),
+                     "the buffer's file is damaged or another one: export the scene again");
+    }
+    return bytes.first(length);
+}
+
+Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointer) {
+    const Json* uri = find(buffer, "uri");
+    if (uri == nullptr) {
+        if (findMeshopt(buffer) != nullptr) {
+            return error(
+                "buffer-data", pointer,
+                "is a fallback that holds no data, but a buffer view without compressed data is read "
+                "from it",
+                "export the scene again");
+        }
+        return error("buffer-external", pointer,
+                     "has neither a \"uri\" nor the binary chunk of a GLB: its data is not in the file",
+                     "export the scene with its data");
+    }
+    const std::string& text = uri->get_ref<const std::string&>();
+    if (!isDataUri(text)) {
+        return readFile(text, pointer);
+    }
+    std::optional<DataUri> data = decodeDataUri(text);
+    if (!data) {
+        return error("data-uri", pointer + "/uri", "is no valid data URI", "export the scene again");
+    }
+    return std::move(data->bytes);
+}
+
+Result<Bytes> Document::readFile(std::string_view uri, const std::string& pointer) {
+    return source_.readRelative(uri, where(pointer + "/uri"));
+}
+
+Status Document::chargeVertices(std::uint64_t count, std::string_view pointer) {
+    if (count > verticesLeft_) {
+        return error(
+            "vertex-limit", pointer,
+            fmt::format("with its {} elements the scene passes the limit of {}", count, options_.maxVertices),
+            "split the scene, or raise ImportOptions::maxVertices");
+    }
+    verticesLeft_ -= count;
+    return okStatus();
+}
+
+bool Document::chargeUnpackedBytes(std::uint64_t bytes) {
+    if (bytes > unpackedBytesLeft_) {
+        return false;
+    }
+    unpackedBytesLeft_ -= bytes;
+    return true;
+}
+
+bool Document::chargeZeroElements(std::uint64_t count) {
+    if (count > zeroElementsLeft_) {
+        return false;
+    }
+    zeroElementsLeft_ -= count;
+    return true;
+}
+
+bool Document::chargeImageBytes(std::uint64_t bytes) {
+    // This can't overflow, because the contents of the files are below 2^54 bytes, as memory is.
+    std::uint64_t limit = kFreeImageBytes;
+    for (const SourceFile& file : files()) {
+        limit += kMaxImageRatio * file.bytes;
+    }
+    limit = std::min(limit, kMaxImageBytes);
+    if (imageBytes_ > limit || bytes > limit - imageBytes_) {
+        return false;
+    }
+    imageBytes_ += bytes;
+    return true;
+}
+
+std::string Document::where(std::string_view pointer) const {
+    return pointer.empty() ? name_ : fmt::format("{}#{}", name_, pointer);
+}
+
+Diagnostic Document::error(std::string id, std::string_view pointer, std::string message,
+                           std::string hint) const {
+    return makeError(std::move(id), where(pointer), std::move(message), std::move(hint));
+}
+
+void Document::warn(std::string id, std::string_view pointer, std::string message, std::string hint) {
+    warnings_.push_back(makeWarning(std::move(id), where(pointer), std::move(message), std::move(hint)));
+}
+
+void Document::note(std::string id, std::string_view pointer, std::string message, std::string hint) {
+    warnings_.push_back({Severity::Note, std::move(id), where(pointer), std::move(message), std::move(hint)});
+}
+
+}  // namespace glint::gltf

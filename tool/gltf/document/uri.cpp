@@ -1,0 +1,141 @@
+#include "gltf/document/uri.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr std::string_view kDataScheme = "data:";
+
+int hexDigit(char c) {
+    if (c >= '0' && c <= '9') {
+        return c - '0';
+    }
+    const char lower = static_cast<char>(c | 0x20);
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+int base64Digit(char c) {
+    if (c >= 'A' && c <= 'Z') {
+        return c - 'A';
+    }
+    if (c >= 'a' && c <= 'z') {
+        return c - 'a' + 26;
+    }
+    if (c >= '0' && c <= '9') {
+        return c - '0' + 52;
+    }
+    // The second of each pair is the URL-safe alphabet (RFC 4648, section 5).
+    if (c == '+' || c == '-') {
+        return 62;
+    }
+    return c == '/' || c == '_' ? 63 : -1;
+}
+
+std::optional<Bytes> decodeBase64(std::string_view text) {
+    while (!text.empty() && text.back() == '=') {
+        text.remove_suffix(1);
+    }
+    // One digit after the last whole group would hold six bits, which is less than a byte.
+    if (text.size() % 4 == 1) {
+        return std::nullopt;
+    }
+    Bytes bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t bits = 0;
+    int bitCount = 0;
+    for (const char c : text) {
+        const int digit = base64Digit(c);
+        if (digit < 0) {
+            return std::nullopt;
+        }
+        bits = (bits << 6U | static_cast<std::uint32_t>(digit)) & 0xFFFFFFU;
+        bitCount += 6;
+        if (bitCount >= 8) {
+            bitCount -= 8;
+            bytes.push_back(static_cast<std::uint8_t>(bits >> static_cast<unsigned>(bitCount)));
+        }
+    }
+    return bytes;
+}
+
+bool hasScheme(std::string_view uri) {
+    const std::size_t colon = uri.find(':');
+    return colon != std::string_view::npos && colon < uri.find_first_of("/?#");
+}
+
+}  // namespace
+
+bool isDataUri(std::string_view uri) {
+    return uri.size() >= kDataScheme.size() &&
+           std::equal(kDataScheme.begin(), kDataScheme.end(), uri.begin(), [](char expected, char c) {
+               return expected == std::tolower(static_cast<unsigned char>(c));
+           });
+}
+
+std::optional<DataUri> decodeDataUri(std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (!isDataUri(uri) || comma == std::string_view::npos) {
+        return std::nullopt;
+    }
+    std::string_view header = uri.substr(kDataScheme.size(), comma - kDataScheme.size());
+    const std::string_view payload = uri.substr(comma + 1);
+    constexpr std::string_view kBase64 = ";base64";
+    const bool base64 = header.ends_with(kBase64);
+    if (base64) {
+        header.remove_suffix(kBase64.size());
+    }
+    DataUri data{std::string(header.substr(0, header.find(';'))), {}};
+    if (base64) {
+        // '+', '/' and '=' may be percent-encoded.
+        const bool encoded = payload.find('%') != std::string_view::npos;
+        std::optional<Bytes> bytes = decodeBase64(encoded ? percentDecode(payload) : payload);
+        if (!bytes) {
+            return std::nullopt;
+        }
+        data.bytes = std::move(*bytes);
+    } else {
+        const std::string decoded = percentDecode(payload);
+        data.bytes.assign(decoded.begin(), decoded.end());
+    }
+    return data;
+}
+
+std::string percentDecode(std::string_view text) {
+    std::string decoded;
+    decoded.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && text.size() - i > 2) {
+            const int high = hexDigit(text[i + 1]);
+            const int low = hexDigit(text[i + 2]);
+            if (high >= 0 && low >= 0) {
+                decoded += static_cast<char>(high * 16 + low);
+                i += 2;
+                continue;
+            }
+        }
+        decoded += text[i];
+    }
+    return decoded;
+}
+
+std::optional<std::string> whyUnsafe(std::string_view uri, std::string_view decoded) {
+    if (decoded.empty()) {
+        return "is empty";
+    }
+    if (hasScheme(uri)) {
+        return "has a scheme; only relative paths and data URIs are read";
+    }
+    if (decoded.front() == '/' || decoded.front() == '\\') {
+        return "is an absolute path";
+    }
+    if (decoded.find('\0') != std::string_view::npos) {
+        return "holds a zero byte";
+    }
+    return std::nullopt;
+}
+
+}  // namespace glint::gltf

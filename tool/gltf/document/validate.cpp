@@ -1,0 +1,321 @@
+#include "gltf/document/validate.h"
+
+#include "gltf/document/material_rules.h"
+#include "gltf/document/rules.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace glint::gltf {
+
+namespace {
+
+using namespace rules;
+
+// These are the rules of buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an
+// int.
+constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
+constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
+                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
+constexpr std::array kSparseIndices{index("bufferView", "/bufferViews", true),
+                                    integer("byteOffset", 0.0, kMaxInt),
+                                    integer("componentType", 0.0, kMaxInt, true)};
+constexpr std::array kSparseValues{index("bufferView", "/bufferViews", true),
+                                   integer("byteOffset", 0.0, kMaxInt)};
+constexpr std::array kSparse{integer("count", 0.0, kMaxInt, true), object("indices", kSparseIndices, true),
+                             object("values", kSparseValues, true)};
+constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
+                               size("byteOffset"),
+                               integer("componentType", 0.0, kMaxInt, true),
+                               size("count", 1.0, true),
+                               text("type", true),
+                               boolean("normalized"),
+                               object("sparse", kSparse)};
+
+// These are the rules of meshes.
+template <std::size_t N>
+constexpr std::array<Rule, N> accessorIndices(const char* const (&names)[N]) {
+    std::array<Rule, N> rules{};
+    for (std::size_t i = 0; i < N; ++i) {
+        rules[i] = index(names[i], "/accessors");
+    }
+    return rules;
+}
+constexpr std::array kAttributeRules = accessorIndices(kAttributes);
+constexpr std::array kTargetRules = accessorIndices(kTargetAttributes);
+constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
+                                     index("material", "/materials", true)};
+constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
+constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
+constexpr std::array kPrimitive{object("attributes", kAttributeRules, true),
+                                index("indices", "/accessors"),
+                                index("material", "/materials"),
+                                integer("mode", 0.0, kMaxInt),
+                                objects("targets", kTargetRules),
+                                object("extensions", kPrimitiveExtensions)};
+constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numbers("weights", 0)};
+
+// These are the rules of animations and skins. Samplers are checked where the animation is read, because
+// their index is into an array of the animation itself.
+constexpr std::array kAnimationPointer{text("pointer", true)};
+constexpr std::array kAnimationExtensions{object("KHR_animation_pointer", kAnimationPointer)};
+constexpr std::array kAnimationTarget{index("node", "/nodes"), text("path", true),
+                                      object("extensions", kAnimationExtensions)};
+constexpr std::array kChannel{integer("sampler", 0.0, kMaxInt, true),
+                              object("target", kAnimationTarget, true)};
+constexpr std::array kAnimationSampler{index("input", "/accessors", true),
+                                       index("output", "/accessors", true), text("interpolation")};
+constexpr std::array kAnimation{text("name"), objects("channels", kChannel, true),
+                                objects("samplers", kAnimationSampler, true)};
+constexpr std::array kSkin{text("name"), index("inverseBindMatrices", "/accessors"),
+                           index("skeleton", "/nodes"), indices("joints", "/nodes", true)};
+
+// These are the rules of textures.
+constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
+                              object("extensions", {})};
+constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
+                              integer("wrapS", 0.0, kMaxInt), integer("wrapT", 0.0, kMaxInt)};
+constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
+
+// These are the rules of nodes, cameras and lights.
+constexpr std::array kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights", true)};
+constexpr std::array kNodeVisibility{boolean("visible")};
+constexpr std::array kInstanceRules = accessorIndices(kInstanceAttributes);
+constexpr std::array kInstancing{object("attributes", kInstanceRules, true)};
+constexpr std::array kNodeExtensions{object("KHR_lights_punctual", kNodeLight),
+                                     object("KHR_node_visibility", kNodeVisibility),
+                                     object("EXT_mesh_gpu_instancing", kInstancing)};
+constexpr std::array kNode{text("name"),
+                           index("mesh", "/meshes"),
+                           index("skin", "/skins"),
+                           numbers("weights", 0),
+                           index("camera", "/cameras"),
+                           indices("children", "/nodes"),
+                           numbers("matrix", 16),
+                           numbers("translation", 3),
+                           numbers("rotation", 4),
+                           numbers("scale", 3),
+                           object("extensions", kNodeExtensions)};
+constexpr std::array kScene{text("name"), indices("nodes", "/nodes")};
+constexpr std::array kPerspective{number("yfov", true), number("znear", true), number("zfar")};
+constexpr std::array kOrthographic{number("xmag", true), number("ymag", true), number("znear", true),
+                                   number("zfar", true)};
+constexpr std::array kCamera{text("name"), text("type", true), object("perspective", kPerspective),
+                             object("orthographic", kOrthographic)};
+constexpr std::array kSpot{number("innerConeAngle"), number("outerConeAngle")};
+constexpr std::array kLight{text("name"),        text("type", true), numbers("color", 3),
+                            number("intensity"), number("range"),    object("spot", kSpot)};
+constexpr std::array kLights{objects("lights", kLight)};
+constexpr std::array kVariant{text("name", true)};
+constexpr std::array kVariants{objects("variants", kVariant, true)};
+constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
+                                     object("KHR_materials_variants", kVariants)};
+
+// The rules of a whole document whose materials are made as `model` says.
+class RootRules {
+public:
+    explicit RootRules(const MaterialModel& model)
+        : material_(model),
+          root_{
+              object("extensions", kRootExtensions),
+              objects("buffers", kBuffer),
+              objects("bufferViews", kBufferView),
+              objects("accessors", {}),
+              objects("meshes", kMesh),
+              objects("materials", material_.rules()),
+              objects("textures", kTexture),
+              objects("samplers", kSampler),
+              objects("images", kImage),
+              objects("nodes", kNode),
+              objects("scenes", kScene),
+              objects("cameras", kCamera),
+              objects("animations", kAnimation),
+              objects("skins", kSkin),
+              index("scene", "/scenes"),
+          } {}
+
+    std::span<const Rule> rules() const {
+        return root_;
+    }
+
+private:
+    MaterialRules material_;
+    std::vector<Rule> root_;
+};
+
+// Calls `use(index, isIndices)` for every accessor to which the member of that name refers, if there is such
+// a member.
+template <typename Use>
+void useAccessor(const Json& object, const char* name, bool isIndices, const Use& use) {
+    if (const Json* accessor = find(object, name)) {
+        use(accessor->get<std::size_t>(), isIndices);
+    }
+}
+
+// Calls `use` in the same way for every accessor that the importer reads.
+template <typename Use>
+void forEachAccessor(const Json& root, const Use& use) {
+    for (const Json& mesh : arrayMember(root, "meshes")) {
+        for (const Json& primitive : arrayMember(mesh, "primitives")) {
+            for (const char* name : kAttributes) {
+                useAccessor(primitive["attributes"], name, false, use);
+            }
+            for (const Json& target : arrayMember(primitive, "targets")) {
+                for (const char* name : kTargetAttributes) {
+                    useAccessor(target, name, false, use);
+                }
+            }
+            useAccessor(primitive, "indices", true, use);
+        }
+    }
+    for (const Json& node : arrayMember(root, "nodes")) {
+        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
+            for (const char* name : kInstanceAttributes) {
+                useAccessor((*instancing)["attributes"], name, false, use);
+            }
+        }
+    }
+    for (const Json& animation : arrayMember(root, "animations")) {
+        for (const Json& sampler : arrayMember(animation, "samplers")) {
+            useAccessor(sampler, "input", false, use);
+            useAccessor(sampler, "output", false, use);
+        }
+    }
+    for (const Json& skin : arrayMember(root, "skins")) {
+        useAccessor(skin, "inverseBindMatrices", false, use);
+    }
+}
+
+bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
+    for (const std::string_view candidate : values) {
+        if (candidate == value) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Copies the members in `rules` from `from`, and the members of the objects that they hold, as deep as the
+// tables go.
+Json project(const Json& from, std::span<const Rule> rules) {
+    Json to = Json::object();
+    for (const Rule& rule : rules) {
+        const Json* member = find(from, rule.name);
+        // The importer reads these from the file's JSON. tinygltf would also narrow the integers in
+        // extensions.
+        const bool apart =
+            isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
+        if (member == nullptr || apart) {
+            continue;
+        }
+        if (rule.kind == Kind::Object) {
+            to[std::string(rule.name)] = project(*member, rule.rules);
+        } else if (rule.kind == Kind::Objects) {
+            Json array = Json::array();
+            for (const Json& element : *member) {
+                array.push_back(project(element, rule.rules));
+            }
+            to[std::string(rule.name)] = std::move(array);
+        } else {
+            to[std::string(rule.name)] = *member;
+        }
+    }
+    return to;
+}
+
+std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const std::string& pointer) {
+    if (auto error = checkObject(root, accessor, kAccessor, pointer)) {
+        return error;
+    }
+    const std::string& type = accessor["type"].get_ref<const std::string&>();
+    if (!isOneOf(type, {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})) {
+        return SchemaError{"accessor-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
+    }
+    const auto componentType = accessor["componentType"].get<std::int64_t>();
+    if (componentType < 5120 || componentType > 5126 || componentType == 5124) {
+        return SchemaError{"accessor-component-type", pointer + "/componentType",
+                           fmt::format("{} is no component type", componentType)};
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkStrides(const Json& root) {
+    const Json& views = arrayMember(root, "bufferViews");
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const Json* stride = find(views[i], "byteStride");
+        if (stride != nullptr && stride->get<int>() % 4 != 0) {
+            return SchemaError{"buffer-view-stride", fmt::format("/bufferViews/{}/byteStride", i),
+                               fmt::format("is {}, which is no multiple of 4", stride->get<int>())};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkCameras(const Json& root) {
+    const Json& cameras = arrayMember(root, "cameras");
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const std::string pointer = fmt::format("/cameras/{}", i);
+        const std::string& type = cameras[i]["type"].get_ref<const std::string&>();
+        if (!isOneOf(type, {"perspective", "orthographic"})) {
+            return SchemaError{"camera-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
+        }
+        if (find(cameras[i], type) == nullptr) {
+            return SchemaError{"json-missing", pointer, fmt::format("has no \"{}\"", type)};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model) {
+    const RootRules rules(model);
+    if (auto error = checkObject(root, root, rules.rules(), "")) {
+        return error;
+    }
+    if (auto error = checkStrides(root)) {
+        return error;
+    }
+    if (auto error = checkCameras(root)) {
+        return error;
+    }
+    std::optional<SchemaError> error;
+    std::vector<bool> seen(arraySize(root, "/accessors"));
+    forEachAccessor(root, [&](std::size_t accessor, bool) {
+        if (!error && !seen[accessor]) {
+            seen[accessor] = true;
+            error = checkAccessor(root, root["accessors"][accessor], fmt::format("/accessors/{}", accessor));
+        }
+    });
+    return error;
+}
+
+Json projectDocument(const Json& root, const MaterialModel& model) {
+    const RootRules rules(model);
+    Json projection = project(root, rules.rules());
+    projection["asset"] = {{"version", "2.0"}};
+    projection.erase("buffers");
+    projection.erase("images");
+    const Json standIn{{"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}};
+    projection["accessors"] = Json(std::vector<Json>(arraySize(root, "/accessors"), standIn));
+    projection["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
+    std::vector<bool> isIndices(arraySize(root, "/accessors"));
+    forEachAccessor(root, [&](std::size_t accessor, bool indexing) {
+        isIndices[accessor] = isIndices[accessor] || indexing;
+        Json& copy = projection["accessors"][accessor];
+        copy = project(root["accessors"][accessor], kAccessor);
+        if (isIndices[accessor] && !copy.contains("bufferView")) {
+            copy["bufferView"] = standInBufferView(root);
+        }
+    });
+    return projection;
+}
+
+int standInBufferView(const Json& root) {
+    return static_cast<int>(arraySize(root, "/bufferViews"));
+}
+
+}  // namespace glint::gltf

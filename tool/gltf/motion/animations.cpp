@@ -1,0 +1,296 @@
+#include "gltf/motion/animations.h"
+
+#include "gltf/document/accessor.h"
+#include "gltf/motion/animated_values.h"
+#include "gltf/motion/animation_pointers.h"
+#include "gltf/motion/node_numbers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kExportAnimation = "export the animation again";
+
+std::optional<AnimationPath> pathOf(const std::string& name) {
+    if (name == "translation") {
+        return AnimationPath::Translation;
+    }
+    if (name == "rotation") {
+        return AnimationPath::Rotation;
+    }
+    if (name == "scale") {
+        return AnimationPath::Scale;
+    }
+    return name == "weights" ? std::optional(AnimationPath::Weights) : std::nullopt;
+}
+
+std::optional<Interpolation> interpolationOf(const Json& sampler) {
+    const Json* name = find(sampler, "interpolation");
+    if (name == nullptr || *name == "LINEAR") {
+        return Interpolation::Linear;
+    }
+    if (*name == "STEP") {
+        return Interpolation::Step;
+    }
+    return *name == "CUBICSPLINE" ? std::optional(Interpolation::CubicSpline) : std::nullopt;
+}
+
+bool areFinite(const std::vector<float>& values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
+// Returns which promise of AnimationSampler the keyframe times break, or an empty text if they break none.
+std::string flawOfTimes(const FloatElements& times) {
+    if (times.components != 1 || times.count == 0) {
+        return "its times are no list of numbers";
+    }
+    if (!areFinite(times.values) || times.values.front() < 0.0F) {
+        return "its times are negative or not finite";
+    }
+    return std::ranges::is_sorted(times.values, std::less_equal<>{}) ? "" : "its times do not ascend";
+}
+
+// How a property reads the keyframes of a sampler.
+struct KeyframeForm {
+    std::size_t width = 0;
+    // This is empty for a property of a node. Its integers are fractions, and its elements may have any
+    // width.
+    std::optional<ValueKind> kind{};
+
+    auto operator<=>(const KeyframeForm&) const = default;
+};
+
+class AnimationReader {
+public:
+    AnimationReader(Document& document, Scene& scene, const NodeNumbers& numbers, std::size_t index)
+        : document_(document),
+          scene_(scene),
+          numbers_(numbers),
+          json_(document.json()["animations"][index]),
+          pointer_(fmt::format("/animations/{}", index)) {}
+
+    Animation read() {
+        if (const Json* name = find(json_, "name")) {
+            animation_.name = name->get<std::string>();
+        }
+        const Json& channels = json_["channels"];
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            readChannel(channels[i], fmt::format("{}/channels/{}", pointer_, i));
+        }
+        for (const AnimationChannel& channel : animation_.channels) {
+            const AnimationSampler& sampler = animation_.samplers[static_cast<std::size_t>(channel.sampler)];
+            animation_.duration = std::max<double>(animation_.duration, sampler.times.back());
+        }
+        return std::move(animation_);
+    }
+
+private:
+    void leaveOut(const std::string& pointer, const std::string& why) {
+        document_.warn("animation-channel", pointer, why + "; the channel is not played", kExportAnimation);
+    }
+
+    // Returns how many values a keyframe of that property has, or 0 if the node has no such property to
+    // animate.
+    std::size_t widthOf(AnimationPath path, const Node& node, const std::string& pointer) {
+        if (path == AnimationPath::Weights) {
+            if (node.restWeights.empty()) {
+                leaveOut(pointer, "animates the weights of a node whose mesh has no morph targets");
+            }
+            return node.restWeights.size();
+        }
+        if (node.matrix) {
+            leaveOut(pointer, "animates a node whose transform is a matrix, which glTF forbids");
+            return 0;
+        }
+        return path == AnimationPath::Rotation ? 4 : 3;
+    }
+
+    void readChannel(const Json& json, const std::string& pointer) {
+        const Json& target = json["target"];
+        const std::string& pathName = target["path"].get_ref<const std::string&>();
+        const Json* const extension = findExtension(target, "KHR_animation_pointer");
+        if (pathName == "pointer" || extension != nullptr) {
+            const Json* const text = extension == nullptr ? nullptr : find(*extension, "pointer");
+            readPointer(json, pointer, text == nullptr ? "" : text->get<std::string>());
+            return;
+        }
+        const Json* inFile = find(target, "node");
+        const int node = inFile == nullptr ? -1 : numbers_.inScene(inFile->get<int>());
+        if (node < 0) {
+            return;  // an extension's channel, or one of a node that this scene does not draw
+        }
+        const std::optional<AnimationPath> path = pathOf(pathName);
+        if (!path) {
+            leaveOut(pointer + "/target/path", fmt::format("\"{}\" is no property of a node", pathName));
+            return;
+        }
+        const std::size_t width = widthOf(*path, scene_.nodes[static_cast<std::size_t>(node)], pointer);
+        const int sampler = width == 0 ? -1 : samplerOf(json, pointer, {width});
+        if (sampler >= 0) {
+            animation_.channels.push_back({node, *path, sampler});
+        }
+    }
+
+    void readPointer(const Json& channel, const std::string& place, const std::string& pointer) {
+        const std::string where = place + "/target/extensions/KHR_animation_pointer/pointer";
+        const PointerTarget target = resolvePointer(document_, scene_, numbers_, pointer);
+        if (target.verdict == PointerTarget::Verdict::Unknown) {
+            if (noted_.insert(pointer).second) {
+                document_.note(
+                    "animation-pointer", where,
+                    fmt::format("\"{}\" is nothing that Glint has data for; the channel is not played",
+                                pointer));
+            }
+            return;
+        }
+        if (target.verdict == PointerTarget::Verdict::Wrong) {
+            document_.warn("animation-pointer", where,
+                           fmt::format("\"{}\" {}; the channel is not played", pointer, target.why),
+                           kExportAnimation);
+            return;
+        }
+        const int sampler =
+            target.targets.empty() ? -1 : samplerOf(channel, place, {target.width, target.kind});
+        for (const int found : target.targets) {
+            if (sampler >= 0) {
+                const int index = target.path == AnimationPath::Material ? animatedMaterial(found) : found;
+                animation_.channels.push_back({index, target.path, sampler, target.property});
+            }
+        }
+    }
+
+    // Returns the material's index among the materials that animations change.
+    int animatedMaterial(int material) {
+        std::vector<AnimatedMaterial>& all = scene_.animatedMaterials;
+        const auto found = std::ranges::find(all, material, &AnimatedMaterial::material);
+        if (found != all.end()) {
+            return static_cast<int>(found - all.begin());
+        }
+        AnimatedMaterial& added = all.emplace_back();
+        added.material = material;
+        added.rest = scene_.materials[static_cast<std::size_t>(material)];
+        return static_cast<int>(all.size()) - 1;
+    }
+
+    // Returns an index into animation_.samplers, or -1 if there is no usable sampler.
+    int samplerOf(const Json& channel, const std::string& pointer, const KeyframeForm& form) {
+        const auto inFile = channel["sampler"].get<std::size_t>();
+        const Json& samplers = json_["samplers"];
+        if (inFile >= samplers.size()) {
+            leaveOut(pointer + "/sampler",
+                     fmt::format("is {}, but the animation has {} samplers", inFile, samplers.size()));
+            return -1;
+        }
+        const auto [known, isNew] = samplers_.try_emplace(std::pair(inFile, form), -1);
+        if (!isNew) {
+            return known->second;
+        }
+        std::optional<AnimationSampler> read =
+            readSampler(samplers[inFile], fmt::format("{}/samplers/{}", pointer_, inFile), form);
+        if (read) {
+            known->second = static_cast<int>(animation_.samplers.size());
+            animation_.samplers.push_back(std::move(*read));
+        }
+        return known->second;
+    }
+
+    std::nullopt_t refuse(const std::string& pointer, const std::string& why) {
+        document_.warn("animation-keyframes", pointer, why + "; its channels are not played",
+                       kExportAnimation);
+        return std::nullopt;
+    }
+
+    // Returns which demand of a pointer's property the accessor does not meet, or an empty text if it meets
+    // all.
+    std::string flawOfForm(int accessor, const KeyframeForm& form, Interpolation interpolation) const {
+        const tinygltf::Accessor& values = document_.model().accessors[static_cast<std::size_t>(accessor)];
+        const auto components = static_cast<std::size_t>(
+            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(values.type)));
+        const std::size_t expected = form.kind == ValueKind::Vector ? form.width : 1;
+        if (components != expected) {
+            return fmt::format("/accessors/{} has elements of {} numbers, not {}", accessor, components,
+                               expected);
+        }
+        const bool isByte = values.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        if (form.kind == ValueKind::Bool && (!isByte || values.normalized)) {
+            return fmt::format("/accessors/{} drives true and false, but holds no plain unsigned bytes",
+                               accessor);
+        }
+        if (form.kind == ValueKind::Bool && interpolation != Interpolation::Step) {
+            return "drives true and false, which takes the interpolation STEP";
+        }
+        return {};
+    }
+
+    std::optional<AnimationSampler> readSampler(const Json& json, const std::string& pointer,
+                                                const KeyframeForm& form) {
+        const std::optional<Interpolation> interpolation = interpolationOf(json);
+        if (!interpolation) {
+            return refuse(pointer, fmt::format("{} is no interpolation", json["interpolation"].dump()));
+        }
+        Result<FloatElements> times = readFloats(document_, json["input"].get<int>());
+        if (!times) {
+            return refuse(pointer, times.error().where + " " + times.error().message);
+        }
+        if (const std::string flaw = flawOfTimes(*times); !flaw.empty()) {
+            return refuse(pointer, flaw);
+        }
+        const int output = json["output"].get<int>();
+        if (const std::string flaw = form.kind ? flawOfForm(output, form, *interpolation) : "";
+            !flaw.empty()) {
+            return refuse(pointer, flaw);
+        }
+        // For a property of a node, integers stand for fractions even if they are not marked as normalised,
+        // because glTF allows no others there. For a property that a pointer names, the mark decides.
+        Result<FloatElements> values =
+            readFloats(document_, output, form.kind ? Integers::AsValues : Integers::Normalized);
+        if (!values) {
+            return refuse(pointer, values.error().where + " " + values.error().message);
+        }
+        const std::size_t perKeyframe = *interpolation == Interpolation::CubicSpline ? 3 : 1;
+        const std::size_t expected = times->count * form.width * perKeyframe;
+        if (values->values.size() != expected) {
+            return refuse(pointer, fmt::format("has {} numbers for {} keyframes, not {}",
+                                               values->values.size(), times->count, expected));
+        }
+        if (!areFinite(values->values)) {
+            return refuse(pointer, "has values that are not finite");
+        }
+        return AnimationSampler{*interpolation, std::move(times->values), form.width,
+                                std::move(values->values)};
+    }
+
+    Document& document_;
+    Scene& scene_;
+    const NodeNumbers& numbers_;
+    const Json& json_;
+    std::string pointer_;
+    Animation animation_;
+    std::map<std::pair<std::size_t, KeyframeForm>, int> samplers_;  // by number in the file
+    std::set<std::string> noted_;                                   // pointers that are unknown
+};
+
+}  // namespace
+
+void importAnimations(Document& document, Scene& scene) {
+    const NodeNumbers numbers(document, scene);
+    const std::size_t count = arrayMember(document.json(), "animations").size();
+    for (std::size_t i = 0; i < count; ++i) {
+        scene.animations.push_back(AnimationReader(document, scene, numbers, i).read());
+    }
+    settleAnimatedValues(scene);
+}
+
+}  // namespace glint::gltf

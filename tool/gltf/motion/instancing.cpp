@@ -1,0 +1,180 @@
+#include "gltf/motion/instancing.h"
+
+#include "base/vectors.h"
+#include "gltf/document/accessor.h"
+#include "gltf/document/validate.h"
+#include "gltf/motion/transform.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kExportInstances = "export the instances again";
+
+class InstanceReader {
+public:
+    InstanceReader(Document& document, const Json& attributes, std::string pointer)
+        : document_(document), attributes_(attributes), pointer_(std::move(pointer)) {}
+
+    // Without any of the three attributes there is one placement, because all of them would coincide.
+    Result<Instancing> read() {
+        Instancing instancing;
+        if (Status status = readArray("TRANSLATION", instancing.translations); !status) {
+            return status.error();
+        }
+        if (Status status = readArray("ROTATION", instancing.rotations); !status) {
+            return status.error();
+        }
+        if (Status status = readArray("SCALE", instancing.scales); !status) {
+            return status.error();
+        }
+        instancing.count = count_.value_or(1);
+        normalize(instancing.rotations);
+        return instancing;
+    }
+
+private:
+    template <std::size_t N>
+    Status readArray(const char* name, std::vector<std::array<float, N>>& values) {
+        const Json* const accessor = find(attributes_, name);
+        if (accessor == nullptr) {
+            return okStatus();
+        }
+        const std::string where = fmt::format("{}/{}", pointer_, name);
+        // Only rotations may be integers, which then are fractions.
+        Result<FloatElements> elements =
+            readFloats(document_, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues);
+        if (!elements) {
+            return elements.error();
+        }
+        if (elements->components != N) {
+            return document_.error("attribute-type", where,
+                                   fmt::format("has {} components, not {}", elements->components, N),
+                                   kExportInstances);
+        }
+        if (count_ && *count_ != elements->count) {
+            return document_.error("attribute-count", where,
+                                   fmt::format("has {} elements, another attribute of the node has {}",
+                                               elements->count, *count_),
+                                   kExportInstances);
+        }
+        count_ = elements->count;
+        values.resize(elements->count);
+        std::size_t damaged = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            std::copy_n(&elements->values[i * N], N, values[i].begin());
+            if (!isFinite(values[i])) {
+                values[i].fill(0.0F);
+                ++damaged;
+            }
+        }
+        if (damaged > 0) {
+            document_.warn("attribute-not-finite", where,
+                           fmt::format("{} elements are NaN or infinite; 0 is used", damaged),
+                           kExportInstances);
+        }
+        return okStatus();
+    }
+
+    void normalize(std::vector<Float4>& rotations) {
+        // The rounding of quaternions to 8 bits causes a smaller error.
+        constexpr float kTolerance = 0.02F;
+        std::size_t off = 0;
+        for (Float4& rotation : rotations) {
+            const float length =
+                std::hypot(std::hypot(rotation[0], rotation[1]), std::hypot(rotation[2], rotation[3]));
+            off += std::abs(length - 1.0F) > kTolerance ? 1 : 0;
+            if (length > 0.0F && std::isfinite(length)) {
+                std::ranges::transform(rotation, rotation.begin(),
+                                       [&](float number) { return number / length; });
+            } else {
+                rotation = {0.0F, 0.0F, 0.0F, 1.0F};
+            }
+        }
+        if (off > 0) {
+            document_.warn("node-rotation", pointer_ + "/ROTATION",
+                           fmt::format("{} elements are no unit quaternions; their direction is used", off),
+                           kExportInstances);
+        }
+    }
+
+    Document& document_;
+    const Json& attributes_;
+    std::string pointer_;
+    std::optional<std::size_t> count_;
+};
+
+bool isSkinned(const Scene& scene, const Node& node) {
+    return node.skin >= 0 &&
+           std::ranges::any_of(scene.meshes[static_cast<std::size_t>(node.mesh)].primitives,
+                               [](const Primitive& primitive) { return primitive.influences.count > 0; });
+}
+
+Status checkPlaces(const Document& document, const Matrix4& world, const Instancing& instancing,
+                   const std::string& pointer) {
+    for (std::size_t i = 0; i < instancing.count; ++i) {
+        if (!fitsFloat(multiply(world, instanceTransform(instancing, i)))) {
+            return document.error("node-transform", pointer,
+                                  fmt::format("the transform of instance {} in the world overflows", i),
+                                  "check the scales of the instances, the node and its parents");
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Status importInstances(Document& document, Scene& scene) {
+    std::set<std::string> custom;
+    for (Node& node : scene.nodes) {
+        const Json* const extension = findExtension(
+            document.json()["nodes"][static_cast<std::size_t>(node.source)], "EXT_mesh_gpu_instancing");
+        if (extension == nullptr || node.mesh < 0) {
+            continue;
+        }
+        const std::string pointer =
+            fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", node.source);
+        const Json& attributes = (*extension)["attributes"];
+        for (const auto& [name, accessor] : attributes.items()) {
+            if (std::ranges::find(kInstanceAttributes, name) == std::end(kInstanceAttributes)) {
+                custom.insert(name);
+            }
+        }
+        if (isSkinned(scene, node)) {
+            document.warn(
+                "node-instances", pointer,
+                "belong to a node whose mesh follows a skin, which puts all of them into one place; the "
+                "mesh is drawn once",
+                "give each instance a node and a skin of its own");
+            continue;
+        }
+        Result<Instancing> read = InstanceReader(document, attributes, pointer).read();
+        if (!read) {
+            return read.error();
+        }
+        if (Status status = checkPlaces(document, node.world, *read, pointer); !status) {
+            return status;
+        }
+        node.instancing = static_cast<int>(scene.instancings.size());
+        scene.instancings.push_back(std::move(*read));
+    }
+    if (!custom.empty()) {
+        document.note("node-instances", "/nodes",
+                      fmt::format("attributes of instances that are an application's own are not read: {}",
+                                  fmt::join(custom, ", ")));
+    }
+    return okStatus();
+}
+
+}  // namespace glint::gltf

@@ -1,0 +1,143 @@
+#include "gltf/motion/morphs.h"
+
+#include "gltf/document/accessor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kExportMorphs = "export the mesh again";
+// Limits all nodes of a scene together. A thousand figures with a thousand targets each have a quarter of it.
+constexpr std::uint64_t kMaxWeights = 1ULL << 22;
+
+// Reads one attribute of a target if the target has it.
+Status readDifferences(const PrimitiveSource& source, const Json& target, const std::string& pointer,
+                       const char* attribute, std::size_t vertices, std::vector<Float3>& differences) {
+    const Json* accessor = find(target, attribute);
+    if (accessor == nullptr) {
+        return okStatus();
+    }
+    Document& document = source.document;
+    const std::string place = pointer + "/" + attribute;
+    const Result<FloatElements> elements = readFloats(document, accessor->get<int>());
+    if (!elements) {
+        return elements.error();
+    }
+    if (elements->components != 3) {
+        return document.error("attribute-type", place,
+                              fmt::format("has {} components, not 3", elements->components), kExportMorphs);
+    }
+    if (elements->count != vertices) {
+        return document.error("attribute-count", place,
+                              fmt::format("has {} elements, POSITION has {}", elements->count, vertices),
+                              kExportMorphs);
+    }
+    differences.resize(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        std::copy_n(&elements->values[3 * i], 3, differences[i].begin());
+    }
+    return okStatus();
+}
+
+// Reads the weights that a node or a mesh lists. There are as many as targets.
+std::vector<double> readWeights(Document& document, const Json& list, std::size_t targets,
+                                const std::string& pointer) {
+    std::vector<double> weights;
+    for (const Json& weight : list) {
+        weights.push_back(weight.get<double>());
+    }
+    if (weights.size() != targets) {
+        document.warn("morph-weights", pointer,
+                      fmt::format("has {} weights for {} morph targets; missing ones are 0, others ignored",
+                                  weights.size(), targets),
+                      "give a weight for each target");
+    }
+    weights.resize(targets, 0.0);
+    return weights;
+}
+
+std::size_t countTargets(const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const Primitive& primitive : mesh.primitives) {
+        count = std::max(count, primitive.targets.size());
+    }
+    return count;
+}
+
+}  // namespace
+
+Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
+    const Json& targets = arrayMember(source.json, "targets");
+    const std::size_t vertices = primitive.positions.size();
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const std::string pointer = fmt::format("{}/targets/{}", primitive.pointer, i);
+        MorphTarget& target = primitive.targets.emplace_back();
+        struct Member {
+            const char* attribute;
+            bool isBased;
+            std::vector<Float3>& differences;
+        };
+        for (const Member& member : {Member{"POSITION", true, target.positions},
+                                     Member{"NORMAL", !primitive.normals.empty(), target.normals},
+                                     Member{"TANGENT", !primitive.tangents.empty(), target.tangents}}) {
+            if (!member.isBased && find(targets[i], member.attribute) != nullptr) {
+                source.document.warn(
+                    "morph-attribute", pointer + "/" + member.attribute,
+                    "the primitive itself has no such attribute; its differences are left out",
+                    kExportMorphs);
+                continue;
+            }
+            if (Status status = readDifferences(source, targets[i], pointer, member.attribute, vertices,
+                                                member.differences);
+                !status) {
+                return status;
+            }
+        }
+    }
+    return okStatus();
+}
+
+Status importMorphWeights(Document& document, Scene& scene) {
+    const Json& meshes = arrayMember(document.json(), "meshes");
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        Mesh& mesh = scene.meshes[i];
+        const std::size_t targets = countTargets(mesh);
+        mesh.weights.assign(targets, 0.0);
+        const Json* weights = find(meshes[i], "weights");
+        if (weights != nullptr && targets > 0) {
+            mesh.weights = readWeights(document, *weights, targets, fmt::format("/meshes/{}/weights", i));
+        }
+    }
+    std::uint64_t total = 0;
+    for (Node& node : scene.nodes) {
+        if (node.mesh < 0) {
+            continue;
+        }
+        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+        total += mesh.weights.size();
+        if (total > kMaxWeights) {
+            return document.error(
+                "morph-limit", fmt::format("/nodes/{}", node.source),
+                fmt::format("with its {} morph targets the nodes of the scene pass the limit of {} weights",
+                            mesh.weights.size(), kMaxWeights),
+                "leave out targets, or split the scene");
+        }
+        node.restWeights = mesh.weights;
+        const Json* weights =
+            find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "weights");
+        if (weights != nullptr && !mesh.weights.empty()) {
+            node.restWeights = readWeights(document, *weights, mesh.weights.size(),
+                                           fmt::format("/nodes/{}/weights", node.source));
+        }
+        node.weights = node.restWeights;
+    }
+    return okStatus();
+}
+
+}  // namespace glint::gltf

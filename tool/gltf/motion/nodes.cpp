@@ -1,0 +1,245 @@
+#include "gltf/motion/nodes.h"
+
+#include "gltf/motion/transform.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kExportNodes = "export the scene again";
+
+std::string pointerOf(std::size_t node) {
+    return fmt::format("/nodes/{}", node);
+}
+
+// Returns the parent of each node, which is -1 for roots.
+Result<std::vector<int>> findParents(const Document& document) {
+    const auto& nodes = document.model().nodes;
+    std::vector<int> parents(nodes.size(), -1);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (const int child : nodes[i].children) {
+            int& parent = parents[static_cast<std::size_t>(child)];
+            if (parent >= 0) {
+                return document.error("node-parents", pointerOf(static_cast<std::size_t>(child)),
+                                      fmt::format("is a child of /nodes/{} and /nodes/{}", parent, i),
+                                      kExportNodes);
+            }
+            parent = static_cast<int>(i);
+        }
+    }
+    return parents;
+}
+
+// Every node has at most one parent, so a node that no root reaches is on a cycle or below one.
+Status checkCycles(const Document& document, const std::vector<int>& parents) {
+    std::vector<bool> reached(parents.size());
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        if (parents[i] < 0) {
+            open.push_back(i);
+        }
+    }
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        reached[node] = true;
+        const auto& children = document.model().nodes[node].children;
+        open.insert(open.end(), children.begin(), children.end());
+    }
+    const auto missed = std::find(reached.begin(), reached.end(), false);
+    if (missed != reached.end()) {
+        return document.error("node-cycle", pointerOf(static_cast<std::size_t>(missed - reached.begin())),
+                              "is its own ancestor, or a descendant of such a node", kExportNodes);
+    }
+    return okStatus();
+}
+
+// Returns the nodes at which the default scene starts, in the file's order.
+std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& parents) {
+    const tinygltf::Model& model = document.model();
+    std::vector<std::size_t> roots;
+    if (model.scenes.empty()) {
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            if (parents[i] < 0) {
+                roots.push_back(i);
+            }
+        }
+        return roots;
+    }
+    const std::size_t scene = model.defaultScene < 0 ? 0 : static_cast<std::size_t>(model.defaultScene);
+    std::vector<bool> listed(parents.size());
+    for (std::size_t i = 0; i < model.scenes[scene].nodes.size(); ++i) {
+        const auto node = static_cast<std::size_t>(model.scenes[scene].nodes[i]);
+        const std::string pointer = fmt::format("/scenes/{}/nodes/{}", scene, i);
+        if (listed[node]) {
+            document.warn("scene-node-repeated", pointer, "names a node that the scene has already",
+                          kExportNodes);
+        } else if (parents[node] >= 0) {
+            document.warn(
+                "scene-node-child", pointer,
+                fmt::format("names a child of /nodes/{}; it is drawn only below that", parents[node]),
+                kExportNodes);
+        } else {
+            roots.push_back(node);
+        }
+        listed[node] = true;
+    }
+    return roots;
+}
+
+std::array<double, 4> readRotation(Document& document, const std::vector<double>& values,
+                                   const std::string& pointer) {
+    if (values.size() != 4) {
+        return {0, 0, 0, 1};
+    }
+    double length = 0.0;
+    for (const double value : values) {
+        length = std::hypot(length, value);
+    }
+    // The rounding of quaternions to 16-bit integers causes a smaller error.
+    constexpr double kTolerance = 1e-3;
+    if (std::abs(length - 1.0) > kTolerance) {
+        document.warn("node-rotation", pointer + "/rotation",
+                      fmt::format("is no unit quaternion (length {}); {} is used", length,
+                                  length > 0.0 ? "its direction" : "no rotation"),
+                      kExportNodes);
+    }
+    if (length <= 0.0) {
+        return {0, 0, 0, 1};
+    }
+    return {values[0] / length, values[1] / length, values[2] / length, values[3] / length};
+}
+
+Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& json,
+                   const std::string& pointer) {
+    if (json.contains("translation") || json.contains("rotation") || json.contains("scale")) {
+        document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
+                      kExportNodes);
+    }
+    Matrix4 matrix{};
+    std::copy_n(node.matrix.begin(), matrix.size(), matrix.begin());
+    if (matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0) {
+        document.warn("node-matrix", pointer + "/matrix",
+                      "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
+        matrix[3] = matrix[7] = matrix[11] = 0.0;
+        matrix[15] = 1.0;
+    }
+    return matrix;
+}
+
+// Reads the node's local transform into `node`, and returns it as a matrix.
+Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
+    const tinygltf::Node& node = document.model().nodes[index];
+    const Json& json = document.json()["nodes"][index];
+    const std::string pointer = pointerOf(index);
+    if (node.matrix.size() == 16) {
+        placed.matrix = readMatrix(document, node, json, pointer);
+        return *placed.matrix;
+    }
+    const auto triple = [](const std::vector<double>& values, double fallback) {
+        return values.size() == 3 ? Double3{values[0], values[1], values[2]}
+                                  : Double3{fallback, fallback, fallback};
+    };
+    placed.rest = {triple(node.translation, 0.0), readRotation(document, node.rotation, pointer),
+                   triple(node.scale, 1.0)};
+    return compose(placed.rest.translation, placed.rest.rotation, placed.rest.scale);
+}
+
+Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {
+    Result<Camera> placed = importCamera(document, camera, node.world);
+    if (!placed) {
+        return placed.error();
+    }
+    node.camera = static_cast<int>(scene.cameras.size());
+    placed->source = camera;
+    scene.cameras.push_back(std::move(*placed));
+    return okStatus();
+}
+
+Status placeLight(Document& document, int light, Node& node, Scene& scene) {
+    Result<Light> placed = importLight(document, light, node.world);
+    if (!placed) {
+        return placed.error();
+    }
+    node.light = static_cast<int>(scene.lights.size());
+    placed->source = light;
+    scene.lights.push_back(std::move(*placed));
+    return okStatus();
+}
+
+Status appendNode(Document& document, std::size_t index, int parent, Scene& scene) {
+    const tinygltf::Node& source = document.model().nodes[index];
+    Node node;
+    node.name = source.name;
+    node.parent = parent;
+    node.mesh = source.mesh;
+    node.source = static_cast<int>(index);
+    const Matrix4 above = parent < 0 ? identity() : scene.nodes[static_cast<std::size_t>(parent)].world;
+    node.world = multiply(above, readTransform(document, index, node));
+    if (!fitsFloat(node.world)) {
+        return document.error("node-transform", pointerOf(index), "its transform in the world overflows",
+                              "check the scales of the node and its parents");
+    }
+    const Json& json = document.json()["nodes"][index];
+    if (const Json* const visibility = findExtension(json, "KHR_node_visibility")) {
+        const Json* const visible = find(*visibility, "visible");
+        node.visible = visible == nullptr || visible->get<bool>();
+    }
+    if (source.camera >= 0) {
+        if (Status status = placeCamera(document, source.camera, node, scene); !status) {
+            return status;
+        }
+    }
+    if (const Json* light = findExtension(json, "KHR_lights_punctual")) {
+        if (Status status = placeLight(document, (*light)["light"].get<int>(), node, scene); !status) {
+            return status;
+        }
+    }
+    scene.nodes.push_back(std::move(node));
+    return okStatus();
+}
+
+}  // namespace
+
+Status importNodes(Document& document, Scene& scene) {
+    const Result<std::vector<int>> parents = findParents(document);
+    if (!parents) {
+        return parents.error();
+    }
+    if (Status status = checkCycles(document, *parents); !status) {
+        return status;
+    }
+    // Nodes are visited depth first, and children in the file's order. The last one on the stack is next.
+    struct Pending {
+        std::size_t node;
+        int parent;  // index into scene.nodes
+    };
+    std::vector<Pending> pending;
+    const std::vector<std::size_t> roots = findRoots(document, *parents);
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+        pending.push_back({*root, -1});
+    }
+    while (!pending.empty()) {
+        const Pending next = pending.back();
+        pending.pop_back();
+        const int parent = static_cast<int>(scene.nodes.size());
+        if (Status status = appendNode(document, next.node, next.parent, scene); !status) {
+            return status;
+        }
+        const auto& children = document.model().nodes[next.node].children;
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            pending.push_back({static_cast<std::size_t>(*child), parent});
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace glint::gltf

@@ -1,0 +1,189 @@
+#include "gltf/motion/skinning.h"
+
+#include "gltf/document/accessor.h"
+#include "gltf/motion/node_numbers.h"
+#include "gltf/motion/transform.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace glint::gltf {
+
+namespace {
+
+constexpr const char* kExportSkin = "export the scene again";
+
+// A joint that a vertex follows, in the order of the file, before the weights are normalised.
+struct Influence {
+    std::uint16_t joint = 0;
+    float weight = 0.0F;
+};
+
+// Returns the influences of one vertex that matter. A weight that is negative or NaN counts as 0.
+std::vector<Influence> influencesOf(const std::vector<InfluenceSet>& sets, std::size_t vertex) {
+    std::vector<Influence> influences;
+    for (const InfluenceSet& set : sets) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            const float weight = set.weights[vertex][i];
+            if (weight > 0.0F && std::isfinite(weight)) {
+                influences.push_back({static_cast<std::uint16_t>(set.joints[vertex][i]), weight});
+            }
+        }
+    }
+    return influences;
+}
+
+double sumOf(const std::vector<Influence>& influences) {
+    double sum = 0.0;
+    for (const Influence& influence : influences) {
+        sum += influence.weight;
+    }
+    return sum;
+}
+
+// Returns the inverse bind matrices of a skin, or identities if it gives none.
+Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& json,
+                                              const std::string& pointer, std::size_t joints) {
+    const Json* accessor = find(json, "inverseBindMatrices");
+    if (accessor == nullptr) {
+        return std::vector<Matrix4>(joints, identity());
+    }
+    Result<std::vector<Matrix4>> matrices = readMatrices(document, accessor->get<int>());
+    if (!matrices) {
+        return matrices;
+    }
+    const std::string place = pointer + "/inverseBindMatrices";
+    if (matrices->size() < joints) {
+        return document.error("skin-matrices", place,
+                              fmt::format("has {} matrices for {} joints", matrices->size(), joints),
+                              kExportSkin);
+    }
+    matrices->resize(joints);
+    if (!std::ranges::all_of(*matrices, fitsFloat)) {
+        return document.error("skin-matrices", place, "has elements that are no finite numbers", kExportSkin);
+    }
+    return matrices;
+}
+
+// Returns nothing if a joint is not in the scene.
+Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, const NodeNumbers& numbers) {
+    const Json& json = document.json()["skins"][index];
+    const std::string pointer = fmt::format("/skins/{}", index);
+    Skin skin;
+    const Json* name = find(json, "name");
+    skin.name = name == nullptr ? "" : name->get<std::string>();
+    const Json& joints = json["joints"];
+    if (joints.empty() || joints.size() > kMaxJoints) {
+        return document.error("skin-joints", pointer + "/joints",
+                              fmt::format("has {} joints; 1 to {} are possible", joints.size(), kMaxJoints),
+                              kExportSkin);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const int node = numbers.inScene(joints[i].get<int>());
+        if (node < 0) {
+            document.warn("skin-joint-outside", fmt::format("{}/joints/{}", pointer, i),
+                          "is a node outside of the scene; the skin is left out and its meshes keep their "
+                          "bind pose",
+                          "put the joints into the scene that draws the mesh");
+            return std::optional<Skin>();
+        }
+        skin.joints.push_back(node);
+    }
+    Result<std::vector<Matrix4>> matrices = readInverseBinds(document, json, pointer, joints.size());
+    if (!matrices) {
+        return matrices.error();
+    }
+    skin.inverseBinds = std::move(*matrices);
+    return std::optional(std::move(skin));
+}
+
+// Checks that every joint that the mesh's vertices follow is in the skin.
+Status checkJoints(const Document& document, const Mesh& mesh, const Skin& skin) {
+    for (const Primitive& primitive : mesh.primitives) {
+        const SkinInfluences& influences = primitive.influences;
+        for (std::size_t i = 0; i < influences.joints.size(); ++i) {
+            if (influences.weights[i] > 0.0F && influences.joints[i] >= skin.joints.size()) {
+                return document.error(
+                    "skin-joint-range", primitive.pointer + "/attributes/JOINTS_0",
+                    fmt::format("vertex {} follows joint {}, the skin has {}", i / influences.count,
+                                influences.joints[i], skin.joints.size()),
+                    "export the mesh again with its skin");
+            }
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+SkinInfluences joinInfluences(Document& document, const std::string& pointer,
+                              const std::vector<InfluenceSet>& sets) {
+    SkinInfluences joined;
+    const std::size_t vertices = sets.empty() ? 0 : sets.front().joints.size();
+    for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+        joined.count = std::max(joined.count, influencesOf(sets, vertex).size());
+    }
+    joined.count = vertices > 0 ? std::max<std::size_t>(joined.count, 1) : 0;
+    // Rounding eight weights to 8 bits each causes a smaller error.
+    constexpr double kTolerance = 0.02;
+    std::size_t off = 0;
+    for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+        std::vector<Influence> influences = influencesOf(sets, vertex);
+        const double sum = sumOf(influences);
+        off += std::abs(sum - 1.0) > kTolerance ? 1 : 0;
+        if (influences.empty()) {
+            influences.push_back({static_cast<std::uint16_t>(sets.front().joints[vertex][0]), 1.0F});
+        }
+        influences.resize(joined.count, {influences.front().joint, 0.0F});
+        for (const Influence& influence : influences) {
+            joined.joints.push_back(influence.joint);
+            joined.weights.push_back(sum > 0.0 ? static_cast<float>(influence.weight / sum)
+                                               : influence.weight);
+        }
+    }
+    if (off > 0) {
+        document.warn("skin-weights", pointer + "/attributes/WEIGHTS_0",
+                      fmt::format("the weights of {} vertices don't sum to 1; they are scaled (of a vertex "
+                                  "without any, the first joint takes all)",
+                                  off),
+                      "export the mesh again with normalised weights");
+    }
+    return joined;
+}
+
+Status importSkins(Document& document, Scene& scene) {
+    const NodeNumbers numbers(document, scene);
+    std::map<std::size_t, int> known;  // by number in the file; -1: the skin is left out
+    for (Node& node : scene.nodes) {
+        const Json* skin = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "skin");
+        if (skin == nullptr || node.mesh < 0) {
+            continue;
+        }
+        const auto index = skin->get<std::size_t>();
+        if (!known.contains(index)) {
+            Result<std::optional<Skin>> read = readSkin(document, index, numbers);
+            if (!read) {
+                return read.error();
+            }
+            known[index] = *read ? static_cast<int>(scene.skins.size()) : -1;
+            if (*read) {
+                scene.skins.push_back(std::move(**read));
+            }
+        }
+        node.skin = known[index];
+        if (node.skin >= 0) {
+            const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+            const Skin& followed = scene.skins[static_cast<std::size_t>(node.skin)];
+            if (Status status = checkJoints(document, mesh, followed); !status) {
+                return status;
+            }
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace glint::gltf

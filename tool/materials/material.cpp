@@ -1,0 +1,231 @@
+#include "materials/material.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace glint {
+
+namespace {
+
+bool isMoved(const TextureInfo& info) {
+    return info.moves || info.transform != TextureTransform{};
+}
+
+bool sameTexture(const TextureInfo& a, const TextureInfo& b) {
+    return a.texture == b.texture && a.texCoord == b.texCoord && a.transform == b.transform && !a.moves &&
+           !b.moves;
+}
+
+const Parameter& parameterOf(const MaterialModel& model, std::string_view name) {
+    const int index = model.findParameter(name);
+    assert(index >= 0);
+    return model.parameters[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+Material::Material(const MaterialModel& model)
+    : values(static_cast<std::size_t>(model.valueCount)),
+      textures(model.textures.size()),
+      given(model.objects.size()),
+      model_(&model) {
+    for (const Parameter& parameter : model.parameters) {
+        for (int i = 0; parameter.aliasOf < 0 && i < parameter.channels; ++i) {
+            values[static_cast<std::size_t>(parameter.first + i)] =
+                parameter.fallback[static_cast<std::size_t>(i)];
+        }
+    }
+}
+
+ParameterValue Material::operator[](std::string_view parameter) {
+    const Parameter& row = parameterOf(*model_, parameter);
+    return ParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
+                                                    static_cast<std::size_t>(row.channels)));
+}
+
+ConstParameterValue Material::operator[](std::string_view parameter) const {
+    const Parameter& row = parameterOf(*model_, parameter);
+    return ConstParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
+                                                         static_cast<std::size_t>(row.channels)));
+}
+
+TextureInfo& Material::texture(std::string_view texture) {
+    const int index = model_->findTexture(texture);
+    assert(index >= 0);
+    return textures[static_cast<std::size_t>(index)];
+}
+
+const TextureInfo& Material::texture(std::string_view texture) const {
+    const int index = model_->findTexture(texture);
+    assert(index >= 0);
+    return textures[static_cast<std::size_t>(index)];
+}
+
+void Material::give(std::string_view object) {
+    const int index = model_->findObject(object);
+    assert(index >= 0);
+    given[static_cast<std::size_t>(index)] = 1;
+}
+
+bool Material::gives(std::string_view object) const {
+    const int index = model_->findObject(object);
+    return index >= 0 && given[static_cast<std::size_t>(index)] != 0;
+}
+
+bool Material::isColor(int texture) const {
+    return std::ranges::any_of(
+        model_->textures[static_cast<std::size_t>(texture)].places,
+        [this](const MaterialTexture::Place& place) { return place.isColor && reads(place.object); });
+}
+
+bool Material::isUnlit() const {
+    return std::ranges::any_of(model_->features, [this](const Feature& feature) {
+        return (feature.mask() & model_->unlit) != 0 && feature.object >= 0 &&
+               given[static_cast<std::size_t>(feature.object)] != 0;
+    });
+}
+
+bool Material::reads(int object) const {
+    // An unlit material reads the plain base, whatever replaces it.
+    const bool unlit = isUnlit();
+    const MaterialObject& row = model_->objects[static_cast<std::size_t>(object)];
+    if (row.replaces >= 0) {
+        return given[static_cast<std::size_t>(object)] != 0 && !unlit;
+    }
+    for (std::size_t i = 0; !unlit && i < model_->objects.size(); ++i) {
+        if (model_->objects[i].replaces == object && given[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
+    const TextureInfo& info = material.textures[static_cast<std::size_t>(texture)];
+    const MaterialModel& model = material.model();
+    const MaterialTexture& slot = model.textures[static_cast<std::size_t>(texture)];
+    return info.texture >= 0 && (model.features[static_cast<std::size_t>(slot.feature)].hasOwnCoordinates ||
+                                 primitive.hasTexCoords(info.texCoord));
+}
+
+MaterialFacts::MaterialFacts(const Material& material, const PrimitiveInputs& primitive,
+                             const KeyOptions& options, const FeatureMask& key, Textures textures)
+    : material_(material), primitive_(primitive), options_(options), key_(key), textures_(textures) {}
+
+Channels MaterialFacts::number(int symbol) const {
+    const MaterialModel& model = material_.model();
+    if (symbol == model.symbolOf(Fact::Color)) {
+        const bool varies = primitive_.colors == ColorContent::Varying;
+        return {{ValueInterval{varies ? 0.0 : 1.0, 1.0}}, 1};
+    }
+    const Parameter& parameter = model.parameters[static_cast<std::size_t>(symbol)];
+    const bool scaled = textures_ == Textures::Scale && parameter.scaledBy >= 0 &&
+                        isReadable(material_, primitive_, parameter.scaledBy);
+    Channels number;
+    number.count = parameter.channels;
+    for (int i = 0; i < parameter.channels; ++i) {
+        const auto place = static_cast<std::size_t>(parameter.first + i);
+        ValueInterval& target = number.of[static_cast<std::size_t>(i)];
+        target = material_.ranges.empty() ? ValueInterval{material_.values[place], material_.values[place]}
+                                          : material_.ranges[place];
+        target = scaled ? multiply(target, {0.0, 1.0}) : target;
+    }
+    return number;
+}
+
+Certainty MaterialFacts::condition(int symbol) const {
+    const MaterialModel& model = material_.model();
+    if (symbol < model.symbolOfFeature(0)) {
+        return fact(static_cast<Fact>(symbol - model.symbolOf(Fact::Normal)));
+    }
+    if (symbol < model.symbolOfTexture(0)) {
+        const Feature& feature = model.features[static_cast<std::size_t>(symbol - model.symbolOfFeature(0))];
+        return certain((key_ & feature.mask()) != 0);
+    }
+    if (symbol < model.symbolOfPair(0)) {
+        return certain(isReadable(material_, primitive_, symbol - model.symbolOfTexture(0)));
+    }
+    const std::array<int, 2>& pair = model.pairs[static_cast<std::size_t>(symbol - model.symbolOfPair(0))];
+    return certain(sameTexture(material_.textures[static_cast<std::size_t>(pair[0])],
+                               material_.textures[static_cast<std::size_t>(pair[1])]));
+}
+
+bool MaterialFacts::hasTangents() const {
+    return primitive_.hasTangents && primitive_.hasNormals;
+}
+
+bool MaterialFacts::readsTexCoord(int set) const {
+    const MaterialModel& model = material_.model();
+    const auto inKey = [this](const Feature& feature) { return (key_ & feature.mask()) != 0; };
+    for (const Feature& feature : model.features) {
+        if (!inKey(feature)) {
+            continue;
+        }
+        if (feature.texture >= 0) {
+            if (!feature.hasOwnCoordinates &&
+                material_.textures[static_cast<std::size_t>(feature.texture)].texCoord == set) {
+                return true;
+            }
+            continue;
+        }
+        // If the primitive has no tangents, the direction comes from texture coordinates: those of a texture
+        // that is read, or else the first set that exists.
+        const int lobe = static_cast<int>(&feature - model.features.data());
+        const bool derives = feature.needsTangents && !hasTangents() &&
+                             std::ranges::none_of(model.features, [&](const Feature& other) {
+                                 return other.texture >= 0 && other.needsTangents && inKey(other) &&
+                                        (other.lobe < 0 || other.lobe == lobe);
+                             });
+        if (derives && set == (primitive_.hasTexCoords0 ? 0 : 1)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+Certainty MaterialFacts::fact(Fact fact) const {
+    const MaterialModel& model = material_.model();
+    switch (fact) {
+        case Fact::Normal:
+            return certain(primitive_.hasNormals);
+        case Fact::Tangent:
+            return certain(primitive_.hasTangents);
+        case Fact::TexCoord0:
+            return certain(primitive_.hasTexCoords0);
+        case Fact::TexCoord1:
+            return certain(primitive_.hasTexCoords1);
+        case Fact::GivesColors:
+            return certain(primitive_.colors != ColorContent::None);
+        case Fact::DoubleSided:
+            return certain(material_.doubleSided);
+        case Fact::Mask:
+            return certain(material_.alphaMode == AlphaMode::Mask);
+        case Fact::Blend:
+            return certain(material_.alphaMode == AlphaMode::Blend);
+        case Fact::RaysTestAlpha:
+            return certain(options_.alpha == AlphaPolicy::Tested);
+        case Fact::ReadsTexCoord0:
+            return certain(readsTexCoord(0));
+        case Fact::ReadsTexCoord1:
+            return certain(readsTexCoord(1));
+        case Fact::MovesTextures:
+            return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
+                return feature.texture >= 0 && (key_ & feature.mask()) != 0 &&
+                       isMoved(material_.textures[static_cast<std::size_t>(feature.texture)]);
+            }));
+        case Fact::GivesTransforms:
+            return certain(std::ranges::any_of(material_.textures, [](const TextureInfo& info) {
+                return info.hasTransform || isMoved(info);
+            }));
+        case Fact::NeedsTangents:
+            return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
+                return feature.needsTangents && (key_ & feature.mask()) != 0;
+            }));
+        case Fact::Color:
+        case Fact::Count:
+            break;
+    }
+    return Certainty::Unknown;
+}
+
+}  // namespace glint

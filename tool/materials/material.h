@@ -1,0 +1,188 @@
+// The materials that planning reads. Which parameters and textures they have is declared
+// (materials/material_model.h).
+#pragma once
+
+#include "materials/material_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// KHR_texture_transform: uv' = T(offset) R(rotation) S(scale) uv; rotation in radians, counter-clockwise.
+struct TextureTransform {
+    std::array<float, 2> offset{0.0F, 0.0F};
+    float rotation = 0.0F;
+    std::array<float, 2> scale{1.0F, 1.0F};
+
+    bool operator==(const TextureTransform&) const = default;
+};
+
+struct TextureInfo {
+    int texture = -1;  // index into Scene::textures; -1 where the slot is empty
+    int texCoord = 0;  // the UV set; the extension's override is already applied
+    TextureTransform transform;
+    bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
+    bool moves = false;         // An animation changes the transform.
+};
+
+enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
+
+// The numbers of one parameter of a material, to which it refers. `Number` is float or const float.
+template <typename Number>
+class BasicParameterValue {
+public:
+    explicit BasicParameterValue(std::span<Number> numbers) : numbers_(numbers) {}
+    BasicParameterValue(const BasicParameterValue&) = default;
+    BasicParameterValue& operator=(const BasicParameterValue&) = delete;
+    ~BasicParameterValue() = default;
+
+    // The first number.
+    operator float() const {
+        return numbers_[0];
+    }
+    Number& operator[](std::size_t channel) const {
+        return numbers_[channel];
+    }
+    // Sets all numbers to one value, or each to its own. `values` must have as many as the parameter.
+    const BasicParameterValue& operator=(float value) const {
+        std::ranges::fill(numbers_, value);
+        return *this;
+    }
+    const BasicParameterValue& operator=(std::span<const float> values) const {
+        assert(values.size() == numbers_.size());
+        std::ranges::copy(values, numbers_.begin());
+        return *this;
+    }
+    const BasicParameterValue& operator=(std::initializer_list<float> values) const {
+        return *this = std::span(values.begin(), values.size());
+    }
+    std::size_t size() const {
+        return numbers_.size();
+    }
+    auto begin() const {
+        return numbers_.begin();
+    }
+    auto end() const {
+        return numbers_.end();
+    }
+    template <std::size_t Count>
+    bool operator==(const std::array<float, Count>& values) const {
+        return std::ranges::equal(numbers_, values);
+    }
+
+private:
+    std::span<Number> numbers_;
+};
+using ParameterValue = BasicParameterValue<float>;
+using ConstParameterValue = BasicParameterValue<const float>;
+
+// Values are the declared defaults until something sets them. The model must outlive the material.
+class Material {
+public:
+    explicit Material(const MaterialModel& model = builtinMaterialModel());
+
+    std::string name;
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    bool doubleSided = false;
+    std::vector<float> values;          // by Parameter::first
+    std::vector<TextureInfo> textures;  // by index into MaterialModel::textures
+    std::vector<std::uint8_t> given;  // by index into MaterialModel::objects: 1 if the file gives the object
+    // The values that an animation gives each number, by its index in `values`; empty if none changes.
+    // Planning reads them in place of the numbers.
+    std::vector<ValueInterval> ranges;
+    // Material extensions that the file uses for this material and that Glint does not shade.
+    std::vector<std::string> unsupportedExtensions;
+
+    const MaterialModel& model() const {
+        return *model_;
+    }
+    // Requires a name that the model has.
+    ParameterValue operator[](std::string_view parameter);
+    ConstParameterValue operator[](std::string_view parameter) const;
+    TextureInfo& texture(std::string_view texture);
+    const TextureInfo& texture(std::string_view texture) const;
+    // Sets parameters of an extension, and that the file gives it.
+    void give(std::string_view object);
+    bool gives(std::string_view object) const;
+    // Whether a texture is colour, in sRGB; its alpha, where something reads that, is linear all the same.
+    bool isColor(int texture) const;
+
+    // Whether the material reads an object of its JSON. It does not read the base model that another one
+    // replaces.
+    bool reads(int object) const;
+    // Whether no light changes what the surface shows.
+    bool isUnlit() const;
+
+private:
+    const MaterialModel* model_;
+};
+
+enum class ColorContent : std::uint8_t {
+    None,   // no COLOR_0
+    White,  // COLOR_0 is (1, 1, 1, 1) everywhere, so it changes nothing.
+    Varying
+};
+
+// The facts about a primitive that planning needs: its material and which attributes it has.
+struct PrimitiveInputs {
+    int mesh = 0;       // index into Scene::meshes
+    int primitive = 0;  // within the mesh
+    int material = 0;   // always valid
+    bool hasNormals = false;
+    bool hasTangents = false;
+    bool hasTexCoords0 = false;
+    bool hasTexCoords1 = false;
+    ColorContent colors = ColorContent::None;
+    double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
+
+    bool hasTexCoords(int set) const {
+        return set == 0 ? hasTexCoords0 : set == 1 && hasTexCoords1;
+    }
+};
+
+enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
+
+struct KeyOptions {
+    AlphaPolicy alpha = AlphaPolicy::Opaque;
+    // The lobes that a key may have. If a lobe is left out, inputs that only this lobe reads are left out
+    // too.
+    FeatureMask keptLobes = kLobeMask;
+};
+
+// Returns whether the slot has a texture whose UV set the primitive has and Glint reads.
+bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture);
+
+// What is known of a material on a primitive. A parameter that a readable texture scales has the interval of
+// all products with numbers in [0, 1]. The objects that it refers to must outlive it.
+class MaterialFacts final : public Facts {
+public:
+    enum class Textures : std::uint8_t { Scale, Ignored };
+
+    // `key` holds the features that are known to be in the key.
+    MaterialFacts(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
+                  const FeatureMask& key, Textures textures = Textures::Scale);
+
+    Channels number(int symbol) const override;
+    Certainty condition(int symbol) const override;
+
+private:
+    Certainty fact(Fact fact) const;
+    bool readsTexCoord(int set) const;
+    bool hasTangents() const;
+
+    const Material& material_;
+    const PrimitiveInputs& primitive_;
+    const KeyOptions& options_;
+    const FeatureMask& key_;
+    Textures textures_;
+};
+
+}  // namespace glint

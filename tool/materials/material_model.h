@@ -1,0 +1,257 @@
+// What materials are made of: parameters, textures and features, as shaders/materials/*/*.json declare them.
+// The model is data. materials/declarations.h reads it; importing, planning, records and documents follow
+// from it.
+#pragma once
+
+#include "materials/expression.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// A set of features by their bits.
+//
+//   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
+//   bits 32..63  inputs: where the surface's parameters are read from
+//
+// If materials of a user's own have more inputs than fit, these take bits from 31 downwards.
+using FeatureMask = std::uint64_t;
+
+inline constexpr FeatureMask kLobeMask = 0xFFFFFFFFULL;
+inline constexpr int kFirstInput = 32;
+inline constexpr int kFeatureBits = 64;
+
+constexpr FeatureMask bitMask(int bit) {
+    return FeatureMask{1} << static_cast<unsigned>(bit);
+}
+
+// The stage at which a feature's GLSL runs.
+enum class Stage : std::uint8_t {
+    Attributes,   // what a vertex brings
+    Coordinates,  // UVs
+    Base,         // a base model, without which no hit can do
+    Surface,      // base colour, normal, roughness
+    Layer,        // a lobe
+    Emission,
+    Opacity,
+};
+
+// An object in the JSON of a material that holds parameters and textures.
+struct MaterialObject {
+    std::string name;  // "KHR_materials_sheen", "pbrMetallicRoughness", or empty for the material itself
+    bool isExtension = false;  // below "extensions"
+    // The object that a material with this one does not read, and the values that its parameters then have.
+    // -1: none.
+    int replaces = -1;
+    struct Setting {
+        int parameter = 0;
+        float value = 0.0F;
+    };
+    std::vector<Setting> settings{};
+};
+
+// A parameter of a material: one to four adjacent numbers of Material::values.
+struct Parameter {
+    std::string name;  // unique in the model
+    int object = 0;
+    // The place below its object: "clearcoatFactor", "normalTexture/scale".
+    std::string place;
+    std::string type;  // in GLSL: "float", "vec2", "vec3", "vec4"
+    std::string unit{};
+    std::string about{};
+    int first = 0;  // index into Material::values
+    int channels = 1;
+    std::array<float, 4> fallback{};  // The value that a material has whose file gives none.
+    // Values outside of the range are clamped. A parameter whose upper end is infinite may itself be
+    // infinite.
+    double low = 0.0;
+    double high = 0.0;
+    std::optional<double> also{};  // one further value that is valid
+    bool isAngle = false;          // in radians; reduced to one turn
+    int aliasOf = -1;              // the parameter whose numbers it sets, or -1
+    int scaledBy = -1;             // the texture that multiplies it by numbers in [0, 1], or -1
+    int feature = -1;              // Records have the parameter if a key has this feature; -1: always.
+    bool inRecord = true;
+
+    bool isValid(double value) const;
+    // Returns the value as a material stores it: within the range, angles within half a turn.
+    float hold(double value) const;
+};
+
+// A field of the record that follows from parameters.
+struct DerivedField {
+    std::string name;
+    std::string type;
+    std::string unit{};
+    std::string about{};
+    int feature = -1;
+    std::vector<Expression> channels;  // one expression for all channels, or one for each
+    int count = 1;                     // channels of the field
+};
+
+// A texture that a material can have. Two places can fill one, because there are two base models.
+struct MaterialTexture {
+    std::string name;  // "clearcoatTexture"
+    int feature = 0;   // index into MaterialModel::features
+    struct Place {
+        int object = 0;
+        std::string member;
+        bool isColor = false;  // sRGB; alpha is linear all the same
+    };
+    std::vector<Place> places;
+};
+
+// A reason why a feature that the file asks for changes nothing.
+struct NeutralReason {
+    Expression when;
+    std::string because;
+    // The reason holds only in keys that have this feature, or that lack that one. -1: in all.
+    int onlyWith = -1;
+    int onlyWithout = -1;
+};
+
+// A feature leaves others out of the keys that have it.
+struct Exclusion {
+    int by = 0;  // index into MaterialModel::features
+    FeatureMask excluded = 0;
+    std::string because;
+};
+
+struct FeatureCost {
+    double instructions = 0.0;
+    double fetches = 0.0;
+};
+
+struct Feature {
+    int bit = 0;
+    bool isLobe = false;
+    std::string name;       // name in the manifest: "baseColorTexture"
+    std::string shortName;  // part of a case's name: "BaseTex"
+    std::string macro;      // macro in GLSL: "GLINT_BASE_COLOR_TEXTURE"
+    std::string gltf;       // its place in glTF
+    std::string about{};
+    Stage stage = Stage::Surface;
+    int object = -1;                    // the extension whose presence asks for it, or -1
+    std::optional<Expression> given{};  // If there is one, it says whether the file asks for the feature.
+    std::vector<NeutralReason> neutral{};
+    int texture = -1;  // index into MaterialModel::textures: the feature is that this is read
+    int lobe = -1;     // the feature without which the texture is not read, or -1
+    bool needsTangents = false;
+    bool hasOwnCoordinates = false;  // the texture's GLSL makes its coordinates; it needs no UV set
+    bool isOfBase = false;           // Hits keep it with --hit-lobes base.
+    FeatureCost cost{};
+
+    FeatureMask mask() const {
+        return bitMask(bit);
+    }
+    // Returns when the feature is given but changes nothing, in words.
+    std::string neutralText() const;
+};
+
+// The GLSL of a feature, in files of its folder. Its functions begin with the feature's name.
+struct FeatureCode {
+    std::string name;  // of the declaration: "clearcoat"
+    int feature = -1;  // Keys without this feature do not run the code; -1: all keys run it.
+    int unless = -1;   // Keys with this feature do not run it.
+    // Names of files as an #include gives them, empty where there is no such function. surface:
+    // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); layer: the struct Clearcoat
+    // and the functions that shaders/bsdf/layer.glsl lists.
+    std::string surface{};
+    std::string bsdf{};
+    std::string layer{};
+    std::string emission{};
+    bool coversEmission = false;  // the layer takes what it reflects from the emission, too
+    bool isTraced = false;        // rays may trace the layer's reflection
+    bool isOfPack = false;        // of a user's own
+};
+
+// What a material may do with light, by which effects are chosen.
+enum class Behaviour : std::uint8_t { Reflects, Transmits, Scatters, Emits };
+
+struct BehaviourRule {
+    Behaviour does = Behaviour::Reflects;
+    int object = 0;  // the rule counts only if the material reads this object
+    Expression when;
+    std::optional<Expression> roughness{};  // of Reflects
+    std::optional<Expression> value{};      // replaces {} in the text
+    std::string text{};
+    std::string textureText{};  // where only a texture can make it as smooth as it has to be
+};
+
+// Symbols of expressions. Parameters come first, by their index.
+enum class Fact : std::uint8_t {
+    Normal,
+    Tangent,
+    TexCoord0,
+    TexCoord1,
+    Color,        // a number: the least and greatest of COLOR_0
+    GivesColors,  // the primitive has COLOR_0
+    DoubleSided,
+    Mask,
+    Blend,
+    RaysTestAlpha,   // the package tests alpha
+    ReadsTexCoord0,  // a texture that the key reads uses the set
+    ReadsTexCoord1,
+    MovesTextures,    // a texture that the key reads has a transform
+    GivesTransforms,  // some texture has one
+    NeedsTangents,    // a feature of the key reads tangents
+    Count
+};
+
+// A file of GLSL, by the name that an #include gives.
+struct ModelSource {
+    std::string name;
+    std::string text;
+};
+
+class MaterialModel {
+public:
+    std::vector<MaterialObject> objects;  // The first is the material itself.
+    std::vector<Parameter> parameters;
+    std::vector<DerivedField> derived;
+    std::vector<MaterialTexture> textures;
+    std::vector<Feature> features;  // by bit
+    std::vector<int> order;         // indices into `features`, in the order of evaluation
+    std::vector<Exclusion> exclusions;
+    std::vector<BehaviourRule> behaviours;
+    std::vector<FeatureCode> code;          // in the order in which it runs
+    std::vector<ModelSource> sources;       // GLSL of packs; that of Glint's own features is embedded
+    FeatureMask unlit = 0;                  // features without light
+    FeatureMask lobes = 0;                  // features that are lobes
+    int valueCount = 0;                     // length of Material::values
+    std::vector<std::array<int, 2>> pairs;  // textures that same() compares
+
+    // Each returns the index of that name, or -1.
+    int findParameter(std::string_view name) const;
+    int findTexture(std::string_view name) const;
+    int findFeature(std::string_view name) const;
+    int findObject(std::string_view name) const;
+
+    // Returns the feature's bit, or 0 if there is no such feature.
+    FeatureMask mask(std::string_view feature) const;
+    // Returns the names of the features of `mask`, in the order of bits.
+    std::vector<std::string_view> names(FeatureMask mask) const;
+    // Returns the base models, without which no hit can do.
+    FeatureMask baseModels() const;
+    // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
+    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it.
+    std::string featureDefines() const;
+
+    // Numbers of symbols. The kinds follow each other.
+    int symbolOf(Fact fact) const;
+    int symbolOfFeature(int feature) const;  // has(feature)
+    int symbolOfTexture(int texture) const;  // readable(texture)
+    int symbolOfPair(int pair) const;        // same(texture, texture)
+};
+
+// The model of glTF's core and of the extensions that Glint shades. It is read once, from the declarations
+// that are embedded in the library, and lives as long as the program.
+const MaterialModel& builtinMaterialModel();
+
+}  // namespace glint
