@@ -53,15 +53,14 @@ int run(const Console& console, const BenchArguments& arguments) {
     console.progress("reading " + arguments.render.scene);
     ImportOptions import;
     import.decodeImages = true;
-    import.variant = arguments.render.reading.variant;
-    import.strictPaths = arguments.render.reading.strictPaths;
+    import.variant = arguments.render.variant;
+    import.strictPaths = arguments.render.strictPaths;
     const Result<Scene> scene = importScene(arguments.render.scene, import);
     if (!scene) {
         return fail(scene.error());
     }
     console.report(scene->warnings);
-    const Result<measure::PlanChoice> plan =
-        measure::choosePlan(arguments.render.plan, SceneList({&*scene, 1}));
+    const Result<measure::PlanChoice> plan = measure::choosePlan(arguments.render, SceneList({&*scene, 1}));
     if (!plan) {
         return fail(plan.error());
     }
@@ -76,7 +75,7 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.viewWords = arguments.viewWords;
     report.scene.file = arguments.render.scene;
     report.rounds = static_cast<std::uint32_t>(arguments.rounds);
-    report.seed = static_cast<std::uint32_t>(arguments.render.seed) + 1;
+    report.seed = arguments.render.frame.seed + 1;
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);
