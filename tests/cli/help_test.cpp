@@ -31,8 +31,10 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
     const std::vector<Words> expected{
         {"compile", "--strategy auto|all|LIST how hits can be shaded, separated by commas;"},
         {"compile",
-         "--tracer all|LIST what traces rays, separated by commas; ray-pipeline: for devices without ray "
-         "queries; hit-shaders always has its own"},
+         "--tracer all|LIST what traces rays, separated by commas; hit-shaders always has its own; "
+         "ray-query: "
+         "compute shaders trace; ray-pipeline: ray generation shaders trace, for devices without ray "
+         "queries"},
         {"compile", "what is kept of a hit between passes (visibility, sorted-uber);"},
         {"compile",
          "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no limit, "
@@ -43,8 +45,8 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
         {"render", "how visibility and sorted-uber sort hits by shader; auto: by the device and the number"},
         {"render", "any message is an error; also checks the order of hits"},
         {"render", "1 to 16384 each way, 67108864 in all"},
-        {"render", "(-360 to 360, default: 0; needs --environment)"},
-        {"render", "(0 to 1e9, default: 1; needs --environment)"},
+        {"render", "needs --environment (-360 to 360, default: 0)"},
+        {"render", "needs --environment (0 to 1e9, default: 1)"},
     };
     for (const Words& words : expected) {
         EXPECT_NE(help(words.command).find(words.text), std::string::npos) << words.text << "\n"

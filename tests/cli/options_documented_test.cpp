@@ -89,7 +89,8 @@ std::map<std::string, std::string> rowsOf(const std::string& section) {
 TEST_F(DocumentedOptions, AreThoseOfTheProgram) {
     std::map<std::string, std::string> sections = sectionsOf(readText(GLINT_SOURCE_DIR "/docs/cli.md"));
     // The rows of these sections say which commands have the option.
-    const std::map<std::string, std::string> shared = rowsOf(sections["What shaders are made"]);
+    const std::map<std::string, std::string> shared =
+        rowsOf(sections["What shaders are made"] + sections["Settings"]);
     const std::map<std::string, std::string> reporting = rowsOf(sections["What is reported"]);
     ASSERT_FALSE(shared.empty());
     ASSERT_FALSE(reporting.empty());

@@ -76,7 +76,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         {{"explain", "a.gltf", "b.gltf"}, "b.gltf"},
         {{"compile", "a.gltf", "-o", "x", "--merge", "famly"}, "did you mean family?"},
         {{"compile", "a.gltf", "-o", "x", "--strategy", "vis"},
-         "none of uber, visibility, sorted-uber, hit-shaders, all"},
+         "none of auto, uber, visibility, sorted-uber, hit-shaders, all"},
         {{"compile", "a.gltf", "-o", "x", "--emit", "glsl,heder"}, "did you mean header?"},
         {{"compile", "a.gltf", "-o", "x", "--max-shaders", "-1"}, "from 0 to"},
         {{"compile", "a.gltf", "-o", "x", "--jobs", "many"}, "\"many\""},

@@ -186,7 +186,7 @@ protected:
         const std::string what =
             fmt::format("{}: {}, {}, merge {}, shadows {}, ordering {}, binning {}", GetParam().name,
                         package::nameOf(combination.way.strategy), package::nameOf(combination.way.tracer),
-                        toString(combination.merge), package::nameOf(combination.shadows),
+                        nameOf(combination.merge), package::nameOf(combination.shadows),
                         combination.ordering ? package::nameOf(*combination.ordering) : "-",
                         static_cast<unsigned>(combination.binning));
         FrameCounters counters;

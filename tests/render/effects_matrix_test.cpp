@@ -81,8 +81,7 @@ std::vector<std::string> passesOf(Renderer& renderer) {
     std::vector<std::string> names;
     for (const PassTiming& timing : timings ? *timings : std::vector<PassTiming>{}) {
         // Counts one for each case, without the name of the case.
-        names.push_back(timing.name.starts_with("shade ") && timing.name != "shade miss" ? "shade"
-                                                                                         : timing.name);
+        names.push_back(timing.pass == Pass::ShadeCase ? "shade" : timing.name);
     }
     return names;
 }

@@ -67,7 +67,7 @@ protected:
                     reference = image;
                 }
                 expectSameImage(image, reference,
-                                std::string(name(strategy)) + ", merge " + std::string(toString(merge)));
+                                std::string(name(strategy)) + ", merge " + std::string(nameOf(merge)));
             }
         }
     }

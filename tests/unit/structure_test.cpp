@@ -20,14 +20,15 @@ namespace fs = std::filesystem;
 
 // The parts of the tool, from what knows least to what knows most. A part includes itself and the parts
 // before it.
-constexpr std::string_view kParts[] = {"base",      "materials",  "plan",    "gltf",    "scene",
-                                       "spirv",     "cache",      "emit",    "inspect", "image",
-                                       "synthetic", "scene_view", "measure", "cli"};
-// The first part that may use the runtime and Vulkan, and not only the headers that say what a package is.
+constexpr std::string_view kParts[] = {"base",  "materials", "plan",       "gltf",    "scene",
+                                       "spirv", "cache",     "settings",   "emit",    "inspect",
+                                       "image", "synthetic", "scene_view", "measure", "cli"};
+// The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
+// what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";
-constexpr std::string_view kPlainHeaders[] = {"glint/effects.h", "glint/embedded_file.h",
-                                              "glint/package_format.h", "glint/package_modules.h",
-                                              "glint/result.h"};
+constexpr std::string_view kPlainHeaders[] = {
+    "glint/effects.h",         "glint/embedded_file.h",    "glint/names.h",  "glint/package_format.h",
+    "glint/package_modules.h", "glint/renderer_options.h", "glint/result.h", "glint/scene_view.h"};
 
 std::optional<std::size_t> rankOf(std::string_view part) {
     const auto* const found = std::ranges::find(kParts, part);

@@ -51,7 +51,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    const Result<ImportOptions> import = importOptions(arguments.render.reading, true);
+    const Result<ImportOptions> import = importOptions(arguments.render, true);
     if (!import) {
         return fail(import.error());
     }
@@ -60,8 +60,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(scene.error());
     }
     console.report(scene->warnings);
-    const Result<measure::PlanChoice> plan =
-        measure::choosePlan(arguments.render.plan, SceneList({&*scene, 1}));
+    const Result<measure::PlanChoice> plan = measure::choosePlan(arguments.render, SceneList({&*scene, 1}));
     if (!plan) {
         return fail(plan.error());
     }
@@ -76,7 +75,7 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.viewWords = arguments.viewWords;
     report.scene.file = arguments.render.scene;
     report.rounds = static_cast<std::uint32_t>(arguments.rounds);
-    report.seed = static_cast<std::uint32_t>(arguments.render.seed) + 1;
+    report.seed = arguments.render.frame.seed + 1;
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);

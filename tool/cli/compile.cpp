@@ -11,6 +11,7 @@
 #include "cli/compile/ninja_plan.h"
 #include "cli/compile/outputs.h"
 #include "cli/compile/summary.h"
+#include "cli/options/effect_options.h"
 #include "cli/options/lock_option.h"
 #include "cli/report.h"
 #include "cli/table.h"
@@ -99,7 +100,7 @@ Json toJson(const Outcome& outcome) {
             {"modules", nullptr},
             {"upToDate", nullptr},
             {"variant", textOrNull(outcome.scenes.variant())},
-            {"strategyChoice", choiceToJson(outcome.arguments.tracing.advice)},
+            {"strategyChoice", choiceToJson(outcome.arguments.settings.compile.strategyChoice)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return textOrNull(outcome.arguments.output); })},
@@ -130,8 +131,10 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
         {"keys present", fmt::format("{}", plan.keys.size())},
         {"cases", fmt::format("{}", caseCount(plan))}};
-    if (outcome.arguments.tracing.advice) {
-        rows.push_back({"strategies", fmt::format("{} (auto)", join(outcome.arguments.tracing.strategies))});
+    if (outcome.arguments.settings.compile.strategyChoice) {
+        rows.push_back(
+            {"strategies",
+             fmt::format("{} (auto)", join(strategyNames(outcome.arguments.settings.compile.strategies)))});
     }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
@@ -192,24 +195,23 @@ std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes) {
     return warnings;
 }
 
-// Replaces "auto" among the strategies by the one that should be fastest for a frame of 1920 x 1080 of each
-// scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the choice is
-// hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
+// Adds to the strategies, if they contain "auto", the one that should be fastest for a frame of 1920 x 1080
+// of each scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the
+// choice is hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
 // adviseStrategy(). `known` is the plan with these options, or null if it has not been made.
 Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const Plan* known,
                         CompileArguments& arguments) {
-    std::vector<std::string>& names = arguments.tracing.strategies;
-    const auto automatic = std::ranges::find(names, measure::kAutoStrategy);
-    if (automatic == names.end()) {
+    Settings& settings = arguments.settings;
+    if (!settings.advisesStrategy) {
         return okStatus();
     }
-    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.calibration, false);
+    const Result<measure::KnownCosts> costs = measure::knownCosts(settings.calibration, false);
     if (!costs) {
         return costs.error();
     }
     FrameShape shape;
     shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects;
-    shape.maxReflectionRoughness = static_cast<float>(arguments.effects.maxRoughness);
+    shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
     const Plan made = known != nullptr ? Plan() : makePlan(scenes.materials(), scenes.primitives(), plan);
     Result<StrategyAdvice> advice = measure::adviseStrategy(
         *costs, measure::roundsOf(scenes, known != nullptr ? *known : made, plan, shape),
@@ -217,11 +219,10 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const 
     if (!advice) {
         return advice.error();
     }
-    *automatic = advice->choice.strategy;
-    if (measure::strategyNamed(advice->choice.strategy) == package::kStrategyHitShaders) {
-        names.emplace_back(package::nameOf(package::kStrategyUber));
-    }
-    arguments.tracing.advice = std::move(*advice);
+    const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
+    settings.compile.strategies |=
+        chosen | (chosen == package::kStrategyHitShaders ? std::uint32_t{package::kStrategyUber} : 0U);
+    settings.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }
 
@@ -310,7 +311,7 @@ int compile(const Console& console, const CompileArguments& given) {
         console.report(diagnostics);
     };
     console.progress("reading " + join(arguments.scenes));
-    const Result<ImportOptions> import = importOptions(arguments.reading, false);
+    const Result<ImportOptions> import = importOptions(arguments.settings, false);
     if (!import) {
         return fail(console, import.error());
     }
@@ -319,7 +320,7 @@ int compile(const Console& console, const CompileArguments& given) {
         return fail(console, scenes.error());
     }
     const SceneList list(*scenes);
-    Result<measure::PlanChoice> plan = measure::choosePlan(arguments.plan, list);
+    Result<measure::PlanChoice> plan = measure::choosePlan(arguments.settings, list);
     if (!plan) {
         return fail(console, plan.error());
     }
@@ -337,7 +338,7 @@ int compile(const Console& console, const CompileArguments& given) {
         !settled) {
         return fail(console, settled.error());
     }
-    if (const std::optional<StrategyAdvice>& advice = arguments.tracing.advice) {
+    if (const std::optional<StrategyAdvice>& advice = arguments.settings.compile.strategyChoice) {
         console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
     }
     report(effectWarnings(list, settingsOf(arguments, plan->options)));

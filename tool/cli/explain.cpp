@@ -6,7 +6,7 @@
 #include "cli/explain/plan_text.h"
 #include "cli/options/effect_options.h"
 #include "cli/options/lock_option.h"
-#include "cli/options/tracing_options.h"
+#include "cli/options/setting_options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/json.h"
@@ -31,10 +31,8 @@ namespace {
 struct ExplainArguments {
     std::string scene;
     std::string material;
-    measure::ReadingSettings reading;
-    std::string calibration;
     bool wholePlan = false;
-    measure::PlanSettings plan;
+    Settings settings;
     LockArguments lock;
 };
 
@@ -240,7 +238,7 @@ Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& p
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<ImportOptions> import = importOptions(arguments.reading, false);
+    const Result<ImportOptions> import = importOptions(arguments.settings, false);
     if (!import) {
         console.report(import.error());
         return kExitFailed;
@@ -251,7 +249,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.calibration, false);
+    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.settings.calibration, false);
     if (!costs) {
         console.report(costs.error());
         return kExitFailed;
@@ -262,7 +260,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(materials.error());
         return kExitFailed;
     }
-    Result<measure::PlanChoice> choice = measure::choosePlan(arguments.plan, scenes);
+    Result<measure::PlanChoice> choice = measure::choosePlan(arguments.settings, scenes);
     if (!choice) {
         console.report(choice.error());
         return kExitFailed;
@@ -297,8 +295,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     }
     if (console.isJson()) {
         Json result{{"scene", arguments.scene},
-                    {"merge", arguments.plan.merge},
-                    {"alpha", std::string(toString(planned.options.keys.alpha))},
+                    {"merge", nameOf(planned.options.merge)},
+                    {"alpha", nameOf(planned.options.keys.alpha)},
                     {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
                     {"variant", textOrNull(scene->variant)},
                     {"variants", scene->variants}};
@@ -347,13 +345,13 @@ void addExplain(CLI::App& app, Action& chosen) {
             "costs by the cost model of --merge auto, what shares it,\n"
             "and why")
         .excludes(&material);
-    addReadingOptions(command, arguments->reading);
-    addCalibration(command, arguments->calibration);
-    addPlanOptions(command, arguments->plan);
-    addProfileInput(command, arguments->plan);
+    addReadingOptions(command, arguments->settings);
+    addCalibration(command, arguments->settings);
+    addSettings(command, kOfExplain, arguments->settings);
+    addProfileInput(command, arguments->settings);
     addLockInput(command, arguments->lock);
-    command.callback([arguments, &chosen] {
-        settleProfile(arguments->plan);
+    command.callback([arguments, &command, &chosen] {
+        checkProfile(command, arguments->settings);
         chosen = [arguments](const Console& console) { return explain(console, *arguments); };
     });
 }

@@ -5,6 +5,7 @@
 #include "cli/table.h"
 #include "emit/package/json.h"
 #include "inspect/package.h"
+#include "plan/plan.h"
 
 #include <fmt/format.h>
 
@@ -176,7 +177,7 @@ Json toJson(const inspect::InspectedPackage& inspected) {
             {"strategies", strategyNames(package.shape().strategies)},
             {"tracers", tracerNames(package.shape().tracers)},
             {"merge", manifest.merge},
-            {"alpha", package.alphaTested() ? "tested" : "opaque"},
+            {"alpha", nameOf(package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque)},
             {"scenes", scenesToJson(inspected)},
             {"settings",
              {{"hitLobes", manifest.hitLobes},
@@ -211,7 +212,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"position fetch", package.positionFetch() ? "yes" : "no"},
          {"sky", skyOf(package)},
          {"merge", manifest.merge},
-         {"alpha", package.alphaTested() ? "tested" : "opaque"},
+         {"alpha", std::string(nameOf(package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque))},
          {"hit lobes", hitLobesText(manifest)},
          {"energy compensation", manifest.energyCompensation ? "on" : "off"},
          {"texture LOD", manifest.textureLod},

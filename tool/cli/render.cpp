@@ -2,6 +2,7 @@
 #include "base/clock.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/options/effect_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/frames.h"
 #include "cli/render/pipeline_cache.h"
@@ -44,11 +45,11 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         if (!package) {
             return std::move(package);
         }
-        const scene_view::PackageDemand demand{measure::strategyOf(arguments), measure::tracerOf(arguments),
-                                               !arguments.environment.file.empty()};
+        const scene_view::PackageDemand demand{*arguments.strategy, arguments.renderer.tracer,
+                                               !arguments.environment.empty()};
         Status checked = scene_view::checkPackage(*package, arguments.package, demand, scene);
         const bool isLit =
-            arguments.addsSun(scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
+            measure::addsSun(arguments, scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
                 return light.shines() || light.canShine;
             });
         if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
@@ -63,18 +64,14 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
     console.report(effectWarnings(SceneList({&scene, 1}), settings));
     Result<Package> package = scene_view::compileAndLoad(scene, settings);
     report.compileMs = millisecondsSince(start);
-    report.merge = std::string(toString(plan.merge));
+    report.merge = nameOf(plan.merge);
     return package;
 }
 
 // `given` is the package of --package, if there is one. Its errors are reported when it is used.
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
                                              const std::optional<Result<Package>>& given) {
-    HeadlessOptions options;
-    options.validation = arguments.validate ? Validation::Synchronization : Validation::Off;
-    options.deviceName = arguments.device;
-    options.positionFetch = arguments.tracing.positionFetch;
-    options.shaderFloat16 = arguments.accuracy.halves();
+    HeadlessOptions options = measure::deviceOptions(arguments);
     options.pipelineStatistics = arguments.pipelineStatistics;
     if (given && *given) {
         const Package& package = **given;
@@ -88,7 +85,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
 Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
                                                        const RenderArguments& arguments, Context& context,
                                                        RenderReport& report) {
-    const std::string& file = arguments.environment.file;
+    const std::string& file = arguments.environment;
     if (file.empty()) {
         return std::unique_ptr<Environment>();
     }
@@ -115,7 +112,7 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 Status settleStrategy(const Console& console, const PlanOptions& plan, const Context& context,
                       const Scene& scene, const std::optional<Result<Package>>& given,
                       RenderArguments& arguments, RenderReport& report) {
-    if (arguments.tracing.strategies.front() != measure::kAutoStrategy) {
+    if (arguments.strategy) {
         return okStatus();
     }
     if (given && !*given) {
@@ -131,8 +128,8 @@ Status settleStrategy(const Console& console, const PlanOptions& plan, const Con
     console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
     report.strategy = advice->choice.strategy;
     report.strategyChoice = *advice;
-    arguments.tracing.strategies = {advice->choice.strategy};
-    arguments.tracing.advice = std::move(*advice);
+    arguments.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
+    arguments.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }
 
@@ -250,7 +247,7 @@ Status render(const Console& console, const RenderArguments& asked, Scene& scene
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
-    report.alpha = package->alphaTested() ? "tested" : "opaque";
+    report.alpha = nameOf(package->alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque);
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
         report.caseNames.emplace_back(package->string(entry.name));
@@ -303,10 +300,11 @@ int run(const Console& console, const RenderArguments& arguments) {
     RenderReport report;
     report.scene = arguments.scene;
     report.image = arguments.output;
-    report.strategy = arguments.tracing.strategies.front();
-    report.samples = static_cast<std::uint32_t>(arguments.samples);
-    report.seed = static_cast<std::uint32_t>(arguments.seed);
-    measure::parseSize(arguments.size, report.width, report.height);
+    report.strategy = sweptSetting("strategy")->values.text(arguments);
+    report.samples = arguments.samples;
+    report.seed = arguments.frame.seed;
+    report.width = arguments.renderer.width;
+    report.height = arguments.renderer.height;
 
     const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
     Status status =
@@ -321,7 +319,7 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    const Result<ImportOptions> import = importOptions(arguments.reading, true);
+    const Result<ImportOptions> import = importOptions(arguments, true);
     if (!import) {
         console.report(import.error());
         return kExitFailed;
@@ -333,9 +331,9 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.report(scene->warnings);
     const SceneList scenes({&*scene, 1});
-    measure::PlanSettings planned = arguments.plan;
+    Settings planned = arguments;
     if (!arguments.package.empty()) {
-        planned.alpha = "opaque";  // The package has decided, so nothing is chosen here.
+        planned.alpha = AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
     }
     const Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
     if (!plan) {

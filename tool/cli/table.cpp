@@ -184,14 +184,14 @@ std::string formatFields(const Rows& rows, Detail detail) {
     return text;
 }
 
-std::string wrapped(const std::string& text) {
+std::string wrapped(const std::string& text, std::size_t width) {
     std::string result;
     std::size_t begin = 0;
     while (begin < text.size()) {
         const std::size_t end = std::min(text.find('\n', begin), text.size());
         const std::string line = text.substr(begin, end - begin);
         const bool isSet = line.starts_with(' ');
-        result += isSet ? line : fmt::format("{}", fmt::join(linesOf(line, kTableWidth), "\n"));
+        result += isSet ? line : fmt::format("{}", fmt::join(linesOf(line, width), "\n"));
         result += end < text.size() ? "\n" : "";
         begin = end + 1;
     }

@@ -32,10 +32,10 @@ std::string formatTable(const std::vector<std::vector<std::string>>& rows, Detai
 // spaces, and continues below itself.
 std::string formatFields(const std::vector<std::vector<std::string>>& rows, Detail detail = Detail::Short);
 
-// Returns the text with line breaks instead of some spaces, so that its lines have at most kTableWidth
+// Returns the text with line breaks instead of some spaces, so that its lines have at most `width`
 // characters unless a word is longer. Existing line breaks stay, and lines that begin with a space are not
 // changed.
-std::string wrapped(const std::string& text);
+std::string wrapped(const std::string& text, std::size_t width = kTableWidth);
 
 // Names a shader for people: its ID, and its name, which is cut after a whole word if it is long: "12
 // Clearcoat_BaseTex…". The ID alone identifies the shader: `glint inspect --disassemble` accepts it, and

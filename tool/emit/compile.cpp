@@ -177,10 +177,6 @@ Result<Value> guarded(std::span<const Scene> scenes, const Work& work) {
 
 }  // namespace
 
-std::string_view toString(TextureLod lod) {
-    return lod == TextureLod::Cones ? "cones" : "mip0";
-}
-
 std::vector<std::string> strategyNames(std::uint32_t strategies) {
     std::vector<std::string> names;
     for (const package::Strategy strategy : package::kStrategies) {

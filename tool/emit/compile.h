@@ -3,9 +3,8 @@
 
 #include "base/files.h"
 #include "gltf/scene.h"
-#include "plan/effects.h"
 #include "plan/plan.h"
-#include "plan/strategy_choice.h"
+#include "settings/compile_settings.h"
 #include "spirv/statistics.h"
 
 #include <glint/package_modules.h>
@@ -23,39 +22,6 @@ namespace glint {
 
 class ModuleCache;
 
-// How the level of a texture that hits read is chosen.
-enum class TextureLod : std::uint8_t {
-    Cones,  // by the width of a ray cone
-    Mip0    // always the finest level
-};
-
-struct CompileSettings {
-    std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
-    std::uint32_t tracers = package::kTracerRayQuery;
-    package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
-    package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
-    bool environmentMap = false;  // Rays that leave the scene read an environment map instead of a gradient.
-    // With this, the strategies uber with ray queries and hit-shaders read the positions of hit triangles
-    // from the acceleration structure instead of the vertex buffer.
-    bool positionFetch = false;
-    PlanOptions plan;
-    EffectRequest effects{false, package::kEffectShadow | package::kEffectReflection};
-    // The renderer adds a light to those of the scenes, which --effects auto takes into account.
-    bool addsLight = false;
-    bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
-    TextureLod textureLod = TextureLod::Cones;
-    package::ShadingPrecision precision = package::ShadingPrecision::Single;
-    int jobs = 0;            // threads; 0 means one for each core
-    bool emitHeader = true;  // glint_tables.h
-    bool emitGlsl = false;   // writes the flattened sources, in glsl/
-    bool debugInfo = false;  // keeps names in the SPIR-V
-    // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.
-    std::optional<StrategyAdvice> strategyChoice{};
-    // The folder in which `glint compile-module` left the modules. If it is empty, modules are compiled here.
-    std::filesystem::path modules{};
-};
-
-std::string_view toString(TextureLod lod);
 // Returns the names of the strategies, or tracers, in a set of bits.
 std::vector<std::string> strategyNames(std::uint32_t strategies);
 std::vector<std::string> tracerNames(std::uint32_t tracers);

@@ -71,8 +71,8 @@ mustache::data makeContext(const SceneList& scenes, const Plan& plan, const Plan
     mustache::data context;
     context.set("version", std::string(toolVersion()));
     context.set("source", commentText(scenes.fileNames()));
-    context.set("merge", std::string(toString(options.merge)));
-    context.set("alpha", std::string(toString(options.keys.alpha)));
+    context.set("merge", std::string(nameOf(options.merge)));
+    context.set("alpha", std::string(nameOf(options.keys.alpha)));
     mustache::data cases(mustache::data::type::list);
     for (const Case& shaderCase : plan.cases) {
         if (!shaderCase.isRetired()) {

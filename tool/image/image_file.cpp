@@ -1,6 +1,7 @@
 #include "image/image_file.h"
 
 #include "base/files.h"
+#include "base/image_limits.h"
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/tone.h"
@@ -10,10 +11,6 @@
 namespace glint {
 
 namespace {
-
-constexpr std::int64_t kMaxImageSize = 16384;
-// This is 1 GiB as LinearImage, and limits what a small file can claim.
-constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
 
 std::string lowerCase(std::string text) {
     for (char& c : text) {

@@ -1,4 +1,5 @@
 #include "gltf/scene_list.h"
+#include "settings/table.h"
 #include "spirv/compiler.h"
 
 #include <glint/measure/bed.h>
@@ -22,17 +23,15 @@ namespace {
 
 // Opens the device with as many of its optional features as possible: those that the default needs, and those
 // that the sweep could use.
-Result<std::unique_ptr<Context>> openDevice(const RenderSettings& render, DeviceOptions& features) {
-    HeadlessOptions options;
-    options.validation = render.validate ? Validation::Synchronization : Validation::Off;
-    options.deviceName = render.device;
+Result<std::unique_ptr<Context>> openDevice(const Settings& render, DeviceOptions& features) {
+    const HeadlessOptions wanted = deviceOptions(render);
+    HeadlessOptions options = wanted;
     Result<std::unique_ptr<Context>> context = Diagnostic{};
     for (const DeviceOptions tried :
          {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
         // It is used if shaders can be compiled for it and the validation layers know it.
-        options.positionFetch =
-            render.tracing.positionFetch || (tried.positionFetch && supportsPositionFetch());
-        options.shaderFloat16 = render.accuracy.halves() || tried.float16;
+        options.positionFetch = wanted.positionFetch || (tried.positionFetch && supportsPositionFetch());
+        options.shaderFloat16 = wanted.shaderFloat16 || tried.float16;
         context = Context::createHeadless(options);
         if (context) {
             features = {options.positionFetch, options.shaderFloat16};
@@ -55,41 +54,17 @@ SceneSize sizeOf(const scene_view::SceneViewData& data) {
     return size;
 }
 
-// Returns as words the settings for which `decides` is true.
+// Returns as words the swept settings for which `decides` is true.
 template <typename Decides>
-std::string decided(const RenderSettings& render, const Decides& decides) {
-    Configuration configuration = configurationOf(render);
-    std::erase_if(configuration, [&](const auto& choice) { return !decides(choice.first); });
+std::string decided(const Settings& settings, const Decides& decides) {
+    Configuration configuration = configurationOf(settings);
+    std::erase_if(configuration, [&](const auto& choice) { return !decides(*sweptSetting(choice.first)); });
     return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
 }
 
 // A pass of a case counts with those of the others.
 std::string nameOfPass(const PassTiming& pass) {
     return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
-}
-
-HitPart partOf(Pass pass) {
-    switch (pass) {
-        case Pass::RayDispatch:
-            return HitPart::Dispatch;
-        case Pass::Trace:
-            return HitPart::Trace;
-        case Pass::Count:
-        case Pass::Offset:
-        case Pass::Copy:
-            return HitPart::Order;
-        case Pass::Uber:
-        case Pass::SortedUber:
-        case Pass::HitShaders:
-        case Pass::ShadeMiss:
-        case Pass::ShadeCase:
-            return HitPart::Shade;
-        case Pass::ShadowDispatch:
-        case Pass::Shadow:
-            return HitPart::Shadow;
-        default:
-            return HitPart::None;
-    }
 }
 
 }  // namespace
@@ -100,14 +75,6 @@ double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
         sum += stretch.pass == pass ? stretch.milliseconds : 0.0;
     }
     return sum;
-}
-
-HitTimes hitTimesOf(std::span<const PassTiming> passes) {
-    std::vector<PassTime> times;
-    for (const PassTiming& pass : passes) {
-        times.push_back({partOf(pass.pass), pass.milliseconds});
-    }
-    return hitTimesOf(times);
 }
 
 Result<Exposure> Mount::expose(std::uint32_t seed) const {
@@ -164,15 +131,12 @@ Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t sampl
     return renderer_->render(frame, samples);
 }
 
-Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const RenderSettings& base,
+Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const Settings& base,
                                                    const Scene& scene, ModuleCache* cache) {
     std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache));
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    parseSize(base.size, width, height);
     const scene_view::SceneViewData data = sceneView(base, scene);
-    const Result<scene_view::CameraChoice> camera =
-        scene_view::chooseCamera(scene, data, base.camera, static_cast<double>(width) / height);
+    const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(
+        scene, data, base.camera, static_cast<double>(base.renderer.width) / base.renderer.height);
     if (!camera) {
         return camera.error();
     }
@@ -190,10 +154,10 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     if (Status settled = bed->settleChoices(); !settled) {
         return settled.error();
     }
-    if (!base.environment.file.empty()) {
+    if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
-            scene_view::loadEnvironment(*bed->context_, base.environment.file, notes);
+            scene_view::loadEnvironment(*bed->context_, base.environment, notes);
         observer.report(notes);
         if (!environment) {
             return environment.error();
@@ -206,12 +170,12 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
 // A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
 // chosen for this scene.
 Status BenchBed::settleChoices() {
-    const Result<PlanChoice> plan = choosePlan(base_.plan, SceneList({&scene_, 1}));
+    const Result<PlanChoice> plan = choosePlan(base_, SceneList({&scene_, 1}));
     if (!plan) {
         return plan.error();
     }
-    base_.plan.alpha = toString(plan->options.keys.alpha);
-    if (base_.tracing.strategies.front() != kAutoStrategy) {
+    base_.alpha = plan->options.keys.alpha;
+    if (base_.strategy) {
         return okStatus();
     }
     std::vector<Diagnostic> warnings;
@@ -222,13 +186,13 @@ Status BenchBed::settleChoices() {
         return advice.error();
     }
     observer_.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
-    base_.tracing.strategies = {advice->choice.strategy};
+    base_.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
     return okStatus();
 }
 
-Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderSettings& render) {
+Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const Settings& render) {
     const SceneList scenes({&scene_, 1});
-    const Result<PlanChoice> plan = choosePlan(render.plan, scenes);
+    const Result<PlanChoice> plan = choosePlan(render, scenes);
     if (!plan) {
         return plan.error();
     }
@@ -239,8 +203,8 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderSetti
     } else {
         package = Package::load(render.package);
         if (package) {
-            const scene_view::PackageDemand demand{strategyOf(render), tracerOf(render),
-                                                   !render.environment.file.empty()};
+            const scene_view::PackageDemand demand{*render.strategy, render.renderer.tracer,
+                                                   !render.environment.empty()};
             if (Status checked = scene_view::checkPackage(*package, render.package, demand, scene_);
                 !checked) {
                 return checked.error();
@@ -264,13 +228,12 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const RenderSetti
 }
 
 Result<Mount> BenchBed::mount(const Configuration& configuration, const std::string& package) {
-    RenderSettings render = withSettings(base_, configuration);
+    Settings render = withSettings(base_, configuration);
     render.package = package;
-    const std::string key =
-        fmt::format("{} {}", package, decided(render, [](std::string_view setting) {
-                        // With --effects auto, the limit of roughness decides too.
-                        return stageOf(setting) == Stage::Compile || setting == "max-roughness";
-                    }));
+    const std::string key = fmt::format("{} {}", package, decided(render, [](const Descriptor& row) {
+                                            // With --effects auto, the limit of roughness decides too.
+                                            return isCompiled(row) || row.name == "max-roughness";
+                                        }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {
         Result<std::shared_ptr<MountedPackage>> made = mountPackage(render);
@@ -280,10 +243,9 @@ Result<Mount> BenchBed::mount(const Configuration& configuration, const std::str
         shared = std::move(*made);
         packages_[key] = shared;
     }
-    const std::string rendererKey =
-        fmt::format("{} {}", key, decided(render, [](std::string_view setting) {
-                        return setting == "ordering" || setting == "batch-effects";
-                    }));
+    const std::string rendererKey = fmt::format("{} {}", key, decided(render, [](const Descriptor& row) {
+                                                    return row.stage == SettingStage::Renderer;
+                                                }));
     std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
     if (!renderer) {
         Result<std::unique_ptr<Renderer>> made =
@@ -298,8 +260,8 @@ Result<Mount> BenchBed::mount(const Configuration& configuration, const std::str
     mount.package_ = std::move(shared);
     mount.renderer_ = std::move(renderer);
     mount.frame_ = frameOptions(render, camera_, sky_, environment_.get());
-    mount.samples_ = static_cast<std::uint32_t>(render.samples);
-    mount.ordersHits_ = (strategyOf(render) & package::kOrderedStrategies) != 0;
+    mount.samples_ = render.samples;
+    mount.ordersHits_ = (*render.strategy & package::kOrderedStrategies) != 0;
     return mount;
 }
 

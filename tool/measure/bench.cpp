@@ -82,7 +82,7 @@ private:
 
     // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
     Status makeTruth(const PlanOptions& plan) {
-        Facts facts = factsOf(bed_.base(), bed_.scene(), plan);
+        BenchFacts facts = factsOf(bed_.base(), bed_.scene(), plan);
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
@@ -212,7 +212,7 @@ private:
 };
 
 void describeScene(BenchBed& bed, BenchReport& report) {
-    const RenderSettings& render = bed.base();
+    const Settings& render = bed.base();
     BenchScene& scene = report.scene;
     const SceneSize size = bed.sceneSize();
     scene.triangles = size.triangles;
@@ -220,8 +220,9 @@ void describeScene(BenchBed& bed, BenchReport& report) {
     scene.materials = bed.scene().materials.size();
     scene.lights = bed.lights();
     scene.camera = bed.cameraName();
-    scene.environment = render.environment.file;
-    parseSize(render.size, scene.width, scene.height);
+    scene.environment = render.environment;
+    scene.width = render.renderer.width;
+    scene.height = render.renderer.height;
     report.machine = machineOf(bed.context());
 }
 

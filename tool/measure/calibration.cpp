@@ -219,13 +219,8 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<Context>> openCalibrationDevice(const RenderSettings& render) {
-    HeadlessOptions options;
-    options.validation = render.validate ? Validation::Synchronization : Validation::Off;
-    options.deviceName = render.device;
-    options.positionFetch = render.tracing.positionFetch;
-    options.shaderFloat16 = render.accuracy.halves();
-    return Context::createHeadless(options);
+Result<std::unique_ptr<Context>> openCalibrationDevice(const Settings& render) {
+    return Context::createHeadless(deviceOptions(render));
 }
 
 Status runCalibration(const Observer& observer, const CalibrationSettings& settings, Context& context,

@@ -16,12 +16,14 @@ package::Effect effectOf(synthetic::Coherence coherence) {
 }
 
 CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
-    TracingSettings tracing = settings.render.tracing;
-    tracing.strategies = strategiesFor(tracers);
-    CompileSettings compile;
-    tracing.apply(compile, tracers);
-    settings.render.accuracy.apply(compile);
-    compile.plan.merge = MergePolicy::None;
+    PlanOptions plan;
+    plan.merge = MergePolicy::None;
+    CompileSettings compile = compileSettings(settings.render, plan, tracers, {});
+    compile.strategies = 0;
+    for (const std::string& strategy : strategiesFor(tracers)) {
+        compile.strategies |= *valueNamed<package::Strategy>(strategy);
+    }
+    compile.addsLight = false;
     // The settings cover scenes with both kinds of rays, so that they can share a package.
     compile.effects = {false, package::kEffectReflection | package::kEffectIndirectDiffuse};
     if (settings.shadows) {

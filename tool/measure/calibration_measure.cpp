@@ -135,7 +135,7 @@ private:
             return okStatus();
         }
         RendererOptions rendering = rendererOptions(settings_.render);
-        rendering.strategy = strategyNamed(measure.strategy);
+        rendering.strategy = *valueNamed<package::Strategy>(measure.strategy);
         if (rendering.strategy == package::kStrategyHitShaders) {
             rendering.tracer.reset();
         }

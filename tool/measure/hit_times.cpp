@@ -2,6 +2,35 @@
 
 namespace glint::measure {
 
+namespace {
+
+// Returns null for passes of primary surfaces or of the picture, and for checks.
+double HitTimes::*partOf(Pass pass) {
+    switch (pass) {
+        case Pass::RayDispatch:
+            return &HitTimes::dispatch;
+        case Pass::Trace:
+            return &HitTimes::trace;
+        case Pass::Count:
+        case Pass::Offset:
+        case Pass::Copy:
+            return &HitTimes::order;
+        case Pass::Uber:
+        case Pass::SortedUber:
+        case Pass::HitShaders:
+        case Pass::ShadeMiss:
+        case Pass::ShadeCase:
+            return &HitTimes::shade;
+        case Pass::ShadowDispatch:
+        case Pass::Shadow:
+            return &HitTimes::shadow;
+        default:
+            return nullptr;
+    }
+}
+
+}  // namespace
+
 HitTimes& HitTimes::operator+=(const HitTimes& other) {
     dispatch += other.dispatch;
     trace += other.trace;
@@ -20,27 +49,11 @@ HitTimes& HitTimes::operator/=(double count) {
     return *this;
 }
 
-HitTimes hitTimesOf(std::span<const PassTime> passes) {
+HitTimes hitTimesOf(std::span<const PassTiming> passes) {
     HitTimes times;
-    for (const PassTime& pass : passes) {
-        switch (pass.part) {
-            case HitPart::Dispatch:
-                times.dispatch += pass.milliseconds;
-                break;
-            case HitPart::Trace:
-                times.trace += pass.milliseconds;
-                break;
-            case HitPart::Order:
-                times.order += pass.milliseconds;
-                break;
-            case HitPart::Shade:
-                times.shade += pass.milliseconds;
-                break;
-            case HitPart::Shadow:
-                times.shadow += pass.milliseconds;
-                break;
-            case HitPart::None:
-                break;
+    for (const PassTiming& pass : passes) {
+        if (double HitTimes::*const part = partOf(pass.pass)) {
+            times.*part += pass.milliseconds;
         }
     }
     return times;

@@ -165,8 +165,8 @@ void takeHits(const Profile& profile, const Profile& expected, const MaterialMod
 }
 
 // Decides what `--alpha auto` stands for, and says so where a scene has surfaces that are not opaque.
-void chooseAlpha(const PlanSettings& settings, const SceneList& scenes, PlanChoice& choice) {
-    if (settings.alpha == "auto" && hasAlphaMasks(scenes.materials(), scenes.primitives())) {
+void chooseAlpha(const Settings& settings, const SceneList& scenes, PlanChoice& choice) {
+    if (!settings.alpha && hasAlphaMasks(scenes.materials(), scenes.primitives())) {
         choice.options.keys.alpha = AlphaPolicy::Tested;
         choice.notes.push_back({Severity::Note, "alpha-tested", "",
                                 "the scene has alpha masks, so rays test them (--alpha tested)",
@@ -195,7 +195,7 @@ Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions&
         }
     }
     profile.variant = scenes.variant();
-    profile.alpha = toString(options.alpha);
+    profile.alpha = nameOf(options.alpha);
     profile.hitLobes = namesOf(*plan.model, options.keptLobes & plan.model->lobes);
     for (const Key& key : plan.keys) {
         ProfileKey entry;
@@ -237,9 +237,10 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
     return reader.ok() ? Result<Profile>(std::move(profile)) : Result<Profile>(reader.error());
 }
 
-Result<PlanChoice> choosePlan(const PlanSettings& settings, const SceneList& scenes) {
+Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes) {
     PlanChoice choice;
-    choice.options = settings.options();
+    choice.options = settings.compile.plan;
+    choice.options.keys.alpha = settings.alpha.value_or(AlphaPolicy::Opaque);
     chooseAlpha(settings, scenes, choice);
     if (settings.profile.empty()) {
         return choice;

@@ -1,10 +1,12 @@
 #include "measure/reference.h"
 
 #include "base/clock.h"
+#include "base/files.h"
 #include "cache/packing.h"
 #include "cache/program.h"
 #include "cache/store.h"
 #include "image/tone.h"
+#include "settings/table.h"
 
 #include <fmt/format.h>
 
@@ -28,31 +30,24 @@ constexpr std::uint32_t kFirstSeed = 0x51EED000U;
 
 // Returns everything that decides about the picture.
 Result<std::string> keyOf(BenchBed& bed, const Configuration& configuration) {
-    const RenderSettings& base = bed.base();
+    const Settings& base = bed.base();
     Packer packer;
     packer.add(programIdentity()).add(std::uint64_t{kBlock});
     for (const SourceFile& file : bed.scene().files) {
         packer.add(file.bytes).add(file.hash);
     }
-    for (const Configuration& values : {configurationOf(base), configuration}) {
-        for (const auto& [name, value] : values) {
-            packer.add(std::string_view(name)).add(std::string_view(value));
+    const Settings settings = withSettings(base, configuration);
+    for (const Descriptor& row : settingsTable()) {
+        if (row.bench.use != BenchUse::None) {
+            packer.add(row.name).add(std::string_view(row.values.text(settings)));
         }
     }
     packer.add(std::string_view(bed.scene().variant))
-        .add(std::string_view(base.size))
         .add(std::string_view(bed.cameraName()))
-        .add(std::string_view(base.sun))
-        .add(std::string_view(base.sky))
-        .add(std::string_view(base.tracing.tracers.front()))
         .add(std::string_view(bed.context().deviceName()))
-        .add(std::string_view(bed.context().driverName()))
-        .add(std::string_view(fmt::format("{} {} {} {} {} {} {}", base.effectFrame.lightRadius,
-                                          base.effectFrame.sunAngle, base.effectFrame.occlusionRadius,
-                                          base.effectFrame.occlusionFalloff, base.environment.rotation,
-                                          base.environment.intensity, base.frame.ssrThickness)));
-    if (!base.environment.file.empty()) {
-        const Result<FileDigest> digest = digestFile(base.environment.file);
+        .add(std::string_view(bed.context().driverName()));
+    if (!base.environment.empty()) {
+        const Result<FileDigest> digest = digestFile(base.environment);
         if (!digest) {
             return digest.error();
         }
@@ -117,14 +112,13 @@ void judge(const MeanImage& sum, std::span<const std::uint8_t> surfaces, const R
 
 }  // namespace
 
-Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const Facts& facts,
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const BenchFacts& facts,
                                 const ReferenceOptions& options, CacheStore* store) {
     const Clock::time_point start = Clock::now();
     Reference reference;
     reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    parseSize(bed.base().size, width, height);
+    const std::uint32_t width = bed.base().renderer.width;
+    const std::uint32_t height = bed.base().renderer.height;
     const Result<std::string> key = keyOf(bed, reference.configuration);
     if (!key) {
         return key.error();

@@ -23,7 +23,7 @@ struct ReferenceOptions {
 // Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
 // mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
 // device, it continues from them. With a null `store` nothing is kept.
-Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const Facts& facts,
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const BenchFacts& facts,
                                 const ReferenceOptions& options, CacheStore* store);
 
 }  // namespace glint::measure

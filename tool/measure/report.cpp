@@ -100,7 +100,7 @@ Json settingToJson(const Setting& setting) {
     }
     return {{"name", setting.name},
             {"option", "--" + setting.name},
-            {"stage", setting.stage == Stage::Compile ? "compile" : "render"},
+            {"stage", setting.isCompiled ? "compile" : "render"},
             {"approximates", setting.approximates},
             {"what", setting.what},
             {"default", setting.base},
@@ -125,11 +125,11 @@ Json referenceToJson(const BenchReport& report) {
             {"exposure", reference.exposure}};
 }
 
-// Returns the values of the base and the point that are decided at `stage`.
-Json decidedAt(const BenchReport& report, const BenchPoint& point, Stage stage) {
+// Returns the values of the base and the point that `glint compile` decides, or the others.
+Json decided(const BenchReport& report, const BenchPoint& point, bool compiled) {
     Configuration values;
     for (const auto& [name, value] : report.base) {
-        if (stageOf(name) == stage) {
+        if (isCompiled(*sweptSetting(name)) == compiled) {
             values[name] = valueOf(name, point.configuration, report.base);
         }
     }
@@ -148,8 +148,8 @@ Json adviceToJson(const BenchReport& report) {
                 {"file", advice.point ? Json(advice.file) : Json(nullptr)}};
     if (advice.point) {
         const BenchPoint& point = report.points[*advice.point];
-        object["compile"] = decidedAt(report, point, Stage::Compile);
-        object["render"] = decidedAt(report, point, Stage::Render);
+        object["compile"] = decided(report, point, true);
+        object["render"] = decided(report, point, false);
     }
     object["why"] = advice.why;
     return object;
@@ -209,11 +209,10 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
     words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
                                fmt::format("{:.9g}", report.reference.exposure)});
     Configuration given;
-    const Configuration defaults = configurationOf(usualSettings());
+    const Configuration defaults = configurationOf(Settings());
     for (const auto& [name, value] : defaults) {
         const std::string& own = valueOf(name, point.configuration, report.base);
-        const bool isPackaged =
-            !point.package.empty() && stageOf(name) == Stage::Compile && name != "strategy";
+        const bool isPackaged = !point.package.empty() && sweptSetting(name)->stage == SettingStage::Package;
         if (own != value && !isPackaged) {
             given[name] = own;
         }

@@ -2,8 +2,8 @@
 #include "base/json.h"
 #include "base/json_depth.h"
 #include "base/suggest.h"
+#include "settings/table.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/settings_file.h>
 
 #include <fmt/format.h>
@@ -82,7 +82,7 @@ Result<Configuration> readSettings(const std::filesystem::path& file) {
             return settingsError(file, pointer, "is neither a text nor a number",
                                  fmt::format("write it as on the command line, behind --{}", name));
         }
-        if (isSwitch(name) && *word != "on" && *word != "off") {
+        if (sweptSetting(name)->values.form == ValueForm::Switch && *word != "on" && *word != "off") {
             return settingsError(file, pointer, fmt::format("is \"{}\", neither on nor off", *word), kHint);
         }
         settings.emplace(name, std::move(*word));

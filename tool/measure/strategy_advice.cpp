@@ -17,12 +17,9 @@ namespace glint::measure {
 
 namespace {
 
-FrameShape shapeOf(const RenderSettings& render, std::uint32_t effects) {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    parseSize(render.size, width, height);
-    return {static_cast<double>(width) * height, effects, static_cast<float>(render.effects.maxRoughness),
-            render.effectFrame.batch};
+FrameShape shapeOf(const Settings& render, std::uint32_t effects) {
+    return {static_cast<double>(render.renderer.width) * render.renderer.height, effects,
+            render.frame.maxReflectionRoughness, render.renderer.batchEffects};
 }
 
 // Returns the rounds of a scene whose cases are those of a package.
@@ -64,7 +61,7 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
     const std::uint32_t compiled = package != nullptr ? package->shape().tracers : package::kAllTracers;
     std::vector<std::string> names;
     for (const std::string_view name : kStrategyNames) {
-        const package::Strategy strategy = strategyNamed(std::string(name));
+        const package::Strategy strategy = *valueNamed<package::Strategy>(name);
         const bool has = package == nullptr || package->supports(strategy);
         // hit-shaders needs ray tracing pipelines, whatever the package's tracers are.
         const std::uint32_t tracers = package::tracersOf(strategy, compiled);
@@ -104,8 +101,8 @@ Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector
     return StrategyAdvice{std::move(*choice), costs.device.device, costs.builtIn, pixels};
 }
 
-Result<StrategyAdvice> adviseRender(const RenderSettings& render, const PlanOptions& plan,
-                                    const Context& context, const Scene& scene, const Package* package,
+Result<StrategyAdvice> adviseRender(const Settings& render, const PlanOptions& plan, const Context& context,
+                                    const Scene& scene, const Package* package,
                                     std::vector<Diagnostic>& warnings) {
     Result<KnownCosts> costs =
         knownCosts(render.calibration, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
@@ -127,10 +124,10 @@ Result<StrategyAdvice> adviseRender(const RenderSettings& render, const PlanOpti
         const FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects);
         const Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
         return adviseStrategy(*costs, roundsOf(scenes, made, plan, shape),
-                              runnableStrategies(tracers, tracerOf(render), nullptr), shape.pixels);
+                              runnableStrategies(tracers, render.renderer.tracer, nullptr), shape.pixels);
     }
     const FrameShape shape = shapeOf(render, package->shape().effects);
-    std::vector<std::string> available = runnableStrategies(tracers, tracerOf(render), package);
+    std::vector<std::string> available = runnableStrategies(tracers, render.renderer.tracer, package);
     if (available.empty()) {
         // What the device lacks is reported when the package is used.
         available = strategyNames(package->shape().strategies);

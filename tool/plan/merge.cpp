@@ -192,22 +192,6 @@ std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy m
     return cases;
 }
 
-std::string_view toString(MergePolicy merge) {
-    switch (merge) {
-        case MergePolicy::None:
-            return "none";
-        case MergePolicy::Family:
-            return "family";
-        case MergePolicy::All:
-            return "all";
-        case MergePolicy::Auto:
-            return "auto";
-        case MergePolicy::Profile:
-            break;
-    }
-    return "profile";
-}
-
 std::string_view toString(CaseReason reason) {
     constexpr std::string_view kNames[] = {"own",  "family", "all",  "cost",     "budget",
                                            "rest", "hot",    "cold", "never-hit"};

@@ -3,6 +3,8 @@
 
 #include "plan/cost.h"
 
+#include <glint/names.h>
+
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -17,6 +19,16 @@ enum class MergePolicy : std::uint8_t {
     Auto,     // by hits and the cost model of plan/cost.h, within a budget of cases
     Profile,  // by counted hits: frequent keys have their own case, the others are merged
 };
+inline constexpr Named<MergePolicy> kMergeNames[] = {
+    {MergePolicy::None, "none", "every permutation has its own"},
+    {MergePolicy::Family, "family", "those with the same lobes share one, which branches on their inputs"},
+    {MergePolicy::All, "all", "one shader"},
+    {MergePolicy::Auto, "auto", "decided by a cost model, within --max-shaders"},
+    {MergePolicy::Profile, "profile", "those with many counted hits have their own, the others are merged"},
+};
+constexpr std::span<const Named<MergePolicy>> namesOf(MergePolicy /*type*/) {
+    return kMergeNames;
+}
 
 // The most cases that Auto and Profile make by default. It is a choice: more than the families of most
 // scenes, and few enough for an uber shader to compile in seconds.
@@ -57,7 +69,6 @@ struct CaseKeys {
 // ascending by mask. `maxCases` is at least 1; only Auto and Profile read it.
 std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy merge, int maxCases);
 
-std::string_view toString(MergePolicy merge);
 std::string_view toString(CaseReason reason);  // one word: "cold"
 std::string_view explain(CaseReason reason);   // a sentence without a full stop
 

@@ -248,8 +248,4 @@ std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& o
                        plan.keys.size(), maxShaders, advice);
 }
 
-std::string_view toString(AlphaPolicy alpha) {
-    return alpha == AlphaPolicy::Opaque ? "opaque" : "tested";
-}
-
 }  // namespace glint

@@ -38,6 +38,8 @@
 // switch needs those of its largest case.
 #pragma once
 
+#include <glint/package_modules.h>
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -73,7 +75,9 @@ struct CostTermInfo {
 std::span<const CostTermInfo> costTerms();
 
 // In the order in which equally fast strategies are taken: the simplest first.
-inline constexpr std::string_view kStrategyNames[] = {"uber", "sorted-uber", "visibility", "hit-shaders"};
+inline constexpr std::string_view kStrategyNames[] = {
+    package::nameOf(package::kStrategyUber), package::nameOf(package::kStrategySortedUber),
+    package::nameOf(package::kStrategyVisibility), package::nameOf(package::kStrategyHitShaders)};
 
 // Returns whether the time of a strategy has the term. `strategy` is one of kStrategyNames.
 bool hasTerm(std::string_view strategy, CostTerm term);

@@ -2,10 +2,13 @@
 // draws from it.
 #pragma once
 
+#include <glint/names.h>
 #include <glint/package_format.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -67,55 +70,70 @@ struct RoleInfo {
     bool shades = false;  // shades hits: it traces only if shadow rays are inline
 };
 
-// Names on the command line and in the manifest. A value that is not exactly one of the enumerators is
-// "unknown".
-constexpr std::string_view nameOf(Strategy strategy) {
-    switch (strategy) {
-        case kStrategyUber:
-            return "uber";
-        case kStrategyVisibility:
-            return "visibility";
-        case kStrategySortedUber:
-            return "sorted-uber";
-        case kStrategyHitShaders:
-            return "hit-shaders";
-        default:
-            return "unknown";
-    }
-}
+// Names on the command line and in the manifest.
+inline constexpr Named<Strategy> kStrategyNames[] = {
+    {kStrategyUber, "uber", "one dispatch traces and shades, with a switch over the shaders"},
+    {kStrategyVisibility, "visibility",
+     "hits are sorted by shader first, then there is one dispatch for each shader"},
+    {kStrategySortedUber, "sorted-uber",
+     "hits are sorted, then there is one dispatch, whose switch is uniform in each workgroup"},
+    {kStrategyHitShaders, "hit-shaders", "a ray tracing pipeline with a closest-hit shader for each case"},
+};
+inline constexpr Named<Tracer> kTracerNames[] = {
+    {kTracerRayQuery, "ray-query", "compute shaders trace"},
+    {kTracerRayPipeline, "ray-pipeline", "ray generation shaders trace, for devices without ray queries"},
+};
+inline constexpr Named<ShadowPlacement> kShadowNames[] = {
+    {ShadowPlacement::Inline, "inline", "by the shader that shades the hit"},
+    {ShadowPlacement::Deferred, "deferred", "from a list, by a pass of their own"},
+};
+inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
+    {HitRecordFormat::Full, "full", "32 bytes"},
+    {HitRecordFormat::Packed, "packed", "16 bytes, with less precision"},
+};
+inline constexpr Named<ShadingPrecision> kPrecisionNames[] = {
+    {ShadingPrecision::Single, "32", "everything in 32-bit float"},
+    {ShadingPrecision::Half, "16",
+     "parameters of materials, Fresnel and weights of lobes in 16-bit float; geometry, densities and light "
+     "keep 32"},
+};
+inline constexpr Named<Ordering> kOrderingNames[] = {
+    {Ordering::GlobalAtomics, "global-atomics", "one atomic for each hit"},
+    {Ordering::WaveLoop, "wave-loop",
+     "an atomic for each shader in a subgroup, which are found one after the other"},
+    {Ordering::WaveAggregated, "wave-aggregated", "a loop over all shaders, for few shaders only"},
+    {Ordering::WaveBallot, "wave-ballot", "an atomic for each shader in a subgroup, found by ballots"},
+    {Ordering::LocalHistogram, "local-histogram", "counts in shared memory, an atomic for each shader"},
+    {Ordering::TileSort, "tile-sort", "sorts thousands of hits in shared memory"},
+};
+static_assert(std::size(kOrderingNames) == static_cast<std::size_t>(Ordering::Count));
 
-constexpr std::string_view nameOf(Tracer tracer) {
-    switch (tracer) {
-        case kTracerRayQuery:
-            return "ray-query";
-        case kTracerRayPipeline:
-            return "ray-pipeline";
-        default:
-            return "unknown";
-    }
+constexpr std::span<const Named<Strategy>> namesOf(Strategy /*type*/) {
+    return kStrategyNames;
 }
-
-constexpr std::string_view nameOf(ShadowPlacement shadows) {
-    return shadows == ShadowPlacement::Deferred ? "deferred" : "inline";
+constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {
+    return kTracerNames;
 }
-
-constexpr std::string_view nameOf(HitRecordFormat format) {
-    return format == HitRecordFormat::Packed ? "packed" : "full";
+constexpr std::span<const Named<ShadowPlacement>> namesOf(ShadowPlacement /*type*/) {
+    return kShadowNames;
 }
+constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
+    return kHitRecordNames;
+}
+constexpr std::span<const Named<ShadingPrecision>> namesOf(ShadingPrecision /*type*/) {
+    return kPrecisionNames;
+}
+constexpr std::span<const Named<Ordering>> namesOf(Ordering /*type*/) {
+    return kOrderingNames;
+}
+using glint::nameOf;
 
 constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
     return precision == ShadingPrecision::Single ? 32 : 16;
 }
 
-constexpr std::string_view nameOf(Ordering ordering) {
-    constexpr std::string_view kNames[] = {"global-atomics",  "wave-loop", "wave-aggregated", "wave-ballot",
-                                           "local-histogram", "tile-sort", "unknown"};
-    return kNames[ordering < Ordering::Count ? static_cast<std::uint32_t>(ordering) : 6];
-}
-
-inline constexpr Strategy kStrategies[] = {kStrategyUber, kStrategyVisibility, kStrategySortedUber,
-                                           kStrategyHitShaders};
-inline constexpr Tracer kTracers[] = {kTracerRayQuery, kTracerRayPipeline};
+inline constexpr auto kStrategies = valuesOf(kStrategyNames);
+inline constexpr auto kTracers = valuesOf(kTracerNames);
 
 inline constexpr std::uint32_t kOrderedStrategies = kStrategyVisibility | kStrategySortedUber;
 

@@ -2,6 +2,8 @@
 // keep them.
 #pragma once
 
+#include <glint/names.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -111,6 +113,14 @@ enum class TraversalOrder : std::uint32_t {
     Input,    // the scene's own order
     Halving,  // an order in which each half is small, and each half of a half
 };
+inline constexpr Named<TraversalOrder> kTraversalOrderNames[] = {
+    {TraversalOrder::Auto, "auto", "halving on a CPU, input on a GPU"},
+    {TraversalOrder::Input, "input", "as in the scene"},
+    {TraversalOrder::Halving, "halving", "for drivers whose trees halve what they are given"},
+};
+constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/) {
+    return kTraversalOrderNames;
+}
 
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
@@ -141,6 +151,14 @@ struct MotionView {
     Builds builds = Builds::ByRule;
     std::span<const MaterialView> materials{};  // the materials of the upload, in their order
 };
+inline constexpr Named<MotionView::Builds> kBuildsNames[] = {
+    {MotionView::Builds::ByRule, "auto", "they are refitted, and rebuilt by rule"},
+    {MotionView::Builds::Refit, "always", "only refitted"},
+    {MotionView::Builds::Rebuild, "never", "rebuilt in each frame"},
+};
+constexpr std::span<const Named<MotionView::Builds>> namesOf(MotionView::Builds /*type*/) {
+    return kBuildsNames;
+}
 
 // The camera of a frame, in world space, right-handed.
 struct CameraView {

@@ -1,5 +1,5 @@
 // A program that evaluates measurements of its own, and asks which settings are worth measuring.
-#include <glint/measure/render_settings.h>
+#include <glint/measure/settings.h>
 #include <glint/measure/statistics.h>
 #include <glint/measure/sweep.h>
 
@@ -13,10 +13,9 @@ int main() {
     if (interval.median != 4.2 || interval.low != 4.0 || interval.high != 9.0) {
         return 1;
     }
-    const glint::measure::Configuration usual =
-        glint::measure::configurationOf(glint::measure::usualSettings());
+    const glint::Configuration usual = glint::configurationOf(glint::Settings());
     const std::vector<glint::measure::Setting> settings = glint::measure::settingsFor({}, usual, true);
-    const std::vector<glint::measure::Configuration> singles = glint::measure::singles(settings, usual);
+    const std::vector<glint::Configuration> singles = glint::measure::singles(settings, usual);
     std::cout << settings.size() << " settings, " << singles.size() << " configurations\n";
-    return settings.size() != glint::measure::settingNames().size() || singles.empty() ? 1 : 0;
+    return settings.size() != glint::settingNames().size() || singles.empty() ? 1 : 0;
 }

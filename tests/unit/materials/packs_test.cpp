@@ -2,7 +2,7 @@
 #include "materials/packs.h"
 
 #include "base/files.h"
-#include "plan/material.h"
+#include "materials/material.h"
 #include "support/temporary_folder.h"
 
 #include <fmt/format.h>

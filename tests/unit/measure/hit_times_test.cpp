@@ -9,10 +9,16 @@ namespace glint::measure {
 namespace {
 
 TEST(HitTimes, CountsWhatStrategiesDifferIn) {
-    const std::vector<PassTime> passes{
-        {HitPart::None, 100.0}, {HitPart::Dispatch, 1.0}, {HitPart::Trace, 2.0},   {HitPart::Order, 3.0},
-        {HitPart::Order, 4.0},  {HitPart::Shade, 5.0},    {HitPart::Shadow, 6.0},  {HitPart::None, 200.0},
-        {HitPart::Trace, 20.0}, {HitPart::Shade, 50.0},   {HitPart::Shadow, 60.0}, {HitPart::None, 400.0},
+    // Names are for people, so they decide nothing.
+    const std::vector<PassTiming> passes{
+        {"shade", 100.0, Pass::Lighting},  {"a", 1.0, Pass::RayDispatch},
+        {"trace", 2.0, Pass::Trace},       {"b", 1.0, Pass::Count},
+        {"c", 2.0, Pass::Offset},          {"d", 4.0, Pass::Copy},
+        {"e", 5.0, Pass::ShadeMiss},       {"f", 6.0, Pass::Shadow},
+        {"copy", 200.0, Pass::Compose},    {"uber", 20.0, Pass::Trace},
+        {"g", 25.0, Pass::ShadeCase, 3},   {"h", 10.0, Pass::Uber},
+        {"i", 10.0, Pass::SortedUber},     {"j", 5.0, Pass::HitShaders},
+        {"k", 60.0, Pass::ShadowDispatch}, {"trace", 400.0, Pass::CheckOrder},
     };
     const HitTimes times = hitTimesOf(passes);
     EXPECT_EQ(times.dispatch, 1.0);

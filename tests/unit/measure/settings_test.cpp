@@ -34,8 +34,8 @@ Configuration usual() {
             {"batch-effects", "off"}};
 }
 
-Facts rich() {
-    Facts facts;
+BenchFacts rich() {
+    BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
@@ -60,6 +60,15 @@ TEST(BenchSettings, AreAllThereAndHaveTheirDefault) {
     }
 }
 
+TEST(BenchSettings, TryEveryOrdering) {
+    const std::vector<Setting> settings = settingsFor(rich(), usual(), false);
+    std::vector<std::string> names{"auto"};
+    for (const Named<package::Ordering>& ordering : package::kOrderingNames) {
+        names.emplace_back(ordering.name);
+    }
+    EXPECT_EQ(named(settings, "ordering").values, names);
+}
+
 TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
     Configuration base = usual();
     base["spp"] = "6";
@@ -71,7 +80,7 @@ TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
 }
 
 TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
-    Facts facts;
+    BenchFacts facts;
     facts.effects = {"shadow"};
     const std::vector<Setting> settings = settingsFor(facts, usual(), false);
     for (const char* const name :
@@ -87,7 +96,7 @@ TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
 }
 
 TEST(BenchSettings, TryEffectsWithoutEachOfThem) {
-    Facts facts = rich();
+    BenchFacts facts = rich();
     facts.effects = {"reflection", "shadow"};
     EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
               (std::vector<std::string>{"auto", "shadow", "reflection"}));
@@ -111,7 +120,7 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     EXPECT_FALSE(exact.contains("strategy"));
     EXPECT_FALSE(exact.contains("effects"));
     EXPECT_FALSE(exact.contains("spp"));
-    Facts still = rich();
+    BenchFacts still = rich();
     still.effects = {"shadow"};
     EXPECT_FALSE(exactValues(still).contains("max-roughness"));
 }

@@ -186,7 +186,7 @@ TEST(Planner, AutoCostsNoMoreThanAnyOtherPolicyWithinTheBudget) {
                 const std::vector<CaseKeys> other = mergeKeys(keys, merge, budget);
                 if (other.size() <= static_cast<std::size_t>(budget)) {
                     EXPECT_LE(cost, totalCost(clustersOf(other), keys) * (1.0 + 1e-12))
-                        << toString(merge) << ", " << count << " keys, " << budget;
+                        << nameOf(merge) << ", " << count << " keys, " << budget;
                     ++compared;
                 }
             }

@@ -125,7 +125,7 @@ void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
 TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
     RecordProperty("seed", kLockSeed);
     for (const MergePolicy merge : kLockPolicies) {
-        SCOPED_TRACE(toString(merge));
+        SCOPED_TRACE(nameOf(merge));
         std::mt19937 random(kLockSeed);
         std::vector<Piece> pieces;
         PlanOptions options{{}, merge};
@@ -184,7 +184,7 @@ TEST(Lock, OrderOfMaterialsMeansNothing) {
         options.lockedIds = {{kLockNormals, 7}, {kLockTextured, 3}, {kLockCoated, 7}};
         const auto expected = keysById(planOf(pieces, options));
         std::ranges::shuffle(pieces, random);
-        EXPECT_EQ(keysById(planOf(pieces, options)), expected) << toString(merge);
+        EXPECT_EQ(keysById(planOf(pieces, options)), expected) << nameOf(merge);
     }
 }
 

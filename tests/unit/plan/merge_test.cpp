@@ -74,7 +74,7 @@ TEST(Merge, PartitionsTheKeysWithinTheBudget) {
         const std::vector<WeightedKey> keys = randomKeys(random, count);
         for (const MergePolicy merge : kBudgeted) {
             for (const int budget : {1, 2, 3, 4, 5, 8, 32, 1000}) {
-                SCOPED_TRACE(::testing::Message() << toString(merge) << ", " << count << " keys, " << budget);
+                SCOPED_TRACE(::testing::Message() << nameOf(merge) << ", " << count << " keys, " << budget);
                 const std::vector<CaseKeys> cases = mergeKeys(keys, merge, budget);
                 EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
                 casesOfKeys(keys.size(), cases);
@@ -145,7 +145,7 @@ TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
             const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
             const std::vector<CaseKeys> cases = mergeKeys(keys, merge, 4);
             const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
-            EXPECT_EQ(std::ranges::count(caseOf, caseOf[hot]), 1) << toString(merge) << ", key " << hot;
+            EXPECT_EQ(std::ranges::count(caseOf, caseOf[hot]), 1) << nameOf(merge) << ", key " << hot;
         }
     }
 }

@@ -1,8 +1,7 @@
 #include "cli/bench/arguments.h"
 
 #include "base/text.h"
-
-#include <glint/measure/settings.h>
+#include "cli/options/options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,25 +23,14 @@ constexpr const char* kQuickSize = "80x45";
 // These options decide about the picture, but no bench sweeps them. A point's command includes those that
 // were given.
 bool isView(const CLI::Option& option) {
-    constexpr std::string_view kViews[] = {"--size",
-                                           "--camera",
-                                           "--sun",
-                                           "--sky",
-                                           "--environment",
-                                           "--environment-rotation",
-                                           "--environment-intensity",
-                                           "--light-radius",
-                                           "--sun-angle",
-                                           "--ao-radius",
-                                           "--ao-falloff",
-                                           "--ssr-thickness",
-                                           "--tracer",
-                                           "--max-shaders",
-                                           "--variant",
-                                           "--strict-paths",
-                                           "--device",
-                                           "--traversal-order"};
-    return std::ranges::find(kViews, option.get_name()) != std::end(kViews);
+    constexpr std::string_view kViews[] = {"--camera",       "--environment", "--variant",
+                                           "--strict-paths", "--materials",   "--device"};
+    const std::string name = option.get_name();
+    return std::ranges::find(kViews, name) != std::end(kViews) ||
+           std::ranges::any_of(settingsTable(), [&](const Descriptor& row) {
+               return name == "--" + std::string(row.name) && (row.commands & kOfRender) != 0 &&
+                      row.bench.use == BenchUse::View;
+           });
 }
 
 // Parses NAME=DIR of --candidate.
@@ -62,7 +50,8 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.rounds = 0;
     arguments.referenceError = 0.0;
     arguments.referenceSamples = 0;
-    arguments.render.size = "480x270";
+    arguments.render.renderer.width = 480;
+    arguments.render.renderer.height = 270;
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
             "folder for index.html, bench.json, settings.json and\nimages/; with --calibrate for "
@@ -83,7 +72,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "pairs: then the pairs that matter; search: then a search\n"
               "for the Pareto front")
         .group(sweep);
-    addChoices(command, "--only", arguments.only, measure::settingNames(),
+    addChoices(command, "--only", arguments.only, settingNames(),
                "sweep only these settings, separated by commas (default:\n"
                "all)")
         .type_name("LIST")
@@ -132,7 +121,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
 void settleBench(const CLI::App& command, BenchArguments& arguments) {
     checkCalibrateOptions(command, arguments.calibrate);
     checkSceneOptions(command, arguments.render);
-    settleProfile(arguments.render.plan);
+    checkProfile(command, arguments.render);
     for (const char* const name : {"--budget-ms", "--max-error"}) {
         const CLI::Option* const option = command.get_option(name);
         if (option->count() > 0 && !(option->as<double>() > 0.0)) {
@@ -163,8 +152,12 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     }
     arguments.command = shellWords(words);
     if (command.get_option("--size")->count() == 0) {
-        arguments.render.size = arguments.quick ? kQuickSize : arguments.render.size;
-        arguments.viewWords.insert(arguments.viewWords.end(), {"--size", arguments.render.size});
+        RendererOptions& renderer = arguments.render.renderer;
+        if (arguments.quick) {
+            parseSize(kQuickSize, renderer.width, renderer.height);
+        }
+        arguments.viewWords.insert(arguments.viewWords.end(),
+                                   {"--size", fmt::format("{}x{}", renderer.width, renderer.height)});
     }
 }
 

@@ -85,7 +85,7 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
     report.command = arguments.command;
     report.date = measure::utcNow();
     report.rounds = static_cast<std::uint32_t>(arguments.rounds);
-    report.seed = static_cast<std::uint32_t>(arguments.render.seed) + 1;
+    report.seed = arguments.render.frame.seed + 1;
     report.quick = arguments.quick;
     if (Status done = measureAll(console, arguments, report); !done) {
         return fail(console, done.error());

@@ -206,8 +206,7 @@ std::string toText(const measure::BenchReport& report) {
          {"measured", fmt::format("{} configurations in {} rounds, {:.0f} s", report.points.size(),
                                   report.rounds, report.seconds)}});
     text += fmt::format("\nOne setting at a time (default: {})\n{}",
-                        shellWords(measure::wordsOf(measure::simplified(
-                            report.base, measure::configurationOf(measure::usualSettings())))),
+                        shellWords(wordsOf(measure::simplified(report.base, configurationOf(Settings())))),
                         pointsTable(report));
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;

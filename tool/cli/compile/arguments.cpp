@@ -1,9 +1,12 @@
 #include "cli/compile/arguments.h"
 
 #include "base/text.h"
+#include "cli/options/options.h"
 #include "cli/options/settings_option.h"
 #include "emit/package/embed_source.h"
 #include "materials/packs.h"
+
+#include <glint/measure/render_settings.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -23,18 +26,16 @@ constexpr const char* kLauncher = "--launcher";
 constexpr const char* kModules = "--modules";
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
-    addTracingLists(command, arguments.tracing);
-    addCalibration(command, arguments.calibration);
-    addPlanOptions(command, arguments.plan);
-    addProfileInput(command, arguments.plan);
+    addSettings(command, kOfCompile, arguments.settings);
+    addCalibration(command, arguments.settings);
+    addProfileInput(command, arguments.settings);
     addLockOptions(command, arguments.lock);
-    addEffectOptions(command, arguments.effects);
-    addAccuracyOptions(command, arguments.accuracy);
-    addFlag(command, "--environment-map", arguments.environmentMap,
+    addFlag(command, "--environment-map", arguments.settings.compile.environmentMap,
             "rays that leave the scene see an environment map, which\n"
             "every frame then needs, instead of a gradient")
         .group("Shaders");
-    addFlag(command, "--debug-info", arguments.debugInfo, "keep names in the SPIR-V, for debuggers")
+    addFlag(command, "--debug-info", arguments.settings.compile.debugInfo,
+            "keep names in the SPIR-V, for debuggers")
         .group("Shaders");
 }
 
@@ -88,8 +89,8 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
     addTexts(command, "SCENE", arguments.scenes, "FILE",
              "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
         .required();
-    addReadingOptions(command, arguments.reading);
-    addSettingsFile(command, arguments.settings);
+    addReadingOptions(command, arguments.settings);
+    addSettingsFile(command, arguments.settingsFile);
     addOutputOptions(command, arguments);
     addShaderOptions(command, arguments);
 }
@@ -98,8 +99,8 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
     if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
         throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
     }
-    settleProfile(arguments.plan);
-    checkEffects(arguments.effects);
+    checkProfile(command, arguments.settings);
+    settleSettings(command, arguments.settings);
     if (arguments.depfile.targets.empty()) {
         arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
                                                                 : planFile(arguments)};
@@ -141,34 +142,28 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
     return files;
 }
 
-CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan) {
+CompileSettings settingsOf(const CompileArguments& arguments, const PlanOptions& plan) {
     const auto emits = [&](const char* what) {
         return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
     };
-    CompileSettings settings;
-    arguments.tracing.apply(settings);
-    settings.plan = std::move(plan);
-    arguments.accuracy.apply(settings);
-    arguments.effects.apply(settings);
+    CompileSettings settings = measure::compileSettings(arguments.settings, plan);
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
-    settings.environmentMap = arguments.environmentMap;
-    settings.debugInfo = arguments.debugInfo;
     settings.modules = arguments.modules;
     return settings;
 }
 
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
     std::vector<std::filesystem::path> files;
-    for (const std::string& file :
-         {arguments.plan.profile, arguments.lock.file, arguments.settings, arguments.calibration}) {
+    for (const std::string& file : {arguments.settings.profile, arguments.lock.file, arguments.settingsFile,
+                                    arguments.settings.calibration}) {
         if (!file.empty()) {
             files.emplace_back(file);
         }
     }
     // Where the folders can't be listed, reading the packs says so.
-    if (const Result<std::vector<std::filesystem::path>> packs = packFiles(arguments.reading.materials);
+    if (const Result<std::vector<std::filesystem::path>> packs = packFiles(arguments.settings.materials);
         packs) {
         files.insert(files.end(), packs->begin(), packs->end());
     }

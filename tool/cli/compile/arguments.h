@@ -3,11 +3,8 @@
 
 #include "cli/compile/depfile.h"
 #include "cli/options/cache_options.h"
-#include "cli/options/effect_options.h"
 #include "cli/options/lock_option.h"
-#include "cli/options/options.h"
-#include "cli/options/tracing_options.h"
-#include "emit/compile.h"
+#include "cli/options/setting_options.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,26 +19,19 @@ struct CompileArguments {
     std::vector<std::string> scenes;
     std::string output;
     std::string embed;  // a C++ source; empty: none
-    measure::TracingSettings tracing;
-    std::string calibration;  // a device file; empty: constants that are built in
-    measure::ReadingSettings reading;
-    measure::PlanSettings plan;
+    Settings settings;
     LockArguments lock;
-    measure::AccuracySettings accuracy;
-    measure::EffectSettings effects;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
     CacheArguments cache;
     DepfileArguments depfile;
-    std::string settings;                  // the file that completeLine() has read; empty: none
+    std::string settingsFile;              // that completeLine() has read; empty: none
     std::string options;                   // all that are given, see describeOptions()
     std::vector<std::string> words;        // those that decide about the package, one a word
     std::vector<std::string> reportWords;  // those that decide which diagnostics are errors
     std::string planOnly;                  // folder of the plan; empty: none
     std::string launcher;                  // of the plan's compilations
     std::string modules;                   // folder of compiled modules; empty: they are compiled
-    bool environmentMap = false;
-    bool debugInfo = false;
     bool dryRun = false;
 };
 
@@ -50,7 +40,7 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments);
 // each other.
 void settleCompile(const CLI::App& command, CompileArguments& arguments);
 
-CompileSettings settingsOf(const CompileArguments& arguments, PlanOptions plan);
+CompileSettings settingsOf(const CompileArguments& arguments, const PlanOptions& plan);
 
 // Returns the build file of --plan-only.
 std::string planFile(const CompileArguments& arguments);

@@ -55,7 +55,7 @@ std::string headText(const PlannedScenes& planned) {
         "instructions  of the case's shader; they and the fetches are estimated\n"
         "apart         instructions of shaders of its keys alone, on average over its hits\n",
         planned.scenes.fileNames(), counted(planned.plan.keys.size(), "key"),
-        counted(caseCount(planned.plan), "case"), toString(planned.options.merge), limit,
+        counted(caseCount(planned.plan), "case"), nameOf(planned.options.merge), limit,
         countsHits(planned.options) ? "counted by the profile" : "expected from areas", kCaseCost);
 }
 
@@ -158,7 +158,7 @@ std::string policiesText(const PlannedScenes& planned, const PlanCost& cost) {
     Rows rows{{"--merge", "cases", "in vain", "for cases", "all", ""}};
     const auto add = [&](MergePolicy merge, std::size_t cases, double inVain, const std::string& note) {
         const double all = totalCost(inVain, cases);
-        rows.push_back({std::string(toString(merge)), std::to_string(cases), fmt::format("{:.2f}", inVain),
+        rows.push_back({std::string(nameOf(merge)), std::to_string(cases), fmt::format("{:.2f}", inVain),
                         fmt::format("{:.0f}", all - inVain), fmt::format("{:.2f}", all), note});
     };
     for (const PolicyCost& policy : cost.policies) {
@@ -253,7 +253,7 @@ Json planToJson(const PlannedScenes& planned) {
     }
     Json policies = Json::array();
     for (const PolicyCost& policy : cost.policies) {
-        policies.push_back(Json{{"merge", toString(policy.merge)},
+        policies.push_back(Json{{"merge", nameOf(policy.merge)},
                                 {"cases", policy.cases},
                                 {"inVain", policy.inVain},
                                 {"cost", totalCost(policy.inVain, policy.cases)}});

@@ -1,10 +1,10 @@
 #include "cli/options/motion_options.h"
 
 #include "base/suggest.h"
+#include "settings/settings.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <numeric>
 
 namespace glint {
@@ -19,12 +19,9 @@ std::string animationName(const Scene& scene, std::size_t index) {
     return name.empty() ? std::to_string(index) : name;
 }
 
-// Parses all of `text` as a number within [0, kMaxFrame].
 std::optional<std::int64_t> parseFrame(std::string_view text) {
     std::int64_t frame = 0;
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), frame);
-    const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-    return whole && frame >= 0 && frame <= kMaxFrame ? std::optional(frame) : std::nullopt;
+    return parseWhole(text, 0, kMaxFrame, frame) ? std::optional(frame) : std::nullopt;
 }
 
 Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std::string& wanted) {
@@ -85,7 +82,7 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
         ->check(CLI::Validator(
             [](const std::string& text) {
                 double seconds = 0.0;
-                return measure::parseReal(text, 0.0, kMaxSeconds, seconds)
+                return parseReal(text, 0.0, kMaxSeconds, seconds)
                            ? std::string()
                            : "\"" + text + "\" is no number from 0 to 1000000";
             },
@@ -94,10 +91,10 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
             "which animation plays, by name or number from 0; all: all\n"
             "of them at once (default: 0)")
         .group(group);
-    addChoice(command, "--refit", arguments.refit, {"auto", "always", "never"},
-              "how acceleration structures follow; auto: they are\n"
-              "refitted, and rebuilt by rule; always: only refitted;\n"
-              "never: rebuilt in each frame; needs --frames")
+    addNamed(command, "--refit", arguments.builds,
+             "how acceleration structures follow; auto: they are\n"
+             "refitted, and rebuilt by rule; always: only refitted;\n"
+             "never: rebuilt in each frame; needs --frames")
         .needs(&frames)
         ->group(group);
 }
@@ -131,13 +128,10 @@ Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments,
         }
     } else {
         double seconds = 0.0;
-        measure::parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
+        parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
         movement.moments.push_back({0, seconds});
     }
-    if (arguments.refit != "auto") {
-        movement.builds =
-            arguments.refit == "always" ? MotionView::Builds::Refit : MotionView::Builds::Rebuild;
-    }
+    movement.builds = arguments.builds;
     return std::optional(std::move(movement));
 }
 

@@ -20,7 +20,7 @@ struct MotionArguments {
     double fps = 24.0;
     std::string time;  // seconds; empty: the rest pose
     std::string animation = "0";
-    std::string refit = "auto";
+    MotionView::Builds builds = MotionView::Builds::ByRule;
 };
 void addMotionOptions(CLI::App& command, MotionArguments& arguments);
 

@@ -2,9 +2,8 @@
 #pragma once
 
 #include "cli/console.h"
-#include "gltf/import.h"
 
-#include <glint/measure/render_settings.h>
+#include <glint/names.h>
 
 #include <CLI/CLI.hpp>
 
@@ -22,13 +21,32 @@ using Action = std::function<int(const Console&)>;
 CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
                      const std::string& example);
 
+// Appends a note to an option's text: on its last line, or on a new line if that would be too long.
+std::string withNote(const std::string& help, const std::string& note);
 // Adds an option that takes one of `choices`; the text in `value`, if any, is the default. A misspelt value
 // suggests the nearest choice.
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
                        const std::vector<std::string>& choices, const std::string& help);
+// The same; the choice goes to a function.
+CLI::Option& addChoice(CLI::App& command, const std::string& flags, const std::string& usual,
+                       const std::function<void(const std::string&)>& set,
+                       const std::vector<std::string>& choices, const std::string& help);
 // Adds an option that takes any of `choices`, separated by commas.
 CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                         const std::vector<std::string>& choices, const std::string& help);
+// Adds an option that takes one of the names of an enumeration; `value` has the default.
+template <HasNames Value>
+CLI::Option& addNamed(CLI::App& command, const std::string& flags, Value& value, const std::string& help) {
+    std::vector<std::string> names;
+    for (const Named<Value>& named : namesOf(Value{})) {
+        names.emplace_back(named.name);
+    }
+    return addChoice(
+        command, flags, std::string(nameOf(value)),
+        [&value](const std::string& name) { value = *valueNamed<Value>(name); }, names, help);
+}
+// Makes choicesOf() return these choices.
+void keepChoices(CLI::Option& option, const std::vector<std::string>& choices);
 // Returns the choices that addChoice() and addChoices() were given; empty for other options.
 std::vector<std::string> choicesOf(CLI::Option& option);
 // Adds an option for a whole number within [min, max]; `value` is the default.
@@ -50,23 +68,5 @@ CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, c
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);
-
-// Options that decide which permutations a scene has and which share code. Every command that plans has the
-// same ones.
-// Returns the options, for commands that must know which of them are given.
-std::vector<CLI::Option*> addPlanOptions(CLI::App& command, measure::PlanSettings& arguments);
-// Adds --profile FILE, for commands that read profiles.
-void addProfileInput(CLI::App& command, measure::PlanSettings& arguments);
-// Takes FILE out of `--merge profile:FILE` and `auto:FILE`. Throws a CLI::ParseError if the policy and the
-// profile contradict each other.
-void settleProfile(measure::PlanSettings& arguments);
-
-// Options that decide how exact shaders are. Every command that compiles has the same ones.
-std::vector<CLI::Option*> addAccuracyOptions(CLI::App& command, measure::AccuracySettings& arguments);
-
-// --variant NAME, --strict-paths.
-void addReadingOptions(CLI::App& command, measure::ReadingSettings& arguments);
-// Has the errors of loadMaterialModel().
-Result<ImportOptions> importOptions(const measure::ReadingSettings& arguments, bool decodeImages);
 
 }  // namespace glint

@@ -1,8 +1,8 @@
 #include "cli/options/settings_option.h"
 
 #include "cli/options/options.h"
+#include "settings/table.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/settings_file.h>
 
 #include <fmt/format.h>
@@ -59,23 +59,22 @@ Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* co
     if (!file || file->empty()) {
         return line;
     }
-    const Result<measure::Configuration> settings = measure::readSettings(*file);
+    const Result<Configuration> settings = measure::readSettings(*file);
     if (!settings) {
         return settings.error();
     }
     line.file = *file;
     const bool isPackaged = given(arguments, "--package").has_value();
-    measure::Configuration taken;
+    Configuration taken;
     for (const auto& [name, value] : *settings) {
         const std::string option = "--" + name;
-        const bool isDecided =
-            isPackaged && measure::stageOf(name) == measure::Stage::Compile && name != "strategy";
+        const bool isDecided = isPackaged && sweptSetting(name)->stage == SettingStage::Package;
         if (command->get_option_no_throw(option) != nullptr && !given(arguments, option) && !isDecided) {
             taken.emplace(name, value);
             line.options.push_back(option);
         }
     }
-    const std::vector<std::string> words = measure::wordsOf(taken);
+    const std::vector<std::string> words = wordsOf(taken);
     line.words.insert(line.words.begin() + 1, words.begin(), words.end());
     return line;
 }

@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// Adds --settings FILE, for commands that have some of measure::settingNames() as options.
+// Adds --settings FILE, for commands that have some of settingNames() as options.
 void addSettingsFile(CLI::App& command, std::string& file);
 
 // A command line, with the options that come from a file.

@@ -1,10 +1,8 @@
 // The command line of glint render.
 #pragma once
 
-#include "cli/options/effect_options.h"
 #include "cli/options/motion_options.h"
-#include "cli/options/options.h"
-#include "cli/options/tracing_options.h"
+#include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
 
 #include <cstdint>
@@ -18,22 +16,21 @@ namespace glint {
 
 constexpr double kMaxExposure = 32.0;  // stops, either way
 
-struct RenderArguments : measure::RenderSettings {
+struct RenderArguments : Settings {
     std::string scene;
     std::string output;
     MotionArguments motion;
-    std::string settings;  // the file that completeLine() has read
+    std::string settingsFile;  // that completeLine() has read
     std::string exposure = "auto";
     std::string stats;
     bool pipelineStatistics = false;
     std::string coverage;
-    std::string profileOutput;  // counts hits by key; plan.profile is the file that planning reads
+    std::string profileOutput;  // counts hits by key; Settings::profile is the file that planning reads
     PipelineArguments pipelines;
 };
 
 // Declares the options that make a picture, whatever its use: the scene, size, effects, shaders, the device.
-// Returns the options that --package decides, --merge first.
-std::vector<CLI::Option*> addSceneOptions(CLI::App& command, RenderArguments& arguments);
+void addSceneOptions(CLI::App& command, RenderArguments& arguments);
 // Throws a CLI::ParseError if some of them contradict each other.
 void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments);
 

@@ -132,7 +132,7 @@ private:
         scene_view::applyPose(scene_view::poseAt(scene_, setup_.movement->animations, moment.seconds),
                               scene_);
         scene_view::poseSceneView(scene_, data_);
-        setup_.arguments.effectFrame.apply(data_);
+        measure::sizeLights(setup_.arguments, data_);
         if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }
@@ -229,7 +229,7 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
             report.exposure = *exposure;
             report.exposureAutomatic = setup.arguments.exposure == "auto";
             if (!report.exposureAutomatic) {
-                measure::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
+                parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
         if (Status written = writeImage(frame.image, *image, report.exposure); !written) {

@@ -12,15 +12,11 @@ namespace glint {
 
 namespace fs = std::filesystem;
 
-void addPipelineOptions(CLI::App& command, PipelineArguments& arguments, std::int64_t& threads) {
+void addPipelineOptions(CLI::App& command, PipelineArguments& arguments) {
     addText(command, "--pipeline-cache", arguments.cache, "DIR",
             "folder that keeps the driver's compiled pipelines; none:\n"
             "keep nothing (default: pipelines in the folder of glint\n"
             "compile --cache)")
-        .group("Device");
-    constexpr std::int64_t kMostThreads = 1024;
-    addInteger(command, "--pipeline-threads", threads, 0, kMostThreads,
-               "threads that create pipelines; 0: one for each core")
         .group("Device");
 }
 

@@ -1,4 +1,4 @@
-// The pipelines that drivers keep from run to run: --pipeline-cache and --pipeline-threads.
+// The pipelines that drivers keep from run to run: --pipeline-cache.
 #pragma once
 
 #include "cli/console.h"
@@ -16,7 +16,7 @@ namespace glint {
 struct PipelineArguments {
     std::string cache;  // empty: beside the compiled shaders
 };
-void addPipelineOptions(CLI::App& command, PipelineArguments& arguments, std::int64_t& threads);
+void addPipelineOptions(CLI::App& command, PipelineArguments& arguments);
 
 // Returns the folder of --pipeline-cache, else `pipelines` in the folder of compiled shaders. Returns nothing
 // if either is "none".

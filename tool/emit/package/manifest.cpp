@@ -4,6 +4,7 @@
 #include "emit/context.h"
 #include "emit/modules.h"
 #include "emit/package/json.h"
+#include "settings/table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -50,15 +51,38 @@ ManifestJson features(const MaterialModel& model) {
     return list;
 }
 
-ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& settings) {
-    return {{"hitLobes", model.names(settings.plan.keys.keptLobes & model.lobes)},
-            {"energyCompensation", settings.energyCompensation},
-            {"textureLod", toString(settings.textureLod)},
-            {"precision", package::bitsOf(settings.precision)},
-            {"shadows", package::nameOf(settings.shadows)},
-            {"hitRecord", package::nameOf(settings.hitRecord)},
-            {"sky", settings.environmentMap ? "map" : "gradient"},
-            {"positionFetch", settings.positionFetch}};
+// Returns "textureLod" for "texture-lod".
+std::string memberName(std::string_view setting) {
+    std::string name;
+    for (std::size_t i = 0; i < setting.size(); ++i) {
+        const bool starts = i > 0 && setting[i - 1] == '-';
+        if (setting[i] != '-') {
+            name += starts ? static_cast<char>(setting[i] - 'a' + 'A') : setting[i];
+        }
+    }
+    return name;
+}
+
+// Returns what a setting is written as: switches as booleans, numbers as numbers.
+ManifestJson valueOf(const std::string& text) {
+    if (text == "on" || text == "off") {
+        return text == "on";
+    }
+    const ManifestJson number = ManifestJson::parse(text, nullptr, false);
+    return number.is_number() ? number : ManifestJson(text);
+}
+
+ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& compile) {
+    Settings settings;
+    settings.compile = compile;
+    ManifestJson object{{"hitLobes", model.names(compile.plan.keys.keptLobes & model.lobes)}};
+    for (const Descriptor& row : settingsTable()) {
+        if (row.recorded) {
+            object[memberName(row.name)] = valueOf(row.values.text(settings));
+        }
+    }
+    object["sky"] = compile.environmentMap ? "map" : "gradient";
+    return object;
 }
 
 // Returns the budget of cases, or null if there is none.
@@ -219,9 +243,9 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["strategyChoice"] =
         settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : ManifestJson(nullptr);
     manifest["tracers"] = tracerNames(settings.tracers);
-    manifest["merge"] = toString(settings.plan.merge);
+    manifest["merge"] = nameOf(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
-    manifest["alpha"] = toString(settings.plan.keys.alpha);
+    manifest["alpha"] = nameOf(settings.plan.keys.alpha);
     manifest["settings"] = settingsOf(*package.plan.model, settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();

@@ -42,8 +42,6 @@ struct Exposure {
 
 // Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.
 double stretchMs(std::span<const PassTiming> stretches, Pass pass);
-// Adds up the passes of one sample (Timing::Passes) in which strategies differ.
-HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // A package, and the scene on the device in the form that the package needs.
 struct MountedPackage {
@@ -100,7 +98,7 @@ public:
     // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
     // `observer`, `scene` and `cache`, which may be null, must outlive the result. Errors of
     // Context::createHeadless() and of files.
-    static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const RenderSettings& base,
+    static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const Settings& base,
                                                     const Scene& scene, ModuleCache* cache);
 
     // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
@@ -111,7 +109,7 @@ public:
     Context& context() {
         return *context_;
     }
-    const RenderSettings& base() const {
+    const Settings& base() const {
         return base_;
     }
     const Scene& scene() const {
@@ -137,13 +135,13 @@ public:
     }
 
 private:
-    BenchBed(const Observer& observer, RenderSettings base, const Scene& scene, ModuleCache* cache)
+    BenchBed(const Observer& observer, Settings base, const Scene& scene, ModuleCache* cache)
         : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache) {}
     Status settleChoices();
-    Result<std::shared_ptr<MountedPackage>> mountPackage(const RenderSettings& arguments);
+    Result<std::shared_ptr<MountedPackage>> mountPackage(const Settings& arguments);
 
     const Observer& observer_;
-    RenderSettings base_;
+    Settings base_;
     const Scene& scene_;
     ModuleCache* cache_;
     std::unique_ptr<Context> context_;

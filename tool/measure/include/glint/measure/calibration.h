@@ -82,7 +82,7 @@ double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member);
 void settleEntry(CalibrationEntry& entry);
 
 struct CalibrationSettings {
-    RenderSettings render;
+    Settings render;
     std::string output;                // folder of calibration.json
     bool quick = false;                // fewer numbers of cases and of rays
     std::vector<std::uint32_t> cases;  // empty: by `quick`
@@ -99,7 +99,7 @@ inline constexpr const char* kCalibrationFile = "calibration.json";
 inline constexpr const char* kDeviceFile = "device.json";
 
 // Opens the device that `render` names, without a window. Has the errors of Context::createHeadless().
-Result<std::unique_ptr<Context>> openCalibrationDevice(const RenderSettings& render);
+Result<std::unique_ptr<Context>> openCalibrationDevice(const Settings& render);
 
 // Compiles all scenes, and then measures them one after another. Writes calibration.json after each group of
 // scenes, so that an interrupted run keeps its measurements. The caller has set command, date, machine,

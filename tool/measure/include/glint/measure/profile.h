@@ -60,6 +60,6 @@ struct PlanChoice {
 // policy that `auto` stands for. Notes say what was chosen. Warns of keys that
 // the scene has and the profile lacks, and of a profile that was made with other settings. Has the errors of
 // readProfile().
-Result<PlanChoice> choosePlan(const PlanSettings& arguments, const SceneList& scenes);
+Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes);
 
 }  // namespace glint::measure

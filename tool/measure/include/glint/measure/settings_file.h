@@ -1,7 +1,8 @@
 // Files of settings: docs/schemas/settings.json.
 #pragma once
 
-#include <glint/measure/settings.h>
+#include "settings/configuration.h"
+
 #include <glint/result.h>
 
 #include <filesystem>

@@ -44,7 +44,7 @@ Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector
 // Advises for one scene, before anything is rendered. The candidates are what the device can run: of
 // `package` if it is not null, else of a package that would be compiled by `plan`. Warns "calibration-device"
 // if the calibration is for another device. Has the errors of knownCosts() and adviseStrategy().
-Result<StrategyAdvice> adviseRender(const RenderSettings& arguments, const PlanOptions& plan,
+Result<StrategyAdvice> adviseRender(const Settings& arguments, const PlanOptions& plan,
                                     const Context& context, const Scene& scene, const Package* package,
                                     std::vector<Diagnostic>& warnings);
 

@@ -1,0 +1,122 @@
+// What a renderer and each of its frames are asked for.
+#pragma once
+
+#include <glint/effects.h>
+#include <glint/names.h>
+#include <glint/package_format.h>
+#include <glint/scene_view.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace glint {
+
+struct RendererOptions {
+    package::Strategy strategy = package::kStrategyVisibility;
+    std::uint32_t width = 1280;  // pixels
+    std::uint32_t height = 720;
+    // No value chooses ray queries if package and device support them, else the ray tracing pipeline.
+    std::optional<package::Tracer> tracer{};
+    // No value chooses by the number of buckets and the device, as defaultOrdering() does.
+    std::optional<package::Ordering> ordering{};
+    // Makes the device check that each hit is in its bucket exactly once, and count the errors in
+    // FrameCounters::orderErrors. This is slow.
+    bool checkOrder = false;
+    // Puts the rays of all effects into one list, so that their hits are ordered and shaded together. This
+    // makes fewer, larger dispatches and takes more memory.
+    bool batchEffects = false;
+    // The number of threads that make pipelines, the calling one included. 0 means as many as the machine
+    // runs at once.
+    std::uint32_t pipelineThreads = 0;
+    // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
+    // without DeviceHandles::pipelineStatistics.
+    bool pipelineStatistics = false;
+};
+
+// The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,
+// or cells of the direction's octahedral map.
+enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
+inline constexpr Named<Binning> kBinningNames[] = {
+    {Binning::None, "none", "not at all"},
+    {Binning::Sign, "sign", "into 8 bins"},
+    {Binning::Octahedral, "octahedral", "into 64 bins"},
+};
+constexpr std::span<const Named<Binning>> namesOf(Binning /*type*/) {
+    return kBinningNames;
+}
+
+// A sky with a linear gradient: zenith above, ground below, horizon in between. Radiance is in the units of
+// the lights.
+struct SkyView {
+    std::array<float, 3> zenith{0.25F, 0.45F, 0.85F};
+    std::array<float, 3> horizon{0.75F, 0.80F, 0.85F};
+    std::array<float, 3> ground{0.20F, 0.18F, 0.16F};
+};
+
+class Environment;
+
+// Which times Renderer::timings() returns for a frame.
+enum class Timing : std::uint32_t {
+    // "frame" is the time of the whole frame. "hits" is the time of a round of rays, from the finished list
+    // of rays to the shaded hits.
+    Frame,
+    // Every pass has a time of its own. To measure it, a pass waits for the passes before it, so that passes
+    // do not overlap. The sum is therefore longer than the frame takes otherwise.
+    Passes,
+};
+
+struct FrameOptions {
+    CameraView camera;
+    SkyView sky;
+    // The environment that replaces the gradient. Packages that read one (Package::environmentMap()) require
+    // it, and others refuse it. A Renderer keeps the map of its last recording alive.
+    const Environment* environment = nullptr;
+    float environmentRotation = 0.0F;   // about +Y, counter-clockwise as seen from above, radians
+    float environmentIntensity = 1.0F;  // factor of its radiance
+    // Surfaces with less roughness reflect as mirrors.
+    float mirrorRoughness = 0.05F;
+    // Surfaces with more roughness send no reflection ray.
+    float maxReflectionRoughness = 0.3F;
+    // A ray of an effect is not sent if the luminance of its sample's weight is below this. Its light is
+    // lost. 0 sends every ray.
+    float faintWeight = 0.0F;
+    // The number of rays that a primary surface sends, in each sample, to each light that has a size: 1 to
+    // 4096.
+    std::uint32_t shadowSamples = 1;
+    // Ambient occlusion: the number of rays a sample (1 to 4096), their length in metres (infinite means no
+    // limit), and whether an occluder counts less the farther it is. That weight falls linearly to 0 at the
+    // radius, which then has to be finite.
+    std::uint32_t occlusionSamples = 4;
+    float occlusionRadius = std::numeric_limits<float>::infinity();
+    bool occlusionFalloff = false;
+    // The largest number of surfaces that a refracted ray meets: 1 to 64.
+    std::uint32_t maxInterfaces = 8;
+    // Also counts rays to lights and rays of ambient occlusion. This costs time, most with ray tracing
+    // pipelines.
+    bool countsLight = false;
+    // The largest luminance that a ray of an effect adds in one sample. Infinity means no limit, which is
+    // exact.
+    float maxSampleRadiance = std::numeric_limits<float>::infinity();
+    Binning binning = Binning::None;
+    // The number of steps of the march in screen space that precedes a ray. 0 means no march.
+    std::uint32_t screenSteps = 0;
+    // The thickness that the march assumes behind the depth of a surface, as a share of the surface's
+    // distance.
+    float screenThickness = 0.02F;
+    // Effect bits that switch effects on. They apply to the package's effects with rays and to ambient
+    // occlusion.
+    std::uint32_t effects = package::kAllEffects;
+    std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
+    // The number of samples of a pixel that the picture will average. Each sample stands for that share of
+    // the pixel's area, so the cones by which textures are filtered are 1 / sqrt(averagedSamples) as wide. A
+    // program that accumulates until something moves should give the number that it usually reaches. With 0,
+    // render() and renderSamples() use their count of samples, and record() uses 1.
+    std::uint32_t averagedSamples = 0;
+    std::uint32_t seed = 0;
+    Timing timing = Timing::Frame;
+};
+
+}  // namespace glint

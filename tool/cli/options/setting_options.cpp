@@ -1,0 +1,184 @@
+#include "cli/options/setting_options.h"
+
+#include "cli/options/options.h"
+#include "cli/table.h"
+#include "materials/packs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kHelpColumns = 58;
+
+std::vector<std::string> namesOf(const std::vector<SettingWord>& words) {
+    std::vector<std::string> names;
+    for (const SettingWord& word : words) {
+        names.push_back(word.name);
+    }
+    return names;
+}
+
+std::string typeOf(const Descriptor& row) {
+    if (!row.values.type.empty()) {
+        return std::string(row.values.type);
+    }
+    switch (row.values.form) {
+        case ValueForm::Whole:
+            return "N";
+        case ValueForm::Real:
+            return "X";
+        default:
+            return fmt::format("{}", fmt::join(namesOf(wordsOf(row)), "|"));
+    }
+}
+
+// Returns what the option does, what its words mean, its range and its default.
+std::string helpOf(const Descriptor& row, const Settings& settings) {
+    const SettingValues& values = row.values;
+    std::string text(row.what);
+    std::vector<std::string> others;
+    for (const SettingWord& word : wordsOf(row)) {
+        if (!word.what.empty()) {
+            text += fmt::format("; {}: {}", word.name, word.what);
+        } else if (values.form == ValueForm::List) {
+            others.push_back(word.name);
+        }
+    }
+    if (!others.empty()) {
+        text += fmt::format("; others: {}", fmt::join(others, ", "));
+    }
+    text = wrapped(text, kHelpColumns);
+    if (values.form == ValueForm::Whole || values.form == ValueForm::Real) {
+        return withNote(text, fmt::format("({} to {}, default: {})", boundText(values.min),
+                                          boundText(values.max), values.text(settings)));
+    }
+    return values.form == ValueForm::Switch
+               ? text
+               : withNote(text, fmt::format("(default: {})", values.text(settings)));
+}
+
+void addSetting(CLI::App& command, const Descriptor& row, Settings& settings) {
+    const std::string flags = "--" + std::string(row.name);
+    const std::string help = helpOf(row, settings);
+    const auto set = [&row, &settings](const CLI::results_t& words) {
+        row.values.set(settings, fmt::format("{}", fmt::join(words, ",")));
+        return true;
+    };
+    CLI::Option* const option = row.values.form == ValueForm::Switch
+                                    ? command.add_flag_callback(
+                                          flags, [set] { set({"on"}); }, help)
+                                    : command.add_option(flags, set, help)->type_name(typeOf(row));
+    option->group(std::string(row.group));
+    if (row.values.form == ValueForm::Switch) {
+        return;
+    }
+    if (row.values.form == ValueForm::List) {
+        option->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',')->allow_extra_args(false);
+    }
+    keepChoices(*option, namesOf(wordsOf(row)));
+    option->check(CLI::Validator([&row](const std::string& text) { return complaintAbout(row, text); }, ""));
+}
+
+// Returns null for a command without that option.
+const CLI::Option* givenOption(const CLI::App& command, const std::string& name) {
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0 ? option : nullptr;
+}
+
+}  // namespace
+
+void addSettings(CLI::App& command, SettingCommand which, Settings& settings) {
+    for (const Descriptor& row : settingsTable()) {
+        if ((row.commands & which) != 0) {
+            addSetting(command, row, settings);
+        }
+    }
+}
+
+void settleSettings(const CLI::App& command, const Settings& settings) {
+    if (const CLI::Option* const effects = givenOption(command, "--effects")) {
+        for (const std::string alone : {"none", "all"}) {
+            const bool named = std::ranges::find(effects->results(), alone) != effects->results().end();
+            if (named && effects->results().size() > 1) {
+                throw CLI::ValidationError(
+                    "--effects",
+                    alone + " can't be combined with other effects; leave out one or the others");
+            }
+        }
+    }
+    if (settings.frame.occlusionFalloff &&
+        settings.frame.occlusionRadius == std::numeric_limits<float>::infinity()) {
+        throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");
+    }
+    if (settings.strategy == package::kStrategyHitShaders &&
+        settings.renderer.tracer == package::kTracerRayQuery) {
+        throw CLI::ValidationError(
+            "--tracer",
+            "ray-query can't run --strategy hit-shaders, which is a ray tracing pipeline: "
+            "leave out --tracer, or use --strategy uber");
+    }
+}
+
+void checkProfile(const CLI::App& command, const Settings& settings) {
+    const CLI::Option* const merge = givenOption(command, "--merge");
+    const bool isNamed = merge != nullptr && !parseMerge(merge->results().front())->file.empty();
+    const MergePolicy policy = settings.compile.plan.merge;
+    if (isNamed && givenOption(command, "--profile") != nullptr) {
+        throw CLI::ValidationError("--merge",
+                                   "names a profile, and so does --profile; give only one of them");
+    }
+    if (policy == MergePolicy::Profile && settings.profile.empty()) {
+        throw CLI::ValidationError(
+            "--merge", "profile needs the hits that `glint render --profile FILE` counted: profile:FILE");
+    }
+    if (!takesHits(policy) && !settings.profile.empty()) {
+        throw CLI::ValidationError(
+            "--profile", fmt::format("is for --merge profile and auto, not for --merge {}", nameOf(policy)));
+    }
+}
+
+void addProfileInput(CLI::App& command, Settings& settings) {
+    addText(command, "--profile", settings.profile, "FILE",
+            "hits that `glint render --profile FILE` counted, for\n"
+            "--merge profile; --merge auto uses them too")
+        .group("Shaders");
+}
+
+void addCalibration(CLI::App& command, Settings& settings) {
+    addText(command, "--calibration", settings.calibration, "FILE.json",
+            "device.json of `glint bench --calibrate`: what strategies\n"
+            "cost on a device (default: constants that are built in)")
+        .group("Shaders");
+}
+
+void addReadingOptions(CLI::App& command, Settings& settings) {
+    addText(command, "--variant", settings.variant, "NAME",
+            "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
+    addFlag(command, "--strict-paths", settings.strictPaths,
+            "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
+    addTexts(command, "--materials", settings.materials, "DIR",
+             "add the material features that this folder declares\n"
+             "(docs/material_features.md); may be repeated")
+        .allow_extra_args(false);
+}
+
+Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages) {
+    const Result<const MaterialModel*> model = loadMaterialModel(settings.materials);
+    if (!model) {
+        return model.error();
+    }
+    ImportOptions options;
+    options.decodeImages = decodeImages;
+    options.variant = settings.variant;
+    options.strictPaths = settings.strictPaths;
+    options.materialModel = *model;
+    return options;
+}
+
+}  // namespace glint

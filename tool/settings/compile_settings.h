@@ -1,0 +1,57 @@
+// What a package is compiled with.
+#pragma once
+
+#include "plan/effects.h"
+#include "plan/plan.h"
+#include "plan/strategy_choice.h"
+
+#include <glint/names.h>
+#include <glint/package_modules.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+namespace glint {
+
+// How the level of a texture that hits read is chosen.
+enum class TextureLod : std::uint8_t {
+    Cones,  // by the width of a ray cone
+    Mip0    // always the finest level
+};
+inline constexpr Named<TextureLod> kTextureLodNames[] = {
+    {TextureLod::Cones, "cones", "by the footprint of the ray"},
+    {TextureLod::Mip0, "mip0", "the finest"},
+};
+constexpr std::span<const Named<TextureLod>> namesOf(TextureLod /*type*/) {
+    return kTextureLodNames;
+}
+
+struct CompileSettings {
+    std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    std::uint32_t tracers = package::kTracerRayQuery;
+    package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+    package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
+    bool environmentMap = false;  // Rays that leave the scene read an environment map instead of a gradient.
+    // With this, the strategies uber with ray queries and hit-shaders read the positions of hit triangles
+    // from the acceleration structure instead of the vertex buffer.
+    bool positionFetch = false;
+    PlanOptions plan;
+    EffectRequest effects{false, package::kEffectShadow | package::kEffectReflection};
+    // The renderer adds a light to those of the scenes, which --effects auto takes into account.
+    bool addsLight = false;
+    bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
+    TextureLod textureLod = TextureLod::Cones;
+    package::ShadingPrecision precision = package::ShadingPrecision::Single;
+    int jobs = 0;            // threads; 0 means one for each core
+    bool emitHeader = true;  // glint_tables.h
+    bool emitGlsl = false;   // writes the flattened sources, in glsl/
+    bool debugInfo = false;  // keeps names in the SPIR-V
+    // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.
+    std::optional<StrategyAdvice> strategyChoice{};
+    // The folder in which `glint compile-module` left the modules. If it is empty, modules are compiled here.
+    std::filesystem::path modules{};
+};
+
+}  // namespace glint

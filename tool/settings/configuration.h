@@ -1,0 +1,41 @@
+// Settings by name, as command lines, files and a bench's points have them.
+#pragma once
+
+#include "settings/settings.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// Values by the name of their setting, which is the name of the command-line option without its dashes. The
+// configuration of a point of a bench holds only what differs from the default.
+using Configuration = std::map<std::string, std::string, std::less<>>;
+
+// The facts about scene and device on which the values worth trying depend.
+struct BenchFacts {
+    bool masks = false;         // some materials have an alpha mask
+    bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
+    bool textures = false;
+    bool sizedLights = false;  // some light casts soft shadows
+    bool rayPipeline = false;  // this and the next two are features of the device
+    bool positionFetch = false;
+    bool float16 = false;
+    std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name
+    // The luminance that the picture's exposure maps to white, in the scene's units; 0 if unknown.
+    double white = 0.0;
+};
+
+// Returns the names of the settings that a bench sweeps, in the order of the table.
+std::vector<std::string> settingNames();
+// Returns the value of every setting of settingNames().
+Configuration configurationOf(const Settings& settings);
+// Returns `settings` with the values of `configuration`, which must be valid.
+Settings withSettings(Settings settings, const Configuration& configuration);
+// Returns the words of a command line: {"--spp", "4"}. A switch that is off is left out.
+std::vector<std::string> wordsOf(const Configuration& configuration);
+
+}  // namespace glint

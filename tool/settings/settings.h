@@ -1,0 +1,83 @@
+// Everything that decides about a package and about its pictures, as the values of compiler and runtime. Each
+// setting has a row in the table of settings/table.h, which gives its name, its text and its help.
+#pragma once
+
+#include "settings/compile_settings.h"
+
+#include <glint/renderer_options.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// Whether a picture gets a light that the scene lacks.
+enum class Sun : std::uint8_t { Auto, On, Off };
+inline constexpr Named<Sun> kSunNames[] = {
+    {Sun::Auto, "auto", "only if the scene has no light and there is no --environment"},
+    {Sun::On, "on"},
+    {Sun::Off, "off"},
+};
+constexpr std::span<const Named<Sun>> namesOf(Sun /*type*/) {
+    return kSunNames;
+}
+
+// Parts of `compile`, `renderer` and `frame` that depend on the scene or the device are filled in when these
+// are known: compileSettings(), rendererOptions() and frameOptions() of measure/render_settings.h do that.
+struct Settings {
+    Settings();  // what `glint render` does without options
+
+    CompileSettings compile;
+    RendererOptions renderer;
+    FrameOptions frame;
+
+    // The strategy of a picture. No value takes the one that should be fastest.
+    std::optional<package::Strategy> strategy = package::kStrategyVisibility;
+    // A package also gets the strategy that should be fastest, besides compile.strategies.
+    bool advisesStrategy = false;
+    std::optional<AlphaPolicy> alpha{};  // none: tested if the scene has masks
+    Sun sun = Sun::Auto;
+    std::optional<double> sky{};       // factor of the default sky's radiance; none: as bright as the lights
+    std::uint32_t samples = 1;         // for each pixel
+    double lightRadius = 0.0;          // of point and spot lights, metres
+    double sunAngle = 0.0;             // angular diameter of directional lights, degrees
+    double environmentRotation = 0.0;  // degrees
+    TraversalOrder traversalOrder = TraversalOrder::Auto;
+
+    // Names and files. They are options of their own, without rows in the table.
+    std::string environment;  // a map; empty: a gradient
+    std::string camera;       // see scene_view::chooseCamera()
+    std::string device;
+    std::string package;      // a folder; empty: one is compiled
+    std::string profile;      // hit counts, for the merge policies profile and auto
+    std::string calibration;  // a device file; empty: constants that are built in
+    std::string variant;      // of KHR_materials_variants; empty: none
+    bool strictPaths = false;
+    std::vector<std::string> materials;  // folders of packs: material features of a user's own
+    bool validate = false;
+};
+
+// Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.
+FeatureMask baseLobes();
+
+// Parses the whole of `text` as a number within [min, max]. NaN is outside of every range.
+bool parseReal(std::string_view text, double min, double max, double& value);
+bool parseWhole(std::string_view text, std::int64_t min, std::int64_t max, std::int64_t& value);
+// Parses "960x540". Returns false unless it is the size of a picture that can be made.
+bool parseSize(std::string_view text, std::uint32_t& width, std::uint32_t& height);
+// The value of --merge: a policy, and the file of `POLICY:FILE`, which policies that use hits may name.
+struct MergeChoice {
+    MergePolicy policy{};
+    std::string_view file;
+};
+std::optional<MergeChoice> parseMerge(std::string_view text);
+constexpr bool takesHits(MergePolicy policy) {
+    return policy == MergePolicy::Auto || policy == MergePolicy::Profile;
+}
+
+}  // namespace glint

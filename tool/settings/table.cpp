@@ -1,0 +1,437 @@
+#include "settings/table.h"
+
+#include "settings/values.h"
+
+namespace glint {
+
+namespace {
+
+using namespace values;
+
+constexpr double kMaxMetres = 1e6;
+
+bool sendsRays(const BenchFacts& facts) {
+    return std::ranges::any_of(package::kEffects, [&](const package::EffectInfo& info) {
+        return info.kind == package::EffectKind::Rays && facts.effects.contains(info.name);
+    });
+}
+
+bool ordersHits(const Configuration& base) {
+    const std::optional<package::Strategy> strategy =
+        valueNamed<package::Strategy>(base.find("strategy")->second);
+    return strategy && (*strategy & package::kOrderedStrategies) != 0;
+}
+
+// Why settings are not worth trying. Each returns a reason for all values, or nothing.
+std::string withoutReflections(std::string_view value, const BenchFacts& facts,
+                               const Configuration& /*base*/) {
+    return value.empty() && !facts.effects.contains("reflection") ? "there are no reflections" : "";
+}
+
+std::string withoutRays(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {
+    return value.empty() && !sendsRays(facts) ? "no effect sends rays whose hits are shaded" : "";
+}
+
+std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base) {
+    const std::string reason = withoutRays(value, facts, base);
+    return !reason.empty() || !value.empty() || ordersHits(base)
+               ? reason
+               : fmt::format("--strategy {} sorts no hits and keeps no records",
+                             base.find("strategy")->second);
+}
+
+// Returns the default's effects, and further values that leave out one effect each.
+std::vector<std::string> effectsToTry(const BenchFacts& facts, const std::string& base, bool /*quick*/) {
+    std::vector<std::string> values{base};
+    for (const std::string& without : facts.effects) {
+        std::vector<std::string> rest(facts.effects.begin(), facts.effects.end());
+        std::erase(rest, without);
+        values.push_back(rest.empty() ? std::string(kNone) : fmt::format("{}", fmt::join(rest, ",")));
+    }
+    return values;
+}
+
+// Returns multiples of white, rounded to three digits.
+std::vector<std::string> clampsToTry(const BenchFacts& facts, const std::string& /*base*/, bool quick) {
+    std::vector<std::string> values{"0"};
+    for (const double times : {16.0, 4.0, 1.0}) {
+        if (facts.white > 0.0 && (!quick || times == 1.0)) {
+            values.push_back(fmt::format("{:.3g}", times * facts.white));
+        }
+    }
+    return values;
+}
+
+constexpr SettingBench kNoPicture{.use = BenchUse::None};
+using Against = decltype(SettingBench::against);
+
+constexpr SettingBench approximates(std::string_view exact, std::string_view tried = {},
+                                    std::string_view quick = {}, Against against = nullptr) {
+    return {BenchUse::Swept, exact, tried, quick, against};
+}
+
+constexpr SettingBench changesTime(Against against = nullptr, std::string_view tried = {},
+                                   std::string_view quick = {}) {
+    return {BenchUse::Swept, std::nullopt, tried, quick, against};
+}
+
+constexpr std::string_view kPicture = "Picture";
+constexpr std::string_view kEffectOptions = "Effects";
+constexpr std::string_view kReflections = "Reflections";
+constexpr std::string_view kShaders = "Shaders";
+
+constexpr std::uint32_t kMakers = kOfCompile | kOfRender;
+constexpr std::uint32_t kPlanners = kOfCompile | kOfExplain | kOfRender;
+
+// To add a setting, add its row here, and use its member where it acts.
+constexpr Descriptor kRows[] = {
+    {.name = "size",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = kPicture,
+     .what = "pixels, 1 to 16384 each way, 67108864 in all",
+     .values = kSize},
+    {.name = "spp",
+     .commands = kOfRender,
+     .group = kPicture,
+     .what = "samples per pixel",
+     .values = number<&Settings::samples>(1, 65536),
+     .bench = approximates("", "1 2 4 8 16 32 64", "1 2 4 8")},
+    {.name = "seed",
+     .commands = kOfRender,
+     .group = kPicture,
+     .what = "seed of the random numbers",
+     .values = number<&Settings::frame, &FrameOptions::seed>(0, 4294967295.0),
+     .bench = kNoPicture},
+    {.name = "sky",
+     .commands = kOfRender,
+     .group = kPicture,
+     .what = "factor of the default sky's radiance; excludes --environment",
+     .values = kSky,
+     .document = "cli.md#sky-and-exposure"},
+    {.name = "sun",
+     .commands = kOfRender,
+     .group = kPicture,
+     .what = "add a directional light of 3 lux",
+     .values = enumerator<&Settings::sun>()},
+    {.name = "environment-rotation",
+     .commands = kOfRender,
+     .group = "Environment",
+     .what = "degrees about +Y, counter-clockwise as seen from above; needs --environment",
+     .values = number<&Settings::environmentRotation>(-360.0, 360.0)},
+    {.name = "environment-intensity",
+     .commands = kOfRender,
+     .group = "Environment",
+     .what = "factor of the map's radiance; needs --environment",
+     .values = number<&Settings::frame, &FrameOptions::environmentIntensity>(0.0, 1e9)},
+    {.name = "shadow-spp",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "shadow rays per sample to each light that has a size",
+     .values = number<&Settings::frame, &FrameOptions::shadowSamples>(1, 4096),
+     .bench = approximates("", "1 2 4 8 16", "1 4",
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(!value.empty()                      ? ""
+                                                  : !facts.effects.contains("shadow") ? "there are no shadows"
+                                                  : facts.sizedLights
+                                                      ? ""
+                                                      : "no light has a size (--light-radius, --sun-angle): "
+                                                        "one ray is exact");
+                           })},
+    {.name = "light-radius",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "radius of point and spot lights in metres, for soft shadows; 0: hard shadows",
+     .values = number<&Settings::lightRadius>(0.0, kMaxMetres)},
+    {.name = "sun-angle",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "angular diameter of directional lights in degrees; the sun has 0.53; 0: hard shadows",
+     .values = number<&Settings::sunAngle>(0.0, 90.0)},
+    {.name = "ao-spp",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "rays per sample of ambient-occlusion",
+     .values = number<&Settings::frame, &FrameOptions::occlusionSamples>(1, 4096),
+     .bench = approximates("", "1 2 4 8 16", "1 4",
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(value.empty() &&
+                                                          !facts.effects.contains("ambient-occlusion")
+                                                      ? "there is no ambient occlusion (--effects)"
+                                                      : "");
+                           })},
+    {.name = "ao-radius",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "how far ambient-occlusion looks, in metres; 0: without a limit",
+     .values = limit<&Settings::frame, &FrameOptions::occlusionRadius>(kMaxMetres)},
+    {.name = "ao-falloff",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "how much the occluders of ambient-occlusion count",
+     .values = named<kFalloffNames, &Settings::frame, &FrameOptions::occlusionFalloff>()},
+    {.name = "effects",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kEffectOptions,
+     .what = "which effects the package has, separated by commas; ambient-occlusion and indirect-diffuse "
+             "have to be named",
+     .values = kEffects,
+     .bench = {.use = BenchUse::Swept,
+               .exact = "",
+               .against =
+                   [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                       return std::string(value.empty() && facts.effects.empty() ? "there are no effects"
+                                                                                 : "");
+                   },
+               .triedFor = effectsToTry},
+     .document = "effects.md"},
+    {.name = "max-roughness",
+     .commands = kMakers,
+     .group = kEffectOptions,
+     .what = "rougher surfaces send no reflection ray; compile uses it for --effects auto alone",
+     .values = number<&Settings::frame, &FrameOptions::maxReflectionRoughness>(0.0, 1.0),
+     .bench = approximates("1", "0.1 0.2 0.3 0.6 1", "0.1 0.3 1", withoutReflections)},
+    {.name = "mirror-roughness",
+     .commands = kOfRender,
+     .group = kReflections,
+     .what = "smoother surfaces reflect as mirrors",
+     .values = number<&Settings::frame, &FrameOptions::mirrorRoughness>(0.0, 1.0),
+     .bench = approximates("0", "0 0.05 0.1 0.2", "0.05 0.2", withoutReflections)},
+    {.name = "skip-below",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "do not send rays whose weight is below X; their light is lost; 0: every ray is sent",
+     .values = number<&Settings::frame, &FrameOptions::faintWeight>(0.0, 1.0),
+     .bench = approximates("0", "0 0.01 0.05 0.2", "0 0.05", withoutRays),
+     .document = "effects.md#skipping-what-hardly-counts"},
+    {.name = "clamp",
+     .commands = kOfRender,
+     .group = kReflections,
+     .what = "the most luminance that a ray adds to a sample: less noise, some light lost; 0: no limit",
+     .values = limit<&Settings::frame, &FrameOptions::maxSampleRadiance>(1e9),
+     .bench = {.use = BenchUse::Swept, .exact = "0", .against = withoutRays, .triedFor = clampsToTry}},
+    {.name = "ssr",
+     .commands = kOfRender,
+     .group = kReflections,
+     .what = "march N steps in screen space before a ray is sent",
+     .values = kScreenSteps,
+     .bench = approximates("off", "off 8 16 32 64", "off 16", withoutReflections),
+     .document = "reflections.md#screen-space-before-rays"},
+    {.name = "ssr-thickness",
+     .commands = kOfRender,
+     .group = kReflections,
+     .what = "how far a surface reaches behind its depth in that march, as a share of its distance",
+     .values = number<&Settings::frame, &FrameOptions::screenThickness>(0.0, 1.0)},
+    {.name = "max-interfaces",
+     .commands = kOfRender,
+     .group = kEffectOptions,
+     .what = "the most surfaces that a refracted ray meets; after that it shows the sky",
+     .values = number<&Settings::frame, &FrameOptions::maxInterfaces>(1, 64),
+     .bench = approximates("64", "2 4 8 16 32", "2 8",
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(value.empty() && !facts.effects.contains("refraction")
+                                                      ? "nothing refracts"
+                                                      : "");
+                           })},
+    {.name = "hit-lobes",
+     .commands = kPlanners,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "which lobes of materials hits keep, separated by commas; primary surfaces keep all",
+     .values = kHitLobes,
+     .bench = approximates("all", "all base", {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(value.empty() && !facts.furtherLobes
+                                                      ? "no material has a lobe that hits could lose"
+                                                      : "");
+                           })},
+    {.name = "energy-compensation",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "add the light that bounces between microfacets more than once, which rough surfaces otherwise "
+             "lose",
+     .values = named<kEnergyNames, &Settings::compile, &CompileSettings::energyCompensation>(),
+     .bench = approximates("on"),
+     .document = "numerics.md",
+     .recorded = true},
+    {.name = "texture-lod",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "which level of a texture is read",
+     .values = enumerator<&Settings::compile, &CompileSettings::textureLod>(),
+     .bench = approximates("mip0", {}, {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(value.empty() && !facts.textures ? "there are no textures"
+                                                                                   : "");
+                           }),
+     .recorded = true},
+    {.name = "alpha",
+     .commands = kPlanners,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "alpha masks of hits",
+     .values = optional<&Settings::alpha>("tested if the scene has masks"),
+     .bench = approximates("tested", "tested opaque", {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(
+                                   value.empty() && !facts.masks ? "no material has an alpha mask" : "");
+                           })},
+    {.name = "precision",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "bits of float in shading",
+     .values = enumerator<&Settings::compile, &CompileSettings::precision>(),
+     .bench = approximates("32", {}, {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(
+                                   value == "16" && !facts.float16
+                                       ? "the device has no 16-bit floating point (shaderFloat16)"
+                                       : "");
+                           }),
+     .document = "numerics.md#shading-in-16-bits",
+     .recorded = true},
+    {.name = "shadows",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "where shadow rays of hits are traced",
+     .values = enumerator<&Settings::compile, &CompileSettings::shadows>(),
+     .bench = changesTime(withoutRays),
+     .recorded = true},
+    {.name = "hit-record",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "what is kept of a hit between passes (visibility, sorted-uber)",
+     .values = enumerator<&Settings::compile, &CompileSettings::hitRecord>(),
+     .bench = approximates("full", {}, {}, withoutOrder),
+     .document = "reflections.md",
+     .recorded = true},
+    {.name = "position-fetch",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "uber (with ray queries) and hit-shaders read positions from the acceleration structure instead "
+             "of from vertices",
+     .values = flag<&Settings::compile, &CompileSettings::positionFetch>(),
+     .bench =
+         changesTime(
+             [](std::string_view value, const BenchFacts& facts, const Configuration& base) {
+                 return value == "on" && !facts.positionFetch
+                            ? std::string(
+                                  "the device lacks VK_KHR_ray_tracing_position_fetch, or this glint's "
+                                  "glslang GLSL for it")
+                            : withoutRays(value, facts, base);
+             },
+             "off on"),
+     .recorded = true},
+    {.name = "strategy",
+     .commands = kOfCompile,
+     .stage = SettingStage::Choice,
+     .group = kShaders,
+     .what = "how hits can be shaded, separated by commas",
+     .values =
+         bits<package::Strategy, &Settings::advisesStrategy, &Settings::compile,
+              &CompileSettings::strategies>("the one that should be fastest at 1920x1080, by --calibration"),
+     .document = "cli.md#which-strategy"},
+    {.name = "strategy",
+     .commands = kOfRender,
+     .stage = SettingStage::Choice,
+     .group = kShaders,
+     .what = "how hits are shaded",
+     .values = optional<&Settings::strategy>("the one that should be fastest, by --calibration"),
+     .bench =
+         changesTime(
+             [](std::string_view value, const BenchFacts& facts, const Configuration& base) {
+                 return value == package::nameOf(package::kStrategyHitShaders) && !facts.rayPipeline
+                            ? std::string("the device has no ray tracing pipelines")
+                            : withoutRays(value, facts, base);
+             },
+             "uber visibility sorted-uber hit-shaders"),
+     .document = "cli.md#which-strategy"},
+    {.name = "tracer",
+     .commands = kOfCompile,
+     .stage = SettingStage::Choice,
+     .group = kShaders,
+     .what = "what traces rays, separated by commas; hit-shaders always has its own",
+     .values = bits<package::Tracer, nullptr, &Settings::compile, &CompileSettings::tracers>()},
+    {.name = "tracer",
+     .commands = kOfRender,
+     .stage = SettingStage::Choice,
+     .group = kShaders,
+     .what = "what traces rays; hit-shaders always uses ray-pipeline",
+     .values = optional<&Settings::renderer, &RendererOptions::tracer>(
+         "ray-query where package and device have it, else ray-pipeline")},
+    {.name = "merge",
+     .commands = kPlanners,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "which permutations share a shader; FILE: hits that --profile counted",
+     .values = kMerge,
+     .bench = changesTime(nullptr, "none family all auto"),
+     .document = "merging.md"},
+    {.name = "max-shaders",
+     .commands = kPlanners,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no "
+             "limit, or 32 for auto and profile",
+     .values = number<&Settings::compile, &CompileSettings::plan, &PlanOptions::maxShaders>(0, 1000000)},
+    {.name = "ordering",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = kReflections,
+     .what = "how visibility and sorted-uber sort hits by shader",
+     .values =
+         optional<&Settings::renderer, &RendererOptions::ordering>("by the device and the number of shaders"),
+     .bench = changesTime(withoutOrder, {}, "auto local-histogram"),
+     .document = "reflections.md#orderings"},
+    {.name = "binning",
+     .commands = kOfRender,
+     .group = kReflections,
+     .what = "sort the rays of a workgroup by direction",
+     .values = enumerator<&Settings::frame, &FrameOptions::binning>(),
+     .bench = changesTime(withoutRays),
+     .document = "reflections.md#ray-binning"},
+    {.name = "batch-effects",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = kEffectOptions,
+     .what = "shade the hits of all effects together: fewer and larger dispatches, more memory",
+     .values = flag<&Settings::renderer, &RendererOptions::batchEffects>(),
+     .bench = changesTime(withoutRays, "off on"),
+     .document = "effects.md#one-list-for-all"},
+    {.name = "traversal-order",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = "Device",
+     .what = "how triangles and instances come in acceleration structures",
+     .values = enumerator<&Settings::traversalOrder>(),
+     .document = "performance.md#traversal-on-a-cpu-driver"},
+    {.name = "pipeline-threads",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = "Device",
+     .what = "threads that create pipelines; 0: one for each core",
+     .values = number<&Settings::renderer, &RendererOptions::pipelineThreads>(0, 1024),
+     .bench = kNoPicture},
+};
+
+}  // namespace
+
+std::span<const Descriptor> settingsTable() {
+    return kRows;
+}
+
+const Descriptor* sweptSetting(std::string_view name) {
+    const auto* const row = std::ranges::find_if(kRows, [name](const Descriptor& one) {
+        return one.name == name && one.bench.use == BenchUse::Swept;
+    });
+    return row == std::end(kRows) ? nullptr : row;
+}
+
+}  // namespace glint

@@ -1,0 +1,111 @@
+// The table of settings. The options of the command line with their help, their checks and their completion,
+// files of settings, what a bench sweeps, the settings in a manifest and the table in docs/cli.md follow from
+// it.
+#pragma once
+
+#include "settings/configuration.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+// When a setting is decided.
+enum class SettingStage : std::uint8_t {
+    Package,   // when shaders are compiled: another value needs another package
+    Choice,    // a package may have several values, from which a renderer chooses one
+    Renderer,  // when a renderer is made
+    Frame,     // for each frame
+};
+
+// The commands that have a setting as an option, as bits of a set.
+enum SettingCommand : std::uint32_t {
+    kOfCompile = 1,
+    kOfExplain = 2,
+    kOfRender = 4,  // also bench, which makes pictures in the same way
+};
+
+enum class ValueForm : std::uint8_t {
+    Switch,  // on or off; on the command line the option alone
+    Word,    // one of the words
+    List,    // words, separated by commas
+    Whole,   // a number within the range, or one of the words
+    Real,
+    Text,  // what `further` accepts
+};
+
+struct SettingWord {
+    std::string name;
+    std::string what;  // may be empty
+};
+
+// The values of a setting, and where they are kept.
+struct SettingValues {
+    ValueForm form = ValueForm::Switch;
+    std::string (*text)(const Settings& settings) = nullptr;
+    // `text` is a value for which complaintAbout() has no complaint.
+    void (*set)(Settings& settings, std::string_view text) = nullptr;
+    std::vector<SettingWord> (*words)() = nullptr;  // null: none
+    double min = 0.0;                               // the range of numbers
+    double max = 0.0;
+    std::string_view automatic{};  // what the word "auto" stands for
+    std::string_view type{};       // of the value, for help; empty: the words, N or X
+    // Values besides words and numbers, and what they are: "size such as 960x540".
+    bool (*accepts)(std::string_view text) = nullptr;
+    std::string_view further{};
+};
+
+enum class BenchUse : std::uint8_t {
+    Swept,  // other values are tried
+    View,   // the same in all points, and part of their commands
+    None,   // decides about no picture
+};
+
+struct SettingBench {
+    BenchUse use = BenchUse::View;
+    // The value in the reference. It is empty for the default's value, because the user asks for that value
+    // or all values converge to the same picture. It is absent if the setting changes time alone.
+    std::optional<std::string_view> exact{};
+    std::string_view tried{};  // values, separated by blanks; empty: all words
+    std::string_view quick{};  // fewer values; empty: `tried`
+    // Returns why a value is not worth trying, or the whole setting if `value` is empty. Returns an empty
+    // text if it is worth trying. Null: always worth it.
+    std::string (*against)(std::string_view value, const BenchFacts& facts,
+                           const Configuration& base) = nullptr;
+    // Returns the values if they depend on the scene; null if not.
+    std::vector<std::string> (*triedFor)(const BenchFacts& facts, const std::string& base,
+                                         bool quick) = nullptr;
+};
+
+struct Descriptor {
+    std::string_view name;  // of the option, without its dashes
+    std::uint32_t commands = 0;
+    SettingStage stage = SettingStage::Frame;
+    std::string_view group;  // of options in the help
+    std::string_view what;   // a sentence without a full stop
+    SettingValues values;
+    SettingBench bench{};
+    std::string_view document{};  // says more: "reflections.md#ray-binning"
+    bool recorded = false;        // a member of the manifest's `settings`
+};
+
+// Rows of the same name have no command in common.
+std::span<const Descriptor> settingsTable();
+// Returns the row that a bench sweeps; null for other names.
+const Descriptor* sweptSetting(std::string_view name);
+// Returns whether `glint compile` decides about the setting.
+constexpr bool isCompiled(const Descriptor& row) {
+    return row.stage == SettingStage::Package || row.stage == SettingStage::Choice;
+}
+
+std::vector<SettingWord> wordsOf(const Descriptor& row);
+// Returns "\"fast\" is none of on, off", or an empty text for a value. A list is checked word by word.
+std::string complaintAbout(const Descriptor& row, std::string_view text);
+// Returns a bound of a range: "0.5", "1e9".
+std::string boundText(double bound);
+
+}  // namespace glint

@@ -1,0 +1,352 @@
+// How the values of settings are read and written: by the type of the member that holds them, and by hand
+// where several members belong together.
+#pragma once
+
+#include "settings/table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace glint::values {
+
+inline constexpr std::string_view kAuto = "auto";
+inline constexpr std::string_view kNone = "none";
+inline constexpr std::string_view kAll = "all";
+
+// Member pointers that lead from Settings to a member of a member.
+template <auto First, auto... Rest, typename Object>
+auto& memberOf(Object& object) {
+    if constexpr (sizeof...(Rest) == 0) {
+        return object.*First;
+    } else {
+        return memberOf<Rest...>(object.*First);
+    }
+}
+
+template <typename Value>
+std::vector<SettingWord> wordsNamed(std::span<const Named<Value>> names) {
+    std::vector<SettingWord> words;
+    for (const Named<Value>& named : names) {
+        words.push_back({std::string(named.name), std::string(named.what)});
+    }
+    return words;
+}
+
+template <typename Value>
+std::vector<SettingWord> withAuto(std::span<const Named<Value>> names) {
+    std::vector<SettingWord> words = wordsNamed(names);
+    words.insert(words.begin(), {std::string(kAuto), ""});
+    return words;
+}
+
+template <typename Function>
+void eachWord(std::string_view list, const Function& function) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        function(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+}
+
+template <typename Value>
+Value numberOf(std::string_view text) {
+    double number = 0.0;
+    parseReal(text, std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(), number);
+    return static_cast<Value>(number);
+}
+
+// A switch.
+template <auto... Path>
+constexpr SettingValues flag() {
+    return {ValueForm::Switch,
+            [](const Settings& settings) { return std::string(memberOf<Path...>(settings) ? "on" : "off"); },
+            [](Settings& settings, std::string_view text) { memberOf<Path...>(settings) = text == "on"; }};
+}
+
+// A boolean or an enumerator by names of its own.
+template <const auto& kNames, auto... Path>
+constexpr SettingValues named() {
+    return {ValueForm::Word,
+            [](const Settings& settings) {
+                const auto& value = memberOf<Path...>(settings);
+                return std::string(
+                    std::ranges::find_if(kNames, [&](const auto& one) { return one.value == value; })->name);
+            },
+            [](Settings& settings, std::string_view text) {
+                memberOf<Path...>(settings) =
+                    std::ranges::find_if(kNames, [&](const auto& one) { return one.name == text; })->value;
+            },
+            [] { return wordsNamed<std::remove_cvref_t<decltype(kNames[0].value)>>(kNames); }};
+}
+
+template <auto... Path>
+constexpr SettingValues enumerator() {
+    using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;
+    return {ValueForm::Word,
+            [](const Settings& settings) { return std::string(nameOf(memberOf<Path...>(settings))); },
+            [](Settings& settings, std::string_view text) {
+                memberOf<Path...>(settings) = *valueNamed<Value>(text);
+            },
+            [] { return wordsNamed(namesOf(Value{})); }};
+}
+
+// An enumerator, or nothing for "auto".
+template <auto... Path>
+constexpr SettingValues optional(std::string_view automatic) {
+    using Value =
+        typename std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>::value_type;
+    return {.form = ValueForm::Word,
+            .text =
+                [](const Settings& settings) {
+                    const std::optional<Value>& value = memberOf<Path...>(settings);
+                    return std::string(value ? nameOf(*value) : kAuto);
+                },
+            .set = [](Settings& settings,
+                      std::string_view text) { memberOf<Path...>(settings) = valueNamed<Value>(text); },
+            .words = [] { return withAuto(namesOf(Value{})); },
+            .automatic = automatic};
+}
+
+template <auto... Path>
+constexpr SettingValues number(double min, double max) {
+    using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;
+    return {.form = std::is_integral_v<Value> ? ValueForm::Whole : ValueForm::Real,
+            .text = [](const Settings& settings) { return fmt::format("{}", memberOf<Path...>(settings)); },
+            .set = [](Settings& settings,
+                      std::string_view text) { memberOf<Path...>(settings) = numberOf<Value>(text); },
+            .min = min,
+            .max = max};
+}
+
+// A number that is written as 0 where there is no limit.
+template <auto... Path>
+constexpr SettingValues limit(double max) {
+    using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;
+    return {.form = ValueForm::Real,
+            .text =
+                [](const Settings& settings) {
+                    const Value value = memberOf<Path...>(settings);
+                    return fmt::format("{}",
+                                       value == std::numeric_limits<Value>::infinity() ? Value{0} : value);
+                },
+            .set =
+                [](Settings& settings, std::string_view text) {
+                    const auto value = numberOf<Value>(text);
+                    memberOf<Path...>(settings) = value > 0 ? value : std::numeric_limits<Value>::infinity();
+                },
+            .min = 0.0,
+            .max = max};
+}
+
+// A set of bits. `kAdvised`, if it is not null, stands for "auto".
+template <typename Value, bool Settings::*kAdvised, auto... Path>
+constexpr SettingValues bits(std::string_view automatic = {}) {
+    return {.form = ValueForm::List,
+            .text =
+                [](const Settings& settings) {
+                    std::vector<std::string_view> words;
+                    if constexpr (kAdvised != nullptr) {
+                        if (settings.*kAdvised) {
+                            words.push_back(kAuto);
+                        }
+                    }
+                    for (const Named<Value>& one : namesOf(Value{})) {
+                        if ((memberOf<Path...>(settings) & one.value) != 0) {
+                            words.push_back(one.name);
+                        }
+                    }
+                    return fmt::format("{}", fmt::join(words, ","));
+                },
+            .set =
+                [](Settings& settings, std::string_view text) {
+                    std::uint32_t& set = memberOf<Path...>(settings);
+                    set = 0;
+                    eachWord(text, [&](std::string_view word) {
+                        for (const Named<Value>& one : namesOf(Value{})) {
+                            set |= word == kAll || word == one.name ? std::uint32_t{one.value} : 0U;
+                        }
+                        if constexpr (kAdvised != nullptr) {
+                            settings.*kAdvised = settings.*kAdvised || word == kAuto;
+                        }
+                    });
+                },
+            .words =
+                [] {
+                    std::vector<SettingWord> words =
+                        kAdvised != nullptr ? withAuto(namesOf(Value{})) : wordsNamed(namesOf(Value{}));
+                    words.push_back({std::string(kAll), "all of them"});
+                    return words;
+                },
+            .automatic = automatic,
+            .type = kAdvised != nullptr ? "auto|all|LIST" : "all|LIST"};
+}
+
+inline std::string effectsOf(const Settings& settings) {
+    const EffectRequest& request = settings.compile.effects;
+    std::vector<std::string_view> words;
+    if (request.automatic) {
+        words.push_back(kAuto);
+    }
+    for (const package::EffectInfo& info : package::kEffects) {
+        if ((request.named & info.effect) != 0) {
+            words.push_back(info.name);
+        }
+    }
+    return words.empty() ? std::string(kNone)
+           : !request.automatic && request.named == package::kAllEffects
+               ? std::string(kAll)
+               : fmt::format("{}", fmt::join(words, ","));
+}
+
+inline void setEffects(Settings& settings, std::string_view text) {
+    EffectRequest& request = settings.compile.effects;
+    request.automatic = false;
+    request.named = 0;
+    eachWord(text, [&](std::string_view word) {
+        request.automatic = request.automatic || word == kAuto;
+        for (const package::EffectInfo& info : package::kEffects) {
+            request.named |= word == kAll || word == info.name ? std::uint32_t{info.effect} : 0U;
+        }
+    });
+}
+
+inline std::vector<SettingWord> effectWords() {
+    std::vector<SettingWord> words{
+        {std::string(kAuto), ""}, {std::string(kNone), "no effect"}, {std::string(kAll), "every effect"}};
+    for (const package::EffectInfo& info : package::kEffects) {
+        words.push_back({std::string(info.name), ""});
+    }
+    return words;
+}
+
+inline std::string hitLobesOf(const Settings& settings) {
+    const FeatureMask kept = settings.compile.plan.keys.keptLobes;
+    if (kept == kLobeMask) {
+        return std::string(kAll);
+    }
+    const bool hasBase = (kept & baseLobes()) == baseLobes();
+    std::vector<std::string_view> words = builtinMaterialModel().names(hasBase ? kept & ~baseLobes() : kept);
+    if (hasBase) {
+        words.insert(words.begin(), "base");
+    }
+    return fmt::format("{}", fmt::join(words, ","));
+}
+
+inline void setHitLobes(Settings& settings, std::string_view text) {
+    const MaterialModel& model = builtinMaterialModel();
+    FeatureMask& kept = settings.compile.plan.keys.keptLobes;
+    kept = 0;
+    eachWord(text, [&](std::string_view word) {
+        kept |= word == kAll     ? kLobeMask
+                : word == "base" ? baseLobes()
+                                 : model.baseModels() | model.mask(word);
+    });
+}
+
+inline std::vector<SettingWord> hitLobeWords() {
+    const MaterialModel& model = builtinMaterialModel();
+    std::vector<SettingWord> words{{std::string(kAll), "as primary surfaces do"},
+                                   {"base", fmt::format("{}", fmt::join(model.names(baseLobes()), ", "))}};
+    for (const std::string_view name : model.names(kLobeMask)) {
+        words.push_back({std::string(name), ""});
+    }
+    return words;
+}
+
+inline constexpr SettingValues kEffects{
+    .form = ValueForm::List,
+    .text = effectsOf,
+    .set = setEffects,
+    .words = effectWords,
+    .automatic = "shadow, reflection and refraction, where the scenes call for them",
+    .type = "auto|none|all|LIST"};
+
+inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
+                                         .text = hitLobesOf,
+                                         .set = setHitLobes,
+                                         .words = hitLobeWords,
+                                         .type = "all|base|LIST"};
+
+inline constexpr SettingValues kMerge{
+    .form = ValueForm::Word,
+    .text = [](const Settings& settings) { return std::string(nameOf(settings.compile.plan.merge)); },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            const MergeChoice choice = *parseMerge(text);
+            settings.compile.plan.merge = choice.policy;
+            if (!choice.file.empty()) {
+                settings.profile = choice.file;
+            }
+        },
+    .words = [] { return wordsNamed(namesOf(MergePolicy{})); },
+    .type = "none|family|all|auto[:FILE]|profile[:FILE]",
+    .accepts = [](std::string_view text) { return parseMerge(text).has_value(); },
+    .further = "auto:FILE or profile:FILE"};
+
+inline constexpr SettingValues kSize{
+    .form = ValueForm::Text,
+    .text =
+        [](const Settings& settings) {
+            return fmt::format("{}x{}", settings.renderer.width, settings.renderer.height);
+        },
+    .set = [](Settings& settings,
+              std::string_view text) { parseSize(text, settings.renderer.width, settings.renderer.height); },
+    .type = "WxH",
+    .accepts =
+        [](std::string_view text) {
+            std::uint32_t width = 0;
+            std::uint32_t height = 0;
+            return parseSize(text, width, height);
+        },
+    .further = "size such as 960x540"};
+
+inline constexpr SettingValues kSky{
+    .form = ValueForm::Real,
+    .text =
+        [](const Settings& settings) {
+            return settings.sky ? fmt::format("{}", *settings.sky) : std::string(kAuto);
+        },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            settings.sky = text == kAuto ? std::nullopt : std::optional(numberOf<double>(text));
+        },
+    .words =
+        [] {
+            return std::vector<SettingWord>{{std::string(kAuto), ""}};
+        },
+    .max = 1e9,
+    .automatic =
+        "the sky brings as much light as the scene's lights, and the factor "
+        "is 1 if the scene has none",
+    .type = "auto|FACTOR"};
+
+inline constexpr SettingValues kScreenSteps{
+    .form = ValueForm::Whole,
+    .text =
+        [](const Settings& settings) {
+            const std::uint32_t steps = settings.frame.screenSteps;
+            return steps == 0 ? std::string("off") : fmt::format("{}", steps);
+        },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            settings.frame.screenSteps = text == "off" ? 0 : numberOf<std::uint32_t>(text);
+        },
+    .words =
+        [] {
+            return std::vector<SettingWord>{{"off", ""}};
+        },
+    .min = 1,
+    .max = 1024,
+    .type = "off|N"};
+
+inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
+inline constexpr Named<bool> kFalloffNames[] = {
+    {false, "none", "all count alike"},
+    {true, "linear", "surfaces occlude less the farther away they are; needs --ao-radius"}};
+
+}  // namespace glint::values
