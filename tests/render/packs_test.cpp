@@ -173,4 +173,27 @@ TEST(Packs, ThePageAddsALobe) {
     expectNoValidationMessages();
 }
 
+TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
+    const test::TemporaryFolder folder;
+    fs::copy(kPacks + "/retroreflection", folder.path() / "retroreflection");
+    const fs::path file = folder.path() / "retroreflection" / "retroreflection_bsdf.glsl";
+    ASSERT_TRUE(writeFile(
+        file, "#include \"hit/surface_values.glsl\"\n\nvoid broken() { return 1 }\nvoid broken2() {}\n"));
+    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
+    ASSERT_TRUE(model) << toString(model.error());
+    Material material = blackMaterial(**model);
+    material.give("EXAMPLE_materials_retroreflection");
+    material["retroreflectionFactor"] = 0.75F;
+    Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
+    const Result<CompiledPackage> package = compilePackage(scene, {});
+    ASSERT_FALSE(package);
+    EXPECT_EQ(package.error().id, "glsl");
+    EXPECT_TRUE(package.error().where.starts_with(file.string() + ":")) << package.error().where;
+    EXPECT_NE(package.error().message.find("feature retroreflection"), std::string::npos)
+        << package.error().message;
+}
+
 }  // namespace

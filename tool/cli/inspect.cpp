@@ -164,7 +164,7 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == manifest.features.names(kLobeMask).size() ? "all"
+    return manifest.hitLobes.size() == manifest.features.names(manifest.features.lobes).size() ? "all"
                                                                                  : join(manifest.hitLobes);
 }
 

@@ -110,6 +110,25 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
 }
 
+// Says what to do about an error in GLSL to which packs may have contributed.
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
+    if (error.id != "glsl" || model.sources.empty()) {
+        return error;
+    }
+    for (const FeatureCode& code : model.code) {
+        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
+        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
+            error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
+            error.hint = "correct the file; docs/material_features.md says what each stage may use";
+            return error;
+        }
+    }
+    error.hint =
+        "look whether a pack has all functions of its stages (docs/material_features.md); "
+        "otherwise this is a defect of Glint";
+    return error;
+}
+
 Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
                                 ModuleCache* cache) {
     Result<Prepared> prepared = prepare(scenes, settings);
@@ -121,7 +140,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
             ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache)
             : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
     if (!compiled) {
-        return compiled.error();
+        return explainGlslError(compiled.error(), *prepared->plan.model);
     }
     CompiledPackage package;
     package.plan = std::move(prepared->plan);

@@ -111,6 +111,8 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
             Feature& feature = manifest.features.features.emplace_back();
             feature.name = row.at("name").get<std::string>();
             feature.bit = std::clamp(row.at("bit").get<int>(), 0, kFeatureBits - 1);
+            feature.isLobe = row.value("lobe", feature.bit < kFirstInput);
+            manifest.features.lobes |= feature.isLobe ? feature.mask() : 0;
         }
         for (const auto& shader : json.at("shaders")) {
             for (const auto& material : shader.at("materials")) {

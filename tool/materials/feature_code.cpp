@@ -22,6 +22,7 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     declared.where = members.where();
     FeatureCode& code = declared.code;
     code.name = declaration.text("name");
+    code.declaration = file;
     code.feature = feature;
     const std::string_view folder = file.substr(0, file.rfind('/') + 1);
     struct {

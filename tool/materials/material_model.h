@@ -156,9 +156,10 @@ struct Feature {
 
 // The GLSL of a feature, in files of its folder. Its functions begin with the feature's name.
 struct FeatureCode {
-    std::string name;  // of the declaration: "clearcoat"
-    int feature = -1;  // Keys without this feature do not run the code; -1: all keys run it.
-    int unless = -1;   // Keys with this feature do not run it.
+    std::string name;         // of the declaration: "clearcoat"
+    std::string declaration;  // its file
+    int feature = -1;         // Keys without this feature do not run the code; -1: all keys run it.
+    int unless = -1;          // Keys with this feature do not run it.
     // Names of files as an #include gives them, empty where there is no such function. surface:
     // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); layer: the struct Clearcoat
     // and the functions that shaders/bsdf/layer.glsl lists.

@@ -44,6 +44,7 @@ ManifestJson features(const MaterialModel& model) {
     for (const Feature& feature : model.features) {
         list.push_back({{"name", feature.name},
                         {"bit", feature.bit},
+                        {"lobe", feature.isLobe},
                         {"macro", feature.macro},
                         {"gltf", feature.gltf},
                         {"neutral", feature.neutralText()}});
