@@ -21,7 +21,7 @@ in build/fuzz/findings; exit 1 if there is any. Needs Clang: scripts/setup.sh --
 TEXT
 }
 
-all=(lock package image ktx2 lint profile manifest cache gltf_json gltf_glb)
+all=(lock declaration package image ktx2 lint profile manifest cache gltf_json gltf_glb)
 executions=0
 seconds=
 report=false
@@ -80,7 +80,7 @@ trap 'rm -rf "$scratch"' EXIT
 longest() {
     case $1 in
         lock) echo 1024 ;;
-        image | profile | cache) echo 4096 ;;
+        declaration | image | profile | cache) echo 4096 ;;
         manifest | gltf_*) echo 8192 ;;
         *) echo 16384 ;;
     esac

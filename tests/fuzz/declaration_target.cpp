@@ -1,0 +1,46 @@
+// Fuzzes the declaration of a material feature of a pack, beside those of Glint.
+#include "fuzz/fuzz_target.h"
+#include "materials/declaration_files.h"
+#include "materials/declarations.h"
+#include "materials/material.h"
+#include "plan/plan.h"
+
+#include <algorithm>
+#include <vector>
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using glint::fuzz::require;
+    std::vector<glint::DeclarationFile> files;
+    for (const glint::BuiltinFile& file : glint::declarationFiles()) {
+        files.push_back({file.name, file.text});
+    }
+    files.push_back({"pack/pack.json", glint::fuzz::asText(data, size), true});
+    const glint::Result<glint::MaterialModel> model = glint::readDeclarations(files);
+    if (!model) {
+        require(model.error().id == "declaration" && !model.error().message.empty(),
+                "an error has an id and a message");
+        return 0;
+    }
+    for (const glint::Feature& feature : glint::builtinMaterialModel().features) {
+        require(model->mask(feature.name) == feature.mask(), "a pack moves no bit of Glint's own features");
+    }
+    glint::FeatureMask all = 0;
+    for (const glint::Feature& feature : model->features) {
+        require((all & feature.mask()) == 0, "features have bits of their own");
+        all |= feature.mask();
+    }
+    // Keys of a material with every default, and of one with the ends of the ranges.
+    glint::Material material(*model);
+    glint::PrimitiveInputs primitive;
+    primitive.hasNormals = primitive.hasTexCoords0 = true;
+    const glint::FeatureMask usual = glint::makeKey(material, primitive, {});
+    require((usual & ~all) == 0, "keys have declared features");
+    for (const glint::Parameter& parameter : model->parameters) {
+        for (int i = 0; parameter.aliasOf < 0 && i < parameter.channels; ++i) {
+            material.values[static_cast<std::size_t>(parameter.first + i)] = parameter.hold(parameter.high);
+        }
+    }
+    std::ranges::fill(material.given, std::uint8_t{1});
+    require((glint::makeKey(material, primitive, {}) & ~all) == 0, "keys have declared features");
+    return 0;
+}
