@@ -47,7 +47,7 @@ TEST(Packs, StrategiesAndMergePoliciesGiveOneImage) {
             const LinearImage image = loaded.render(strategy, setup);
             ASSERT_FALSE(image.pixels.empty());
             reference = reference.pixels.empty() ? image : reference;
-            expectSameImage(image, reference, std::string(toString(merge)));
+            expectSameImage(image, reference, std::string(nameOf(merge)));
         }
     }
     expectNoValidationMessages();
