@@ -331,7 +331,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.report(scene->warnings);
     const SceneList scenes({&*scene, 1});
-    Settings planned = arguments;
+    Settings planned = static_cast<const Settings&>(arguments);
     if (!arguments.package.empty()) {
         planned.alpha = AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
     }

@@ -386,8 +386,8 @@ constexpr Descriptor kRows[] = {
      .stage = SettingStage::Renderer,
      .group = kReflections,
      .what = "how visibility and sorted-uber sort hits by shader",
-     .values =
-         optional<&Settings::renderer, &RendererOptions::ordering>("by the device and the number of shaders"),
+     .values = optional<&Settings::renderer, &RendererOptions::ordering>(
+         "by the device and the number of shaders", "auto|NAME"),
      .bench = changesTime(withoutOrder, {}, "auto local-histogram"),
      .document = "reflections.md#orderings"},
     {.name = "binning",

@@ -97,7 +97,7 @@ constexpr SettingValues enumerator() {
 
 // An enumerator, or nothing for "auto".
 template <auto... Path>
-constexpr SettingValues optional(std::string_view automatic) {
+constexpr SettingValues optional(std::string_view automatic, std::string_view type = {}) {
     using Value =
         typename std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>::value_type;
     return {.form = ValueForm::Word,
@@ -109,7 +109,8 @@ constexpr SettingValues optional(std::string_view automatic) {
             .set = [](Settings& settings,
                       std::string_view text) { memberOf<Path...>(settings) = valueNamed<Value>(text); },
             .words = [] { return withAuto(namesOf(Value{})); },
-            .automatic = automatic};
+            .automatic = automatic,
+            .type = type};
 }
 
 template <auto... Path>
