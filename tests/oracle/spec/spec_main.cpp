@@ -8,6 +8,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,11 @@ int parseAndRun(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--map", settings.maps, "smooth, spot, white, or several of them")->capture_default_str();
     app.add_option("--compensation", settings.compensation, "off, on, or both")->capture_default_str();
+    app.add_option("--masking", settings.options.masking,
+                   "of the specification: correlated, or separable as appendix B.3.2 writes it")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Masking>{
+            {"correlated", Masking::HeightCorrelated}, {"separable", Masking::Separable}}))
+        ->default_str("correlated");
     app.add_option("--size", settings.options.device.size, "pixels of a picture's side")
         ->check(CLI::Range(1U, 1024U))
         ->capture_default_str();
