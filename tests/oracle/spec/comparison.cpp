@@ -305,6 +305,10 @@ Comparison Comparer::inFurnaceOnSphere(std::size_t row, Transport transport) {
         sums.add(zone, zones[static_cast<std::size_t>(zone)], Vec3(1.0), Vec3(1.0));
     }
     sums.finish(result);
+    if (result.losesByDesign) {
+        append(result.approximations, "a rough coat scatters light once; the plane has the integral",
+               result.ratio() - 1.0, "");
+    }
     return result;
 }
 

@@ -50,7 +50,7 @@ void compareRow(Comparer& comparer, std::size_t row, bool sphere, const Settings
         if (!names(settings.lighting, transport == Transport::Traced ? "traced" : "untraced")) {
             continue;
         }
-        if (sphere && names(settings.maps, "white")) {
+        if (sphere && settings.options.device.compensation && names(settings.maps, "white")) {
             table.push_back(comparer.inFurnaceOnSphere(row, transport));
         }
         for (const MapKind map : {MapKind::Smooth, MapKind::Spot, MapKind::White}) {

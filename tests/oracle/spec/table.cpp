@@ -1,4 +1,5 @@
 // The table of comparisons, for people and for scripts.
+#include "oracle/spec/bounds.h"
 #include "oracle/spec/comparison.h"
 
 #include <fmt/format.h>
@@ -52,6 +53,7 @@ std::string toMarkdown(const std::vector<Comparison>& comparisons) {
 std::string toJson(const std::vector<Comparison>& comparisons) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const Comparison& row : comparisons) {
+        const Bound bound = boundOf(row);
         nlohmann::ordered_json approximations = nlohmann::ordered_json::array();
         for (const Approximation& one : row.approximations) {
             approximations.push_back({{"what", one.what}, {"share", one.share}, {"why", one.why}});
@@ -74,6 +76,8 @@ std::string toJson(const std::vector<Comparison>& comparisons) {
                        {"statedRatio", row.statedRatio()},
                        {"statedDifference", row.statedDifference},
                        {"noise", row.noise()},
+                       {"bound", bound.relative},
+                       {"boundBecause", bound.why},
                        {"device", arrayOf(row.whole.device)},
                        {"specification", arrayOf(row.whole.plain)},
                        {"predicted", arrayOf(row.whole.stated)},
