@@ -3,9 +3,9 @@
 
 usage: scripts/specification_table.py SPECIFICATION.json [DOCUMENT.md]
 
-Groups of rows, the bounds, and every row in which Glint's light is not within 2 % of the specification's. With a
-document it replaces what stands there between the marks, otherwise it prints. Exits 1 if a row is outside of 1 ± 0.02
-and nothing says why.
+Groups of rows, the bounds, and each row's ratio of Glint's light to the specification's and relative difference, with
+what is stated where the ratio is outside of 1 ± 0.02. With a document it replaces what stands there between the marks,
+otherwise it prints. Exits 1 if nothing is stated about a row outside.
 """
 import json
 import re
@@ -61,30 +61,32 @@ def bounds(rows):
     return table(columns, lines)
 
 
-class Notes:
-    def __init__(self):
-        self.texts = []
-
-    def mark(self, share, text):
-        if text not in self.texts:
-            self.texts.append(text)
-        return f"{100 * share:+.1f} % [{self.texts.index(text) + 1}]"
-
-    def __str__(self):
-        return "".join(f"{i}. {text}\n" for i, text in enumerate(self.texts, 1))
+def statements(row):
+    """What is stated about a row, as pairs of a text and the share of the light that it changes."""
+    yield from ((f"{one['what']}: {one['why']}" if one["why"] else one["what"], one["share"])
+                for one in row["approximations"])
+    if away(row["statedRatio"]) >= 0.005:
+        noisy = away(row["statedRatio"]) <= row["noise"]
+        why = "the noise of the samples" if noisy else row["boundBecause"]
+        yield f"over the prediction: {why}", row["statedRatio"] - 1
 
 
-def stated(row, notes):
-    marks = [notes.mark(one["share"], f"{one['what']}: {one['why']}" if one["why"] else one["what"])
-             for one in row["approximations"]]
-    if away(row["statedRatio"]) >= 0.005 or not marks:
-        why = row["boundBecause"] if away(row["statedRatio"]) > row["noise"] else "the noise of the samples"
-        marks.append(notes.mark(row["statedRatio"] - 1, f"over the prediction: {why}"))
-    return ", ".join(marks)
-
-
-def unexplained(row):
-    return not row["approximations"] and away(row["statedRatio"]) > row["bound"] + row["noise"]
+def materials(rows, notes):
+    """All rows of a group: a line for each material, a column for each light. `notes` grows by what is stated."""
+    lights = list(dict.fromkeys(row["light"] for row in rows))
+    lines = []
+    for material, part in group_by(rows, lambda row: row["material"]):
+        cells = dict.fromkeys(lights, "")
+        shares = {}
+        for row in part:
+            outside = away(row["ratio"]) > OUTSIDE
+            ratio = f"**{row['ratio']:.3f}**" if outside else f"{row['ratio']:.3f}"
+            cells[row["light"]] = f"{ratio}, {row['relativeDifference']:.3f}"
+            for text, share in statements(row) if outside else ():
+                shares[text] = max(shares.get(text, 0.0), share, key=abs)
+        stated = (f"{100 * share:+.1f} % [{notes.setdefault(text, len(notes) + 1)}]" for text, share in shares.items())
+        lines.append((material, *cells.values(), ", ".join(stated)))
+    return table(("material", *lights, "stated"), lines)
 
 
 def main():
@@ -93,15 +95,12 @@ def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         rows = json.load(file)
     outside = [row for row in rows if away(row["ratio"]) > OUTSIDE]
-    notes = Notes()
-    parts = ""
-    for (light, switch), part in group_by(outside, lambda row: (row["light"], compensation(row))):
-        parts += f"\n### {light[0].upper()}{light[1:]}, compensation {switch}\n\n"
-        parts += table(("group", "material", "ratio", "relative difference", "predicted", "stated"),
-                       [(row["group"], row["material"], f"{row['ratio']:.3f}", f"{row['relativeDifference']:.3f}",
-                         f"{row['predictedRatio']:.3f}", stated(row, notes)) for row in part])
+    notes = {}
+    tables = "\n".join(f"### {group[0].upper()}{group[1:]}, compensation {switch}\n\n{materials(part, notes)}"
+                       for (group, switch), part in group_by(rows, lambda row: (row["group"], compensation(row))))
+    numbered = "".join(f"{number}. {text}\n" for text, number in notes.items())
     text = (f"{len(rows)} rows, {len(outside)} of them outside of 1 ± 0.02.\n\n## Groups\n\n{groups(rows)}\n"
-            f"## Bounds\n\n{bounds(rows)}\n## What is stated\n\n{notes}\n## Rows outside of 1 ± 0.02\n{parts}")
+            f"## Bounds\n\n{bounds(rows)}\n## What is stated\n\n{numbered}\n## Rows\n\n{tables}")
     if len(sys.argv) == 2:
         print(text, end="")
     else:
@@ -110,7 +109,7 @@ def main():
         marks = re.compile("(?<=<!-- begin specification -->\n).*(?=<!-- end specification -->)", re.DOTALL)
         with open(sys.argv[2], "w", encoding="utf-8") as file:
             file.write(marks.sub(lambda _: text, document))
-    bare = [row for row in outside if unexplained(row)]
+    bare = [row for row in outside if not any(statements(row))]
     for row in bare:
         print(f"{row['group']}: {row['material']}, {row['light']}, compensation {compensation(row)}: "
               f"{row['ratio']:.3f}, and nothing says why", file=sys.stderr)
