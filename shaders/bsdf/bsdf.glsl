@@ -1,7 +1,7 @@
 // The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers over a
 // base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
 //
-// Appendix B.2 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
+// Appendix B.1 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
 // GLINT_PARTIAL_METAL has both bases; in any other key the base is all metal or all dielectric.
 #include "generated/scene.glsl"
 #include "bsdf/features.glsl"

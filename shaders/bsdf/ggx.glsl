@@ -17,8 +17,9 @@ float ggxProjection(vec3 v, vec2 alpha) {
     return sqrt(dot(stretched, stretched));
 }
 
-// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; glTF 2.0, appendix B.3.3. It uses cosines
-// without their sign, so it serves transmission too. As alpha > 0, the sum is 0 only if both cosines are 0.
+// Height-correlated Smith visibility, G / (4 (n·l) (n·v)): Heitz 2014; KHR_materials_anisotropy. The sample of glTF 2.0,
+// appendix B.3.2, has the separable product of two Smith terms, and B.3.6 calls this form the more accurate one. It uses
+// cosines without their sign, so it serves transmission too. As alpha > 0, the sum is 0 only if both cosines are 0.
 float ggxVisibility(vec3 l, vec3 v, vec2 alpha) {
     return 0.5 / (abs(l.z) * ggxProjection(v, alpha) + abs(v.z) * ggxProjection(l, alpha));
 }

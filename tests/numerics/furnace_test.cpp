@@ -133,7 +133,7 @@ TEST(Furnace, WhiteMetalReflectsEverything) {
     }
 }
 
-// glTF 2.0, appendix B.2: a base that is part metal is a mix of two BSDFs, whatever lies on top of it.
+// glTF 2.0, appendix B.1: a base that is part metal is a mix of two BSDFs, whatever lies on top of it.
 TEST(Furnace, APartialMetalIsAMixOfTwoBases) {
     Engine engine(kSeed);
     for (int i = 0; i < 2000; ++i) {

@@ -14,33 +14,44 @@ bool mentions(const Comparison& c, const char* word) {
     return c.name.find(word) != std::string::npos;
 }
 
-// How far the device may be from what is stated, relative to that, besides the noise of its samples.
-double boundOf(const Comparison& c) {
+}  // namespace
+
+Bound boundOf(const Comparison& c) {
     const bool anisotropic = mentions(c, "anisotropy");
-    // The fit of the sheen's albedo is too high on dark cloth.
     const bool sheen = mentions(c, "sheen");
     if (c.lighting == Lighting::Untraced) {
-        // Sixteen directions stand in for an anisotropic lobe. They show a spot of few texels up to half too
-        // bright. The levels are within 3 % of the integral over the map (docs/reflections.md).
-        return anisotropic ? (c.map == MapKind::Spot ? 0.6 : 0.06)
-               : sheen     ? 0.06
-                           : (c.map == MapKind::Spot ? 0.035 : 0.02);
+        if (anisotropic) {
+            return c.map == MapKind::Spot
+                       ? Bound{0.6, "sixteen directions for an anisotropic lobe make a small spot too bright"}
+                       : Bound{0.06, "sixteen directions stand in for an anisotropic lobe"};
+        }
+        if (sheen) {
+            return {0.06, "the fit of the sheen's albedo"};
+        }
+        return c.map == MapKind::Spot ? Bound{0.035, "the levels of the map are sampled"}
+                                      : Bound{0.02, "the levels of the map, and fits of albedos"};
     }
     if (c.lighting == Lighting::Traced) {
-        // What a lobe sends below the plane of a normal-mapped surface is mirrored at the plane.
-        return anisotropic ? 0.05 : c.group == "normal map" ? 0.04 : 0.02;
-    }
-    // Single precision and 8-bit weights: llvmpipe's sRGB texels are off by up to 0.7 %.
-    double bound = c.group == "texture" || c.group == "normal map" ? 0.008 : 0.002;
-    if (sheen) {
-        bound = std::max(bound, 0.012);
+        if (anisotropic) {
+            return {0.05, "the fit of an anisotropic lobe's albedo"};
+        }
+        return c.group == "normal map"
+                   ? Bound{0.04, "what a lobe sends below the plane is mirrored at the plane"}
+                   : Bound{0.02, "fits of albedos"};
     }
     if (c.compensation) {
-        // The fits of E are within 0.006 of the truth, and diffuse light has them twice.
-        bound = std::max(bound, anisotropic ? 0.05 : 0.02);
+        return anisotropic ? Bound{0.05, "the fit of an anisotropic lobe's albedo, twice in diffuse light"}
+                           : Bound{0.02, "fits of albedos, twice in diffuse light"};
     }
-    return bound;
+    if (sheen) {
+        return {0.012, "the fit of the sheen's albedo"};
+    }
+    return c.group == "texture" || c.group == "normal map"
+               ? Bound{0.008, "llvmpipe's sRGB texels are off by up to 0.7 %"}
+               : Bound{0.002, "single precision"};
 }
+
+namespace {
 
 // Whether the device is within the bound in each channel. What is darker than a five-hundredth of the lights
 // and the sky may be off by a thousandth of them. The fits of a lobe's albedo and of its Fresnel part are
@@ -48,7 +59,7 @@ double boundOf(const Comparison& c) {
 bool isWithin(const Comparison& c) {
     for (int i = 0; i < 3; ++i) {
         const double off = std::abs(c.whole.device[i] - c.whole.stated[i]);
-        if (!(off <= boundOf(c) * c.whole.stated[i] + 4.0 * c.whole.error[i] +
+        if (!(off <= boundOf(c).relative * c.whole.stated[i] + 4.0 * c.whole.error[i] +
                          (c.lighting != Lighting::Lights ? 0.006
                           : c.whole.stated[i] < 2e-3     ? 1e-3
                                                          : 0.0))) {

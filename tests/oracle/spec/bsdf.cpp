@@ -132,7 +132,7 @@ Vec3 Bsdf::specular(const Vec3& l) const {
     }
     const Vec3 h = glm::normalize(view_ + l);
     const double cosine = glm::dot(view_, h);
-    // Appendix B.2: material = mix(dielectric_brdf, metal_brdf, metallic).
+    // Appendix B.1: material = mix(dielectric_brdf, metal_brdf, metallic).
     const Vec3 both = glm::mix(fresnel(dielectric_, cosine), fresnel(metal_, cosine), m_.metallic);
     return both *
            (distribution(h, alpha_) * visibility(l, view_, alpha_, choices_.masking) * l.z * layersAbove(l));

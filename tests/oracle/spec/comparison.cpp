@@ -1,7 +1,5 @@
 #include "oracle/spec/comparison.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -85,43 +83,51 @@ constexpr Statement kStatements[] = {
      "the map's mean over a lobe seen head on; no loss by single scattering"},
 };
 
-void appendStatement(std::string& text, const char* what, double share, const char* why) {
+constexpr const char* kMasking = "height-correlated masking";
+
+void append(std::vector<Approximation>& list, const char* what, double share, const char* why) {
     if (std::abs(share) >= 0.005) {
-        text += fmt::format("{}{} {:+.1f} %{}", text.empty() ? "" : "; ", what, 100.0 * share,
-                            *why == '\0' ? "" : fmt::format(" ({})", why));
+        list.push_back({what, share, why});
     }
 }
 
-std::string approximationsOf(const Terms& plain, const Terms& stated, Lighting lighting) {
+// `correlated` is the specification's light with height-correlated masking.
+std::vector<Approximation> approximationsOf(const Terms& plain, const Terms& correlated, const Terms& stated,
+                                            Lighting lighting) {
     const Vec3 whole = plain.sum();
-    std::string text;
+    std::vector<Approximation> list;
+    append(list, kMasking, largestShare(correlated.sum() - whole, whole), "");
     for (const Statement& statement : kStatements) {
-        appendStatement(text, statement.lobe,
-                        largestShare(stated.*statement.term - plain.*statement.term, whole),
-                        lighting == Lighting::Untraced ? statement.untraced : statement.traced);
+        append(list, statement.lobe, largestShare(stated.*statement.term - correlated.*statement.term, whole),
+               lighting == Lighting::Untraced ? statement.untraced : statement.traced);
     }
-    return text;
+    return list;
 }
 
 // The choices that change a BSDF itself, one at a time.
 struct NamedChoice {
     const char* name;
-    bool Choices::*choice;
+    void (*choose)(Choices& choices, const Choices& stated);
 };
 constexpr NamedChoice kNamedChoices[] = {
-    {"energy compensation", &Choices::compensation},
-    {"film at the angle of the view", &Choices::iridescenceAtView},
-    {"sheen divided by its albedo where that exceeds 1, roughness at least 0.07", &Choices::sheenBounded},
-    {"diffuse transmission by the Fresnel of the view", &Choices::transmittedAtView},
+    {"energy compensation",
+     [](Choices& choices, const Choices& stated) { choices.compensation = stated.compensation; }},
+    {"film at the angle of the view",
+     [](Choices& choices, const Choices& stated) { choices.iridescenceAtView = stated.iridescenceAtView; }},
+    {"sheen divided by its albedo where that exceeds 1, roughness at least 0.07",
+     [](Choices& choices, const Choices& stated) { choices.sheenBounded = stated.sheenBounded; }},
+    {"diffuse transmission by the Fresnel of the view",
+     [](Choices& choices, const Choices& stated) { choices.transmittedAtView = stated.transmittedAtView; }},
+    {kMasking, [](Choices& choices, const Choices& stated) { choices.masking = stated.masking; }},
 };
 using ChoiceSums = std::array<Vec3, std::size(kNamedChoices)>;
 
-std::string choicesOf(const ChoiceSums& alone, const Vec3& plain) {
-    std::string text;
+std::vector<Approximation> choicesOf(const ChoiceSums& alone, const Vec3& plain) {
+    std::vector<Approximation> list;
     for (std::size_t i = 0; i < alone.size(); ++i) {
-        appendStatement(text, kNamedChoices[i].name, largestShare(alone[i] - plain, plain), "");
+        append(list, kNamedChoices[i].name, largestShare(alone[i] - plain, plain), "");
     }
-    return text;
+    return list;
 }
 
 Point pointOf(std::size_t row, const View& view) {
@@ -183,6 +189,12 @@ const Comparer::LoadedMap& Comparer::mapOf(MapKind kind) {
     return loaded;
 }
 
+Choices Comparer::plainChoices() const {
+    Choices choices;
+    choices.masking = options_.masking;
+    return choices;
+}
+
 Choices Comparer::statedChoices() const {
     Choices choices;
     choices.compensation = options_.device.compensation;
@@ -221,11 +233,11 @@ Comparison Comparer::underLights(std::size_t row) {
             continue;
         }
         const Point point = pointOf(row, view);
-        const Surface plain(material, {}, albedos_, point);
+        const Surface plain(material, plainChoices(), albedos_, point);
         specification += plain.underLights(lights);
         for (std::size_t i = 0; i < alone.size(); ++i) {
-            Choices choices;
-            choices.*kNamedChoices[i].choice = statedChoices().*kNamedChoices[i].choice;
+            Choices choices = plainChoices();
+            kNamedChoices[i].choose(choices, statedChoices());
             alone[i] += Surface(material, choices, albedos_, point).underLights(lights);
         }
         const Surface stated(material, statedChoices(), albedos_, point);
@@ -246,12 +258,16 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
     const Material material = readMaterial(rows_.rows[row].material, rows_.texels);
     Choices choices = statedChoices();
     choices.sheenAtView = true;
-    Choices specification;
+    Choices specification = plainChoices();
     choices.absorbsAlongRays = specification.absorbsAlongRays = transport == Transport::Traced;
     const Surface::Sky sky{*loaded.map, *loaded.harmonics,
                            static_cast<int>(loaded.environment->statistics().levels), transport};
     Sums sums;
+    Choices correlated = specification;
+    correlated.masking = Masking::HeightCorrelated;
+    const bool separable = options_.masking == Masking::Separable;
     Terms plainTerms;
+    Terms correlatedTerms;
     Terms statedTerms;
     for (const View& view : viewsOf(options_.manyViews)) {
         if (!faces(material, view)) {
@@ -261,15 +277,20 @@ Comparison Comparer::underMap(std::size_t row, MapKind kind, Transport transport
         Terms plain =
             Surface(material, specification, albedos_, point).underMap(*loaded.map, {options_.quality});
         Terms stated = Surface(material, choices, albedos_, point).underSky(sky, {options_.quality});
+        Terms same =
+            separable
+                ? Surface(material, correlated, albedos_, point).underMap(*loaded.map, {options_.quality})
+                : plain;
         // The device's picture has lost its emission with the lights'.
-        plain.emission = stated.emission = Vec3(0.0);
+        plain.emission = same.emission = stated.emission = Vec3(0.0);
         plainTerms += plain;
+        correlatedTerms += same;
         statedTerms += stated;
         sums.add(view.zone, device_.underMap(row, view, *loaded.environment, transport), plain.sum(),
                  stated.sum());
     }
     sums.finish(result);
-    result.approximations = approximationsOf(plainTerms, statedTerms, result.lighting);
+    result.approximations = approximationsOf(plainTerms, correlatedTerms, statedTerms, result.lighting);
     return result;
 }
 
@@ -284,6 +305,10 @@ Comparison Comparer::inFurnaceOnSphere(std::size_t row, Transport transport) {
         sums.add(zone, zones[static_cast<std::size_t>(zone)], Vec3(1.0), Vec3(1.0));
     }
     sums.finish(result);
+    if (result.losesByDesign) {
+        append(result.approximations, "a rough coat scatters light once; the plane has the integral",
+               result.ratio() - 1.0, "");
+    }
     return result;
 }
 

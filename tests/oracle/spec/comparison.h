@@ -23,6 +23,13 @@ struct Seen {
     Vec3 stated{0.0};  // with the approximations that Glint states
 };
 
+// An approximation that Glint states, and what it changes.
+struct Approximation {
+    std::string what;
+    double share = 0.0;  // of the specification's light, in the channel where that is largest
+    std::string why;     // empty where `what` says it
+};
+
 struct Comparison {
     std::string group;
     std::string name;
@@ -40,9 +47,7 @@ struct Comparison {
     // channel where it is largest.
     double relativeDifference = 0.0;
     double statedDifference = 0.0;
-    // Lobes in which a stated approximation changes the light by half a percent or more, with the change in
-    // percent of the specification's light, and the reason.
-    std::string approximations;
+    std::vector<Approximation> approximations;  // of half a percent or more
 
     // The ratio in the channel where it is farthest from 1. Channels with less than a thousandth of the light
     // of the brightest do not count.
@@ -59,7 +64,8 @@ struct ComparisonOptions {
     DeviceOptions device;
     bool manyViews = false;
     std::size_t mapWidth = 256;
-    int quality = 64;  // points of a quadrature, and twice as many across
+    Masking masking = Masking::HeightCorrelated;  // of the specification
+    int quality = 64;                             // points of a quadrature, and twice as many across
 };
 
 // The device, the maps and what was integrated once, for any number of comparisons.
@@ -71,7 +77,8 @@ public:
     }
     Comparison underLights(std::size_t row);
     Comparison underMap(std::size_t row, MapKind kind, Transport transport);
-    // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation.
+    // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation and without
+    // a rough coat.
     Comparison inFurnaceOnSphere(std::size_t row, Transport transport);
 
 private:
@@ -81,6 +88,7 @@ private:
         std::unique_ptr<Environment> environment;
     };
     const LoadedMap& mapOf(MapKind kind);
+    Choices plainChoices() const;
     Choices statedChoices() const;
     bool losesByDesign(const Row& row, Transport transport) const;
     Comparison start(std::size_t row) const;

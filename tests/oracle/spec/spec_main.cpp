@@ -8,6 +8,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ void compareRow(Comparer& comparer, std::size_t row, bool sphere, const Settings
         if (!names(settings.lighting, transport == Transport::Traced ? "traced" : "untraced")) {
             continue;
         }
-        if (sphere && names(settings.maps, "white")) {
+        if (sphere && settings.options.device.compensation && names(settings.maps, "white")) {
             table.push_back(comparer.inFurnaceOnSphere(row, transport));
         }
         for (const MapKind map : {MapKind::Smooth, MapKind::Spot, MapKind::White}) {
@@ -104,6 +105,11 @@ int parseAndRun(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--map", settings.maps, "smooth, spot, white, or several of them")->capture_default_str();
     app.add_option("--compensation", settings.compensation, "off, on, or both")->capture_default_str();
+    app.add_option("--masking", settings.options.masking,
+                   "of the specification: correlated, or separable as appendix B.3.2 writes it")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Masking>{
+            {"correlated", Masking::HeightCorrelated}, {"separable", Masking::Separable}}))
+        ->default_str("correlated");
     app.add_option("--size", settings.options.device.size, "pixels of a picture's side")
         ->check(CLI::Range(1U, 1024U))
         ->capture_default_str();

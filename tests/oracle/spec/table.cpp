@@ -1,4 +1,5 @@
 // The table of comparisons, for people and for scripts.
+#include "oracle/spec/bounds.h"
 #include "oracle/spec/comparison.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,15 @@ std::string lightOf(const Comparison& row) {
     const std::string lighting = kLightingNames[static_cast<std::size_t>(row.lighting)];
     return row.lighting == Lighting::Lights ? lighting
                                             : lighting + ", " + kMapNames[static_cast<std::size_t>(row.map)];
+}
+
+std::string textOf(const std::vector<Approximation>& list) {
+    std::string text;
+    for (const Approximation& one : list) {
+        text += fmt::format("{}{} {:+.1f} %{}", text.empty() ? "" : "; ", one.what, 100.0 * one.share,
+                            one.why.empty() ? "" : fmt::format(" ({})", one.why));
+    }
+    return text;
 }
 
 nlohmann::ordered_json arrayOf(const Vec3& v) {
@@ -35,7 +45,7 @@ std::string toMarkdown(const std::vector<Comparison>& comparisons) {
         text += fmt::format("| {} | {} | {} | {} | {:.4f} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {} |\n",
                             row.group, row.name, lightOf(row), row.compensation ? "on" : "off", row.ratio(),
                             zones, row.relativeDifference, row.predictedRatio(), row.statedRatio(),
-                            row.noise(), row.approximations);
+                            row.noise(), textOf(row.approximations));
     }
     return text;
 }
@@ -43,6 +53,11 @@ std::string toMarkdown(const std::vector<Comparison>& comparisons) {
 std::string toJson(const std::vector<Comparison>& comparisons) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const Comparison& row : comparisons) {
+        const Bound bound = boundOf(row);
+        nlohmann::ordered_json approximations = nlohmann::ordered_json::array();
+        for (const Approximation& one : row.approximations) {
+            approximations.push_back({{"what", one.what}, {"share", one.share}, {"why", one.why}});
+        }
         nlohmann::ordered_json zones = nlohmann::ordered_json::object();
         for (std::size_t i = 0; i < 3; ++i) {
             if (row.viewsOfZone[i] > 0) {
@@ -61,11 +76,13 @@ std::string toJson(const std::vector<Comparison>& comparisons) {
                        {"statedRatio", row.statedRatio()},
                        {"statedDifference", row.statedDifference},
                        {"noise", row.noise()},
+                       {"bound", bound.relative},
+                       {"boundBecause", bound.why},
                        {"device", arrayOf(row.whole.device)},
                        {"specification", arrayOf(row.whole.plain)},
                        {"predicted", arrayOf(row.whole.stated)},
                        {"zones", zones},
-                       {"approximations", row.approximations}});
+                       {"approximations", approximations}});
     }
     return all.dump(2) + "\n";
 }
