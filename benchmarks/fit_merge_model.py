@@ -144,7 +144,7 @@ def header_text(model, errors, counts):
         f"//     {kind:<10} {e['count']:7} {e['mean']:10.1f} %{e['most']:9.1f} %{e['r2']:8.3f}{e['fetches']:14.1f}\n"
         for kind, e in errors.items()
     )
-    return f"""// Made by benchmarks/fit_merge_model.py from benchmarks/data/merge_model.csv; run it again rather than edit this.
+    return f"""// Made by benchmarks/fit_merge_model.py from benchmarks/data/merge_model.csv; run it again rather than edit\n// this.
 //
 // Fitted to {counts[0]} shaders of one key and {counts[1]} that branch, less a quarter of the random ones. On that quarter
 // the model is off, in instructions, and in texture fetches:

@@ -43,8 +43,8 @@ void passLayer(inout TracedLayer traced, float passed) {
     traced.light *= passed;
 }
 
-// Sets the layer's chance, not yet divided by the sum of all. Where base and layer are mirrors and their directions differ
-// by less than a quarter of a degree, one ray serves both, and the base has it.
+// Sets the layer's chance, not yet divided by the sum of all. Where base and layer are mirrors and their directions
+// differ by less than a quarter of a degree, one ray serves both, and the base has it.
 void weighLayer(inout TracedLayer traced, bool baseMirror, inout vec3 base) {
     if (baseMirror && traced.isMirror && traced.normal.z > 0.99999) {
         base += traced.light;

@@ -5,7 +5,7 @@
 struct SurfaceValues {
     GLINT_RELAXED vec4 color;       // of the base, with the coverage
     GLINT_RELAXED float metallic;
-    float roughness;                // perceptual: the square root of alpha. It is compared with limits, so it keeps 32 bits.
+    float roughness;                // square root of alpha; 32 bits, as it is compared with limits
     GLINT_RELAXED vec3 f0;          // reflectance of the dielectric at normal incidence
     GLINT_RELAXED float f90;        // and at grazing angles
     vec3 normal;                    // unit, in the world, on the side that the surface's front faces

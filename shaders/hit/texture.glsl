@@ -12,8 +12,8 @@ bool readsSecondSet(Hit hit, uint slot, Features features) {
            (!hasInput(features, GLINT_TEX_COORD_0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
 }
 
-// Returns the value of a texture slot at coordinates of the caller's own. uvEdges has their change along both edges of the
-// triangle, (Δu, Δv) each. Texture and coordinates are read in 32 bits, whatever the precision of the result.
+// Returns the value of a texture slot at coordinates of the caller's own. uvEdges has their change along both edges of
+// the triangle, (Δu, Δv) each. Texture and coordinates are read in 32 bits, whatever the precision of the result.
 GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, vec4 uvEdges) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
     if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {

@@ -6,7 +6,8 @@
 namespace glint {
 
 struct BuiltinFile {
-    std::string_view name;  // relative to the folder that was embedded: "interop/scene.h", "uber.comp.mustache"
+    std::string_view
+        name;  // relative to the folder that was embedded: "interop/scene.h", "uber.comp.mustache"
     std::string_view text;
 };
 

@@ -164,8 +164,9 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == manifest.features.names(manifest.features.lobes).size() ? "all"
-                                                                                 : join(manifest.hitLobes);
+    return manifest.hitLobes.size() == manifest.features.names(manifest.features.lobes).size()
+               ? "all"
+               : join(manifest.hitLobes);
 }
 
 Json toJson(const inspect::InspectedPackage& inspected) {

@@ -1,4 +1,5 @@
-// Made by benchmarks/fit_merge_model.py from benchmarks/data/merge_model.csv; run it again rather than edit this.
+// Made by benchmarks/fit_merge_model.py from benchmarks/data/merge_model.csv; run it again rather than edit
+// this.
 //
 // Fitted to 200 shaders of one key and 37 that branch, less a quarter of the random ones. On that quarter
 // the model is off, in instructions, and in texture fetches:

@@ -1,7 +1,7 @@
-// Fibres: a lobe with a density of its own. A fibre along t sends light on the cone l·t = -v·t (Marschner et al., "Light
-// Scattering from Human Hair Fibers", 2003, has this for smooth fibres). Here l·t has a Cauchy distribution about that
-// cosine, cut to [-1, 1], and all azimuths above the surface are alike. The lobe is its own density times the colour, so
-// it reflects exactly that share of a uniform sky. It is not reciprocal.
+// Fibres: a lobe with a density of its own. A fibre along t sends light on the cone l·t = -v·t (Marschner et al.,
+// "Light Scattering from Human Hair Fibers", 2003, has this for smooth fibres). Here l·t has a Cauchy distribution
+// about that cosine, cut to [-1, 1], and all azimuths above the surface are alike. The lobe is its own density times
+// the colour, so it reflects exactly that share of a uniform sky. It is not reciprocal.
 #include "bsdf/layer.glsl"
 
 struct Fibre {

@@ -1,5 +1,5 @@
-// KHR_materials_anisotropy: the alphas along the direction of anisotropy and across it. That direction becomes the frame's
-// x.
+// KHR_materials_anisotropy: the alphas along the direction of anisotropy and across it. That direction becomes the
+// frame's x.
 #include "hit/surface_values.glsl"
 
 void anisotropyBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {

@@ -1,5 +1,5 @@
-// Clearcoat (KHR_materials_clearcoat): a layer with an isotropic GGX lobe of index 1.5 about its own normal. Vectors are
-// in the frame of the base, where the coat's normal need not be z. Products that nearly cancel therefore keep their
+// Clearcoat (KHR_materials_clearcoat): a layer with an isotropic GGX lobe of index 1.5 about its own normal. Vectors
+// are in the frame of the base, where the coat's normal need not be z. Products that nearly cancel therefore keep their
 // rounding errors.
 #include "bsdf/fresnel.glsl"
 #include "bsdf/ggx.glsl"
@@ -65,8 +65,8 @@ LayerMirror clearcoatMirror(Clearcoat layer) {
     return LayerMirror(layer.normal, sqrt(layer.alpha));
 }
 
-// The coat covers the hemisphere about its normal, whatever the normal of the base is. If it turns away from the viewer,
-// it covers only what is above the base, too.
+// The coat covers the hemisphere about its normal, whatever the normal of the base is. If it turns away from the
+// viewer, it covers only what is above the base, too.
 LayerLight clearcoatEvaluate(Clearcoat layer, vec3 view, vec3 l) {
     float nDotL = accurateDot(layer.normal, l);
     float nDotV = clearcoatViewCosine(layer, view);

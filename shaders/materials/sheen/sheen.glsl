@@ -1,5 +1,5 @@
-// Charlie sheen (KHR_materials_sheen): Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017), as a layer.
-// alpha = sheenRoughness², at least kMinSheenAlpha.
+// Charlie sheen (KHR_materials_sheen): Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF" (2017), as a
+// layer. alpha = sheenRoughness², at least kMinSheenAlpha.
 #include "bsdf/layer.glsl"
 #include "materials/sheen/sheen_albedo.glsl"
 

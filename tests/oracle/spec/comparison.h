@@ -77,8 +77,8 @@ public:
     }
     Comparison underLights(std::size_t row);
     Comparison underMap(std::size_t row, MapKind kind, Transport transport);
-    // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation and without
-    // a rough coat.
+    // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation and
+    // without a rough coat.
     Comparison inFurnaceOnSphere(std::size_t row, Transport transport);
 
 private:
