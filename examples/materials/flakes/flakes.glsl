@@ -24,7 +24,7 @@ LayerLight flakesEvaluate(Flakes layer, vec3 view, vec3 l) {
     float nDotL = accurateDot(layer.facets.normal, l);
     float nDotV = clearcoatViewCosine(layer.facets, view);
     LayerLight light = LayerLight(vec3(0.0), 1.0 - layer.coverage, nDotL);
-    if (nDotL > 0.0 && l.z > 0.0) {
+    if (nDotL > 0.0 && (l.z > 0.0 || clearcoatFacesViewer(layer.facets, view))) {
         light.reflected =
             layer.color * (nDotL * clearcoatLobe(layer.facets.normal, nDotL, nDotV, view, l, layer.facets.alpha));
     }
