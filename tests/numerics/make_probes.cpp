@@ -61,8 +61,8 @@ public:
         for (const glint::BuiltinFile& file : glint::builtinFiles()) {
             generated.add(std::string(file.name), std::string(file.text));
         }
-        glint::Status status =
-            glint::addMaterialCode(generated, glint::builtinMaterialModel(), ~glint::FeatureMask{0});
+        glint::Status status = glint::addMaterialCode(generated, glint::builtinMaterialModel(),
+                                                      ~glint::FeatureMask{0}, generated);
         texts_["generated/layers.glsl"] = std::string(generated.find("generated/layers.glsl").value_or(""));
         return status;
     }

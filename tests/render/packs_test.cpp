@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -177,8 +178,12 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     const test::TemporaryFolder folder;
     fs::copy(kPacks + "/retroreflection", folder.path() / "retroreflection");
     const fs::path file = folder.path() / "retroreflection" / "retroreflection_bsdf.glsl";
-    ASSERT_TRUE(writeFile(
-        file, "#include \"hit/surface_values.glsl\"\n\nvoid broken() { return 1 }\nvoid broken2() {}\n"));
+    ASSERT_TRUE(writeFile(file,
+                          "#include \"hit/surface_values.glsl\"\n\n"
+                          "void retroreflectionBsdf(Hit hit, Features features, inout SurfaceValues values,\n"
+                          "                         inout Surface surface) {\n"
+                          "    nonsense = 1.0;\n"
+                          "}\n"));
     const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
     ASSERT_TRUE(model) << toString(model.error());
     Material material = blackMaterial(**model);
@@ -191,9 +196,54 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     const Result<CompiledPackage> package = compilePackage(scene, {});
     ASSERT_FALSE(package);
     EXPECT_EQ(package.error().id, "glsl");
-    EXPECT_TRUE(package.error().where.starts_with(file.string() + ":")) << package.error().where;
+    EXPECT_EQ(package.error().where, file.string() + ":5");
     EXPECT_NE(package.error().message.find("feature retroreflection"), std::string::npos)
         << package.error().message;
+}
+
+// Returns the texts of the modules of the example scene, by name, with the packs of `folder`.
+std::map<std::string, std::string> moduleTexts(const std::string& folder) {
+    ImportOptions import;
+    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder});
+    EXPECT_TRUE(model) << toString(model.error());
+    import.materialModel = *model;
+    const Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+    EXPECT_TRUE(scene) << toString(scene.error());
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.strategies = package::kStrategyVisibility;
+    const Result<PackagePlan> plan = planPackage({&*scene, 1}, settings);
+    EXPECT_TRUE(plan) << toString(plan.error());
+    std::map<std::string, std::string> texts;
+    for (const PlannedModule& module : plan->modules) {
+        texts[module.name] = module.text;
+    }
+    return texts;
+}
+
+TEST(Packs, AChangeOfGlslChangesItsCaseAndTheLightingAlone) {
+    const test::TemporaryFolder folder;
+    fs::copy(kPacks, folder.path(), fs::copy_options::recursive);
+    const std::map<std::string, std::string> before = moduleTexts(folder.path().string());
+    const fs::path file = folder.path() / "fibre" / "fibre.glsl";
+    const Result<Bytes> bytes = readFile(file);
+    ASSERT_TRUE(bytes);
+    std::string text(bytes->begin(), bytes->end());
+    const std::size_t place = text.find("return kInversePi /");
+    ASSERT_NE(place, std::string::npos);
+    text.insert(place + 7, "0.5 * ");
+    ASSERT_TRUE(writeFile(file, text));
+    const std::map<std::string, std::string> after = moduleTexts(folder.path().string());
+    ASSERT_EQ(before.size(), after.size());
+    std::vector<std::string> changed;
+    for (const auto& [name, module] : before) {
+        if (after.at(name) != module) {
+            changed.push_back(name);
+        }
+    }
+    ASSERT_EQ(changed.size(), 2U);
+    EXPECT_EQ(changed[0], "lighting.comp");
+    EXPECT_NE(changed[1].find("Fibre"), std::string::npos) << changed[1];
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ void addLayers(mustache::data& context, const MaterialModel& model,
 
 }  // namespace
 
-Status addMaterialCode(SourceSet& sources, const MaterialModel& model, FeatureMask used) {
+Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
+                       SourceSet& generated) {
     std::vector<const FeatureCode*> code;
     for (const FeatureCode& one : model.code) {
         if (one.feature < 0 || (model.features[static_cast<std::size_t>(one.feature)].mask() & used) != 0) {
@@ -135,9 +136,23 @@ Status addMaterialCode(SourceSet& sources, const MaterialModel& model, FeatureMa
         if (!text) {
             return text.error();
         }
-        sources.add(fmt::format("generated/{}", name), std::move(*text));
+        generated.add(fmt::format("generated/{}", name), std::move(*text));
     }
     return okStatus();
+}
+
+Result<const SourceSet*> MaterialCodeOfCases::find(FeatureMask used) {
+    FeatureMask withCode = 0;
+    for (const FeatureCode& code : model_.code) {
+        withCode |= code.feature < 0 ? 0 : model_.features[static_cast<std::size_t>(code.feature)].mask();
+    }
+    const auto [place, isNew] = made_.try_emplace(used & withCode);
+    if (isNew) {
+        if (Status status = addMaterialCode(sources_, model_, used, place->second); !status) {
+            return status.error();
+        }
+    }
+    return &place->second;
 }
 
 }  // namespace glint

@@ -6,10 +6,31 @@
 
 #include <glint/result.h>
 
+#include <map>
+
 namespace glint {
 
 // Adds "generated/layers.glsl", "layers_sky.glsl", "layers_traced.glsl" and "material_stages.glsl" for the
-// features of `used`. Has the errors of renderTemplate().
-Status addMaterialCode(SourceSet& sources, const MaterialModel& model, FeatureMask used);
+// features of `used` to `generated`. `sources` has the templates. Has the errors of renderTemplate().
+Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
+                       SourceSet& generated);
+
+// The material code of modules that know their features: those of a case. Their text then has no code of
+// other features, so that a change of a feature's GLSL leaves the shaders of other cases as they are.
+class MaterialCodeOfCases {
+public:
+    // Both must outlive this.
+    MaterialCodeOfCases(const SourceSet& sources, const MaterialModel& model)
+        : sources_(sources), model_(model) {}
+
+    // Returns the files for keys with features of `used` alone. They are valid as long as this. Has the
+    // errors of renderTemplate().
+    Result<const SourceSet*> find(FeatureMask used);
+
+private:
+    const SourceSet& sources_;
+    const MaterialModel& model_;
+    std::map<FeatureMask, SourceSet> made_;  // by the features that have code
+};
 
 }  // namespace glint

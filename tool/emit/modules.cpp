@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/prune.h"
+#include "emit/material_code.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>
@@ -152,8 +153,9 @@ void insertDefines(std::string& text, const std::string& defines) {
     }
 }
 
+// Files of `own` stand in for those of `sources` that have their names.
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
-                                std::string_view caseName, const SourceSet& sources,
+                                std::string_view caseName, const SourceSet& sources, const SourceSet& own,
                                 const kainjow::mustache::data& context, package::ShadingPrecision precision) {
     const package::RoleInfo& info = *package::findRole(key.role);
     ModuleSource module{key, stageOf(info, key.tracer), moduleName(source, info, key, caseName), {}, {}};
@@ -172,7 +174,11 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
         return makeError("source-include", origin, "there is no such shader");
     }
     insertDefines(text, moduleDefines(info, key, precision));
-    Result<std::string> flattened = flatten(origin, text, sources.lookup(), FlattenSide::Glsl);
+    const auto lookup = [&](std::string_view name) {
+        const std::optional<std::string_view> found = own.find(name);
+        return found ? found : sources.find(name);
+    };
+    Result<std::string> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
     if (!flattened) {
         return flattened.error();
     }
@@ -207,18 +213,27 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
+    MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    const SourceSet none;
     std::vector<ModuleSource> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
+        const SourceSet* own = &none;
         if (ofCase) {
-            addCase(context, scenes, *plan.model, plan.cases[key.index]);
+            const Case& shaderCase = plan.cases[key.index];
+            addCase(context, scenes, *plan.model, shaderCase);
+            Result<const SourceSet*> code = codeOfCases.find(shaderCase.always | shaderCase.sometimes);
+            if (!code) {
+                return code.error();
+            }
+            own = *code;
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, plan.effects.effects, package::kEffects[key.index].effect);
         }
         Result<ModuleSource> module =
             makeModule(sourceOf(info, key), key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
-                       sources, context, settings.precision);
+                       sources, *own, context, settings.precision);
         if (!module) {
             return module.error();
         }

@@ -110,7 +110,7 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
-    if (Status status = addMaterialCode(sources, *plan.model, used); !status) {
+    if (Status status = addMaterialCode(sources, *plan.model, used, sources); !status) {
         return status.error();
     }
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
