@@ -59,7 +59,7 @@ void main() {
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
         if (hasLobe(features, GLINT_UNLIT)) {
-            radianceDepth.rgb = baseColor(hit, features).rgb;
+            radianceDepth.rgb = surfaceValues(hit, features).color.rgb;
             skipEffects(number, kRayUnlit);
         } else {
             Surface surface = evaluateSurface(hit, features);

@@ -1,7 +1,7 @@
 // Metallic-roughness: glTF 2.0, section 3.9.2.
 #include "hit/surface_values.glsl"
 
-GLINT_RELAXED vec4 baseColor(Hit hit, Features features) {
+GLINT_RELAXED vec4 texturedBaseColor(Hit hit, Features features) {
     GLINT_RELAXED vec4 color = GLINT_MATERIAL_BASE_COLOR_FACTOR(hit);
     if (hasInput(features, GLINT_BASE_COLOR_TEXTURE)) {
         color *= sampleSlot(hit, kBaseColorTexture, features);
@@ -10,7 +10,7 @@ GLINT_RELAXED vec4 baseColor(Hit hit, Features features) {
 }
 
 void metallicRoughnessSurface(Hit hit, Features features, inout SurfaceValues values) {
-    values.color = baseColor(hit, features);
+    values.color = texturedBaseColor(hit, features);
     values.metallic = GLINT_MATERIAL_METALLIC_FACTOR(hit);
     values.roughness = GLINT_MATERIAL_ROUGHNESS_FACTOR(hit);
     if (hasInput(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {

@@ -3,7 +3,7 @@
 #include "materials/metallic_roughness/metallic_roughness.glsl"
 
 void specularGlossinessSurface(Hit hit, Features features, inout SurfaceValues values) {
-    values.color = baseColor(hit, features);
+    values.color = texturedBaseColor(hit, features);
     values.metallic = 0.0;
     values.f0 = GLINT_MATERIAL_GLOSSY_SPECULAR_FACTOR(hit);
     float glossiness = GLINT_MATERIAL_GLOSSINESS_FACTOR(hit);
