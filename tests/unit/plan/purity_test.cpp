@@ -32,7 +32,7 @@ TEST(PlanPurity, IncludesTheStandardLibraryAndFmtOnly) {
     }
     for (const fs::directory_entry& entry : entries) {
         const std::string suffix = entry.path().extension().string();
-        // Of the materials, those that planning includes are as pure as itself.
+        // Planning includes four headers of the materials. They are as pure as itself.
         const bool isPlan =
             entry.path().parent_path().filename() == "plan" || isPure(entry.path().stem().string());
         if ((suffix != ".h" && suffix != ".cpp") || !isPlan) {
