@@ -51,6 +51,10 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     if (!code.layer.empty() && feature < 0) {
         failAt(members.at("layer"), "a layer needs a feature of its own: give the declaration \"neutral\"");
     }
+    if (!code.layer.empty() && declaration.text("stage") != "layer") {
+        // Only lobes are asked for as layers are.
+        failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
+    }
     if (!code.layer.empty() && code.bsdf.empty()) {
         failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");
     }

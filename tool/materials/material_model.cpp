@@ -85,7 +85,7 @@ FeatureMask MaterialModel::baseModels() const {
 }
 
 std::string MaterialModel::featureDefines() const {
-    std::string text;
+    std::string text = fmt::format("#define GLINT_LOBES 0x{:x}u\n", lobes);
     for (const Feature& feature : features) {
         text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
                             1U << (static_cast<unsigned>(feature.bit) % 32U));

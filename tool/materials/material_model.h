@@ -241,7 +241,7 @@ public:
     // Returns the base models, without which no hit can do.
     FeatureMask baseModels() const;
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
-    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it.
+    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it. GLINT_LOBES is the set of lobes.
     std::string featureDefines() const;
 
     // Numbers of symbols. The kinds follow each other.

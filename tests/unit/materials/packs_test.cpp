@@ -107,6 +107,12 @@ TEST_F(MaterialPacks, OrderMustHaveAnEnd) {
     expectError("declaration", "mud.json#/glsl/after", "sheen");
 }
 
+TEST_F(MaterialPacks, LayersAreLobes) {
+    write("mud.json", R"({"name": "mud", "extension": "EXAMPLE_mud", "stage": "surface",
+                          "glsl": {"bsdf": "mud.glsl", "layer": "mud.glsl"}})");
+    expectError("declaration", "mud.json#/glsl/layer", "\"stage\" is \"layer\"");
+}
+
 // A division by an interval with 0 is unknown, so it drops nothing.
 TEST_F(MaterialPacks, DivisionByZeroDropsNothing) {
     std::string mud(kMud);
