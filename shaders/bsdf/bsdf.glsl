@@ -85,6 +85,11 @@ GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXE
     return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + again * loss;
 }
 
+// The part of it that a white lobe lets through at the first bounce: the albedo of thinTransmission() with Fresnel.
+GLINT_RELAXED float passedOnce(Bsdf b) {
+    return (1.0 - largest(b.f0)) * (1.0 - b.viewLoss - b.viewBias) + (1.0 - b.f90) * b.viewBias;
+}
+
 GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
     return min(v.x, min(v.y, v.z));
 }

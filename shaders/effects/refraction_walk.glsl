@@ -83,11 +83,15 @@ const uint kStops = 2u;     // the surface is shaded like any other
 const uint kAbsorbs = 3u;
 
 // The share of a facet's reflection that no other facets block. If energy is compensated, what they block leaves in the
-// end, too, and is taken to leave as the rest does: then it is 1.
-float shareBehindFacets(Bsdf b, vec3 l) {
-    return GLINT_ENERGY_COMPENSATION != 0
-               ? 1.0
-               : 2.0 * ggxVisibility(l, b.view, b.alpha) * l.z * (b.view.z + ggxProjection(b.view, b.alpha));
+// end, too. At a thin wall both lobes then grow in proportion and keep their shape (Turquin, "Practical multiple
+// scattering compensation for microfacet models", 2019). The albedo of a lobe that bends is not known; there a facet's
+// whole light leaves along its own direction, mirrored at the plane if it points below.
+float shareBehindFacets(Bsdf b, bool thin, vec3 l) {
+    if (GLINT_ENERGY_COMPENSATION != 0 && !thin) {
+        return 1.0;
+    }
+    float open = 2.0 * ggxVisibility(l, b.view, b.alpha) * l.z * (b.view.z + ggxProjection(b.view, b.alpha));
+    return GLINT_ENERGY_COMPENSATION != 0 ? open / (1.0 - b.viewLoss) : open;
 }
 
 // Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface, whose
@@ -120,19 +124,20 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
     vec2 deciding = decidingCosine2(b, features, exactSquare(exactDot(b.view, h)), eta);
     float apparent = hasLobe(features, GLINT_VOLUME) && refracts(eta) ? eta : 1.0;
-    bool straight = !hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta);
+    bool thin = !hasLobe(features, GLINT_VOLUME);
+    bool straight = thin || passesStraight(features, eta);
     if (!first && pure) {
         float reflected = facetChances(b, features, deciding, eta).x;
         float random = walker.channel == 3u || !dispersed ? choice.y : fract(3.0 * choice.y);
         if (random < reflected) {
             vec3 l = reflectAbout(b.view, h);
-            if (GLINT_ENERGY_COMPENSATION == 0 && l.z <= 0.0) {
+            if ((GLINT_ENERGY_COMPENSATION == 0 || thin) && l.z <= 0.0) {
                 return kAbsorbs;
             }
             l.z = abs(l.z);
             vec3 fresnel = withMetal(b, features, fresnelInterface(b.f0, b.f90, deciding, apparent),
                                      fresnelSchlick(b.metalF0, 1.0, sqrt(deciding.x)));
-            walker.weight *= fresnel * (shareBehindFacets(b, l) / reflected);
+            walker.weight *= fresnel * (shareBehindFacets(b, thin, l) / reflected);
             walker.direction = onSide(toWorld(surface, l), hit.geometricNormal);
             return kReflects;
         }
@@ -157,9 +162,11 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
                            (visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL)
                      : 0.0;
     }
-    if (GLINT_ENERGY_COMPENSATION != 0) {
-        // What other facets block passes in the end, too. At the first interface, the effect reflection and the sky have
-        // added all that is reflected.
+    if (GLINT_ENERGY_COMPENSATION != 0 && thin) {
+        // At the first interface, the effect reflection and the sky have added all that is reflected. Where nothing
+        // passes, both are 0; the bound keeps their quotient finite.
+        passed *= first ? diffusePassed(surface) / max(passedOnce(b), 1e-6) : 1.0 / (1.0 - b.viewLoss);
+    } else if (GLINT_ENERGY_COMPENSATION != 0) {
         l.z = -abs(l.z);
         passed = first ? diffusePassed(surface) : interfacePassed(b.f0, b.f90, deciding, apparent);
     }

@@ -248,10 +248,11 @@ Vec3 Bsdf::sheen(const Vec3& l) const {
     return m_.sheenColor * (lobe * l.z * (1.0 - coatWeight()));
 }
 
+// The hemisphere is that about the coat's normal, whatever the normal of the base is.
 Vec3 Bsdf::coat(const Vec3& l) const {
     const double lightCosine = glm::dot(coatNormal_, l);
     const double viewCosine = glm::dot(coatNormal_, view_);
-    if (m_.clearcoat <= 0.0 || lightCosine <= 0.0 || viewCosine <= 0.0 || l.z <= 0.0) {
+    if (m_.clearcoat <= 0.0 || lightCosine <= 0.0 || viewCosine <= 0.0) {
         return Vec3(0.0);
     }
     // The lobe is isotropic, so any frame about the coat's normal serves. The cosine is that to this normal,
@@ -264,9 +265,8 @@ Vec3 Bsdf::coat(const Vec3& l) const {
                 visibility(light, v, alpha, choices_.masking) * lightCosine);
 }
 
-Vec3 Bsdf::all(const Vec3& l) const {
-    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) + sheen(l) +
-           coat(l);
+Vec3 Bsdf::base(const Vec3& l) const {
+    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) + sheen(l);
 }
 
 // KHR_materials_clearcoat, "Emission".

@@ -45,7 +45,7 @@ public:
     Vec3 transmitted(const Vec3& l) const;  // through microfacets
     Vec3 sheen(const Vec3& l) const;
     Vec3 coat(const Vec3& l) const;
-    Vec3 all(const Vec3& l) const;
+    Vec3 base(const Vec3& l) const;  // all but the coat
     Vec3 emission() const;
 
     // The volume's index is that of air, so light goes straight on with this weight, and transmitted() is 0.

@@ -175,7 +175,7 @@ void addTransmittingLobes(List& list) {
     for (const double roughness : {0.0, 0.2, 0.5, 1.0}) {
         const std::string at = fmt::format("roughness {}", roughness);
         const Json clear = extended(base(kWhite, 0, roughness), kTransmission, {{"transmissionFactor", 1.0}});
-        list.add("lobe", "thin glass, " + at, clear, true, roughness == 0.2);
+        list.add("lobe", "thin glass, " + at, clear, true, roughness == 0.2 || roughness == 1.0);
         list.add("lobe", "volume, " + at, extended(clear, kVolume, {{"thicknessFactor", 1.0}}), true,
                  roughness == 0.2);
     }
@@ -327,11 +327,12 @@ void addNormalMaps(List& list) {
         plastic["normalTexture"] = list.texture(texel);
         list.add("normal map", fmt::format("white dielectric, {}° off", tilt), plastic, true, tilt == 20);
         Json coated = extended(plastic, kCoat, {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.1}});
-        list.add("normal map", fmt::format("dielectric {}° off below a flat clearcoat", tilt), coated, true);
+        list.add("normal map", fmt::format("dielectric {}° off below a flat clearcoat", tilt), coated, true,
+                 tilt == 20);
         Json rippled = base(kWhite, 0, 0.6);
         rippled["extensions"][kCoat] = {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.1}};
         rippled["extensions"][kCoat]["clearcoatNormalTexture"] = list.texture(texel);
-        list.add("normal map", fmt::format("clearcoat {}° off", tilt), rippled, true);
+        list.add("normal map", fmt::format("clearcoat {}° off", tilt), rippled, true, tilt == 20);
         Json half = base(kWhite, 0, 0.2);
         half["normalTexture"] = list.texture(texel);
         half["normalTexture"]["scale"] = 0.5;

@@ -136,9 +136,13 @@ Vec3 Surface::underLights(std::span<const Light> lights) const {
     Vec3 sum = bsdf_.emission();
     for (const Light& light : lights) {
         const Vec3 l = glm::transpose(frame_) * light.direction;
-        // Light that the mesh's surface and the normal texture's see on different sides does not arrive.
-        if (l.z * glm::dot(meshNormal_, light.direction) > 0.0) {
-            sum += bsdf_.all(l) * light.irradiance;
+        // Light that the mesh's surface and a lobe's normal see on different sides does not arrive.
+        const double height = glm::dot(meshNormal_, light.direction);
+        if (l.z * height > 0.0) {
+            sum += bsdf_.base(l) * light.irradiance;
+        }
+        if (glm::dot(bsdf_.coatNormal(), l) * height > 0.0) {
+            sum += bsdf_.coat(l) * light.irradiance;
         }
     }
     return sum;
