@@ -6,7 +6,7 @@
 #if GLINT_ENVIRONMENT_MAP
 
 // An equirectangular map. Each level holds the means over the lobes of one roughness.
-layout(set = kSetFrame, binding = kBindingEnvironment) uniform sampler2D environmentMap;
+layout(set = GLINT_BINDING_ENVIRONMENT_SET, binding = GLINT_BINDING_ENVIRONMENT) uniform sampler2D environmentMap;
 
 // v is the polar angle from +Y; u is the azimuth from +X towards +Z, with +X at the middle of the map. Both come from
 // atan, which keeps its digits at the poles.

@@ -7,10 +7,10 @@
 #include "generated/scene.glsl"
 
 layout(push_constant, scalar) uniform PushBlock {
-    PushConstants pushed;
+    layout(offset = GLINT_BINDING_PUSH_OFFSET) PushConstants pushed;
 };
 
 #define GLINT_FRAME pushed.frame.data
 
-layout(set = kSetScene, binding = kBindingTextures) uniform texture2D sceneTextures[];
-layout(set = kSetScene, binding = kBindingSamplers) uniform sampler sceneSamplers[];
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform texture2D sceneTextures[];
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_SAMPLERS) uniform sampler sceneSamplers[];

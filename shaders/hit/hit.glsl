@@ -25,6 +25,10 @@ struct Hit {
     vec4 uvEdges[2]; // for each UV set: (Δu, Δv) along each edge
     vec4 footprint;  // axes of the ray cone's ellipse, across the ray and along it, in units of the edges
     float scale;     // metres of the world for one unit of the mesh
+#if GLINT_ANSWERS_SURFACE
+    uint shaderId;
+    vec3 previousPosition;  // of the same point of the mesh, in the frame before
+#endif
 };
 
 // Returns the start of a ray from the surface. It lies off the surface, on the side to which `direction` points.
@@ -65,6 +69,11 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     precise vec3 objectPosition = p0 + (barycentrics.x * e1 + barycentrics.y * e2);
     precise vec3 position = transformPoint(instance.objectToWorld, objectPosition);
     hit.position = position;
+#if GLINT_ANSWERS_SURFACE
+    hit.shaderId = geometry.shaderId;
+    hit.previousPosition = transformPoint(GLINT_FRAME.previousInstances.data[geometry.instanceIndex].objectToWorld,
+                                          objectPosition);
+#endif
     hit.edges[0] = transformVector(instance.objectToWorld, e1);
     hit.edges[1] = transformVector(instance.objectToWorld, e2);
     vec3 front = directionOr(transformNormal(instance.normalToWorld, cross(e1, e2)), hit.view);

@@ -7,13 +7,14 @@
 #define GLINT_CORNER(i) gl_HitTriangleVertexPositionsEXT[i]
 #endif
 #include "hit/payload.glsl"
-#include "hit/shade.glsl"
+#include "hit/geometry_index.glsl"
+#include "generated/shade.glsl"
 
 layout(location = 0) rayPayloadInEXT HitPayload shaded;
 hitAttributeEXT vec2 hitBarycentrics;
 
 uint hitGeometry() {
-    return uint(gl_InstanceCustomIndexEXT + gl_GeometryIndexEXT);
+    return geometryOfHit(gl_InstanceID, gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT);
 }
 
 Hit shadedHit(GeometryRecord geometry, Features features) {
@@ -23,6 +24,13 @@ Hit shadedHit(GeometryRecord geometry, Features features) {
                     features);
 }
 
+#if GLINT_ANSWERS_SURFACE
+// The payload says only that there was a hit: the answer is too large for it.
+void returnShaded(Hit hit, ShadeResult result) {
+    storeSurface(hit.target, result.surface);
+    shaded.shadowDistance = 0.0;
+}
+#else
 void returnShaded(Hit hit, ShadeResult result) {
     shaded.radiance = result.radiance;
     shaded.direct = result.direct;
@@ -30,3 +38,4 @@ void returnShaded(Hit hit, ShadeResult result) {
     shaded.shadowDirection = result.shadowDirection;
     shaded.shadowDistance = result.shadowDistance;
 }
+#endif

@@ -3,7 +3,7 @@
 #include "hit/samples.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
-#include "hit/shade.glsl"
+#include "generated/shade.glsl"
 #include "hit/shadow.glsl"
 
 Hit loadHit(HitRecord record, vec3 direction, GeometryRecord geometry, Features features) {
@@ -13,7 +13,7 @@ Hit loadHit(HitRecord record, vec3 direction, GeometryRecord geometry, Features 
 
 // Returns the direction of the ray of a stored hit.
 vec3 rayDirection(HitRecord record, GeometryRecord geometry) {
-#if GLINT_HIT_RECORD_PACKED
+#if GLINT_HIT_RECORD_PACKED && !GLINT_STEPS
     // It points from the start of the ray to the point of the triangle.
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
     vec3 point = trianglePosition(geometry, record.primitive, barycentrics);
@@ -23,10 +23,7 @@ vec3 rayDirection(HitRecord record, GeometryRecord geometry) {
 #endif
 }
 
-void resolveMiss(uint target, vec3 direction) {
-    storeRadiance(target, skyRadiance(direction), kPathMiss);
-}
-
+#if !GLINT_ANSWERS_SURFACE
 // Writes the light that the hit sends back to its sample. Its shadow ray is traced here, or put on the list of deferred
 // rays.
 void resolveHit(Hit hit, ShadeResult result) {
@@ -38,3 +35,4 @@ void resolveHit(Hit hit, ShadeResult result) {
     }
     storeRadiance(hit.target, radiance, kPathHit);
 }
+#endif

@@ -1,20 +1,12 @@
-// shade(): the one function that every strategy calls for a hit.
+// shade(): the one function that every strategy calls for a hit. Here it answers with the light that comes back.
 #include "effects/ambient.glsl"
+#include "hit/answer_radiance.glsl"
 #include "hit/bindings.glsl"
 #include "hit/material.glsl"
 #include "hit/punctual.glsl"
 #include "hit/random.glsl"
 #include "hit/samples.glsl"
 #include "hit/sequence.glsl"
-
-// The light that leaves the hit towards the viewer. `direct` counts only if nothing blocks the shadow ray. The caller
-// of shade() traces that ray, so that one ray query serves every case.
-struct ShadeResult {
-    vec3 radiance;
-    vec3 direct;
-    vec3 shadowDirection;  // unit vector
-    float shadowDistance;  // metres; 0 if no light reaches the surface and no ray is needed
-};
 
 // The dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
@@ -97,9 +89,4 @@ ShadeResult shade(Hit hit, Features features) {
     result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
     chooseLight(hit, surface, features, result);
     return result;
-}
-
-// The colour of a hit with an unknown shader ID. It occurs only if scene and package disagree.
-ShadeResult shadeUnknown() {
-    return ShadeResult(vec3(1.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0);
 }

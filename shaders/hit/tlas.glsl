@@ -9,5 +9,5 @@
 #endif
 
 #if GLINT_TRACER != 0
-layout(set = kSetScene, binding = kBindingTlas) uniform accelerationStructureEXT sceneTlas[];
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TLAS) uniform accelerationStructureEXT sceneTlas[];
 #endif

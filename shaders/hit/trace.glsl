@@ -1,6 +1,7 @@
 // Traces rays by ray queries, or by a ray tracing pipeline.
 #include "hit/alpha.glsl"
 #include "hit/constants.glsl"
+#include "hit/geometry_index.glsl"
 #include "hit/payload.glsl"
 #include "hit/stage.glsl"
 #include "hit/tlas.glsl"
@@ -25,8 +26,9 @@ HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
 const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
 #define GLINT_PROCEED(query)                                                                                    \
     while (rayQueryProceedEXT(query)) {                                                                         \
-        uint candidate = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false) +                     \
-                              rayQueryGetIntersectionGeometryIndexEXT(query, false));                           \
+        uint candidate = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),                      \
+                                       rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),             \
+                                       rayQueryGetIntersectionGeometryIndexEXT(query, false));                  \
         if (passesAlphaTest(GLINT_FRAME.geometries.data[candidate],                                             \
                             uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)),                       \
                             rayQueryGetIntersectionBarycentricsEXT(query, false))) {                            \
@@ -41,7 +43,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 // Returns the closest hit of a ray.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, ray.origin, 0.0,
+    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
                           ray.direction, kFarDistance);
     GLINT_PROCEED(query);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
@@ -51,8 +53,9 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryGetIntersectionTriangleVertexPositionsEXT(query, true, tracedCorners);
 #endif
     return hitRecord(ray, rayIndex,
-                     TracePayload(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
-                                       rayQueryGetIntersectionGeometryIndexEXT(query, true)),
+                     TracePayload(geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, true),
+                                                rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
+                                                rayQueryGetIntersectionGeometryIndexEXT(query, true)),
                                   uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
                                   rayQueryGetIntersectionBarycentricsEXT(query, true),
                                   rayQueryGetIntersectionTEXT(query, true)));
@@ -62,7 +65,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
-                          0xFFu, origin, 0.0, direction, distance);
+                          GLINT_RAY_MASK, origin, 0.0, direction, distance);
     GLINT_PROCEED(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
@@ -70,7 +73,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 // Returns the distance to the closest surface within `most`, seen from either side, or `most` if there is none.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, origin, 0.0, direction, most);
+    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags, GLINT_RAY_MASK, origin, 0.0, direction, most);
     GLINT_PROCEED(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT
                ? most
@@ -93,7 +96,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 
 // Does the same as the function for ray queries above.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
-    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
+    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
                 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? missRecord(ray, rayIndex) : hitRecord(ray, rayIndex, traced);
 }
@@ -102,14 +105,14 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     // A ray that hits leaves this value unchanged.
     traced.geometry = 0u;
     traceRayEXT(sceneTlas[pushed.tlasIndex],
-                kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, 0u,
+                kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, GLINT_RAY_MASK, 0u, 0u,
                 GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry;
 }
 
 // Does the same as the function for ray queries above.
 float closestDistance(vec3 origin, vec3 direction, float most) {
-    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags, 0xFFu, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
+    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
                 direction, most, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? most : traced.distance;
 }

@@ -93,6 +93,32 @@ struct ShadowRecord {
     uint pad;
 };
 
+// A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
+struct SurfaceRecord {
+    vec3 position;         // of a miss: the direction of the ray
+    uint shaderId;         // of the case, or kSurface*
+    vec3 normal;           // unit, of shading; on the viewer's side
+    float roughness;       // square root of the larger alpha
+    vec3 geometricNormal;  // unit, on the viewer's side
+    float clearance;       // metres along geometricNormal at which a ray that leaves the surface starts
+    vec3 albedo;           // of the diffuse reflection
+    float occlusion;       // of ambient light
+    vec3 f0;               // reflectance at normal incidence, of metal and dielectric together
+    float f90;             // and at grazing angles
+    vec3 emission;         // radiance; of an unlit material, its colour
+    float transmission;    // share of the light that passes, specularly or diffusely
+    vec3 motion;           // since the frame before, metres
+    uint material;         // index of the material
+};
+// SurfaceRecord::shaderId of a ray that hit nothing, and of a hit that no case can shade.
+GLINT_CONSTANT(kSurfaceMiss, 0xFFFFFFFFu);
+GLINT_CONSTANT(kSurfaceUnknown, 0xFFFFFFFEu);
+
+// FrameConstants::recordsBy: how instances of a host lead to GeometryRecords.
+GLINT_CONSTANT(kRecordsByCustomIndex, 0u);       // the custom index is the number of the first record
+GLINT_CONSTANT(kRecordsByCustomIndexTable, 1u);  // firstRecords[custom index] is
+GLINT_CONSTANT(kRecordsByInstanceTable, 2u);     // firstRecords[place of the instance in the TLAS] is
+
 // VkDispatchIndirectCommand and VkTraceRaysIndirectCommandKHR for the same list. 32 bytes.
 struct DispatchArguments {
     uint x;  // workgroups
@@ -117,6 +143,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DispatchArray { DispatchArguments data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer KeyArray { uvec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer CounterArray { uint data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SurfaceArray { SurfaceRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray { uint data[]; };
 #endif
 
@@ -233,6 +260,12 @@ struct FrameConstants {
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
     GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays
     GLINT_ADDRESS(Counter) counters;         // kCounterCount
+    // For rays of a host's own:
+    GLINT_ADDRESS(Surface) surfaces;           // the answers, if they are surfaces
+    GLINT_ADDRESS(Instance) previousInstances;  // transforms of the frame before
+    GLINT_ADDRESS(Uint) firstRecords;           // see kRecordsBy*
+    uint recordsBy;
+    uint rayMask;  // instances that share no bit with it are not hit
 };
 
 GLINT_INTEROP_END

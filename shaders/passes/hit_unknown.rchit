@@ -4,7 +4,10 @@
 
 void main() {
     atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
-    ShadeResult result = shadeUnknown();
-    shaded.radiance = result.radiance;
+#if GLINT_ANSWERS_SURFACE
+    storeSurface(floatBitsToUint(shaded.radiance.x), shadeUnknown().surface);
+#else
+    shaded.radiance = shadeUnknown().radiance;
+#endif
     shaded.shadowDistance = 0.0;
 }

@@ -1,6 +1,6 @@
 #version 460
 // Shades bucket 0: rays that left the scene see the sky, and need no shadow ray.
-#include "effects/sky.glsl"
+#include "generated/answer.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "hit/samples.glsl"
@@ -13,13 +13,10 @@ void main() {
         return;
     }
     HitRecord hit = storedHit(GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[0] + index]);
-    vec3 radiance = vec3(1.0, 0.0, 1.0);
-    uint path = kPathHit;
     if (hit.geometry == kMissGeometry) {
-        radiance = skyRadiance(missDirection(hit));
-        path = kPathMiss;
+        resolveMiss(hit.target, missDirection(hit));
     } else {
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
+        resolveUnknown(hit.target);
     }
-    storeRadiance(hit.target, radiance, path);
 }

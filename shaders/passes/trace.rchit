@@ -1,12 +1,13 @@
 #version 460
 // Stores what the ray hit; it is shaded elsewhere.
 #extension GL_EXT_ray_tracing : require
+#include "hit/geometry_index.glsl"
 #include "hit/payload.glsl"
 
 layout(location = 0) rayPayloadInEXT TracePayload traced;
 hitAttributeEXT vec2 hitBarycentrics;
 
 void main() {
-    traced = TracePayload(uint(gl_InstanceCustomIndexEXT + gl_GeometryIndexEXT), uint(gl_PrimitiveID), hitBarycentrics,
-                          gl_HitTEXT);
+    traced = TracePayload(geometryOfHit(gl_InstanceID, gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT),
+                          uint(gl_PrimitiveID), hitBarycentrics, gl_HitTEXT);
 }

@@ -80,6 +80,21 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
         return makeError("tracer", where, fmt::format("{:#x} is no set of tracers", settings.tracers),
                          "choose ray-query, ray-pipeline or both");
     }
+    if (settings.passes == package::Passes::Frame && settings.answer != package::HitAnswer::Radiance) {
+        return makeError("passes", where, "a frame needs the radiance of its hits",
+                         "add --passes steps, or leave out --answer surface");
+    }
+    if (settings.passes == package::Passes::Frame && settings.bindings != package::Bindings()) {
+        return makeError("passes", where, "the renderer of whole frames has bindings of its own",
+                         "add --passes steps, or leave out --bindings");
+    }
+    if (settings.bindings.pushOffset % 8 != 0) {
+        return makeError("bindings", where,
+                         fmt::format("push-offset={} is no multiple of 8, which the addresses in the push "
+                                     "constants need",
+                                     settings.bindings.pushOffset),
+                         "choose a multiple of 8");
+    }
     return settings.positionFetch ? checkPositionFetch(settings, where) : okStatus();
 }
 

@@ -35,7 +35,19 @@ mustache::data entryOf(std::uint32_t effects, const package::EffectInfo& info) {
 
 EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings) {
     const bool lit = settings.addsLight || std::ranges::any_of(scenes.scenes(), isLit);
-    return decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
+    EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
+    if (settings.passes == package::Passes::Steps) {
+        // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
+        const bool lights = settings.answer == package::HitAnswer::Radiance;
+        plan.effects &= lights ? package::kEffectShadow : 0U;
+        for (EffectDecision& decision : plan.decisions) {
+            if (decision.chosen && (plan.effects & decision.effect) == 0) {
+                decision.chosen = false;
+                decision.reason = "the steps of a host's own rays have no effects but the shadows of hits";
+            }
+        }
+    }
+    return plan;
 }
 
 std::string effectDefines(std::uint32_t effects) {

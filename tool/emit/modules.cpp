@@ -206,7 +206,8 @@ package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const C
             settings.plan.keys.alpha == AlphaPolicy::Tested,
             static_cast<std::uint32_t>(plan.cases.size()),
             retiredIds(plan),
-            std::ranges::any_of(scenes.scenes(), hasDeformedMesh)};
+            std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
+            settings.passes};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,

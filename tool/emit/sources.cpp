@@ -38,6 +38,18 @@ FeatureMask alphaFeatures(const MaterialModel& model) {
     return mask;
 }
 
+std::string bindingDefines(const package::Bindings& bindings) {
+    std::string text = "// Where the host binds its resources\n";
+    for (const package::NamedBinding& one : package::kBindingNames) {
+        std::string name(one.name);
+        std::ranges::transform(name, name.begin(), [](char c) {
+            return c == '-' ? '_' : c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+        });
+        text += fmt::format("#define GLINT_BINDING_{} {}\n", name, bindings.*one.member);
+    }
+    return text;
+}
+
 std::string sceneDefines(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     const bool hasMasked = std::ranges::any_of(
         scenes.materials(), [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
@@ -68,6 +80,10 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
+    text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
+    text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
+                        flag(settings.answer == package::HitAnswer::Surface));
+    text += bindingDefines(settings.bindings);
     text += effectDefines(plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
@@ -108,6 +124,11 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     }
     sources.add("generated/features.glsl", plan.model->featureDefines());
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
+    const bool surface = settings.answer == package::HitAnswer::Surface;
+    sources.add("generated/answer.glsl",
+                fmt::format("#include \"hit/answer_{}.glsl\"\n", package::nameOf(settings.answer)));
+    sources.add("generated/shade.glsl",
+                fmt::format("#include \"hit/{}.glsl\"\n", surface ? "shade_surface" : "shade"));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     if (Status status = addMaterialCode(sources, *plan.model, used, sources); !status) {

@@ -259,6 +259,47 @@ inline std::vector<SettingWord> hitLobeWords() {
     return words;
 }
 
+inline std::string bindingsOf(const Settings& settings) {
+    std::vector<std::string> words;
+    for (const package::NamedBinding& one : package::kBindingNames) {
+        words.push_back(fmt::format("{}={}", one.name, settings.compile.bindings.*one.member));
+    }
+    return fmt::format("{}", fmt::join(words, ","));
+}
+
+// Changes those that `text` names: "scene-set=1,push-offset=16". Returns false, and may have changed some, if
+// it is malformed.
+inline bool parseBindings(std::string_view text, package::Bindings& bindings) {
+    constexpr std::int64_t kMost = 1 << 20;
+    bool valid = true;
+    eachWord(text, [&](std::string_view word) {
+        const std::size_t sign = std::min(word.find('='), word.size());
+        const auto* const one =
+            std::ranges::find(package::kBindingNames, word.substr(0, sign), &package::NamedBinding::name);
+        std::int64_t number = 0;
+        valid = valid && one != std::end(package::kBindingNames) && sign < word.size() &&
+                parseWhole(word.substr(sign + 1), 0, kMost, number);
+        if (valid) {
+            bindings.*one->member = static_cast<std::uint32_t>(number);
+        }
+    });
+    return valid;
+}
+
+inline constexpr SettingValues kBindings{
+    .form = ValueForm::Text,
+    .text = bindingsOf,
+    .set = [](Settings& settings, std::string_view text) { parseBindings(text, settings.compile.bindings); },
+    .type = "NAME=N,...",
+    .accepts =
+        [](std::string_view text) {
+            package::Bindings bindings;
+            return parseBindings(text, bindings);
+        },
+    .further =
+        "list of NAME=N, with the names scene-set, tlas, textures, samplers, environment-set, "
+        "environment and push-offset"};
+
 inline constexpr SettingValues kEffects{
     .form = ValueForm::List,
     .text = effectsOf,

@@ -74,6 +74,11 @@ public:
     // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
     // DeviceHandles::positionFetch.
     bool positionFetch() const;
+    // Whether the package draws frames, for Renderer, or has the steps that RaySteps records.
+    package::Passes passes() const;
+    package::HitAnswer answer() const;
+    // Where shaders find the host's descriptors and push constants.
+    const package::Bindings& bindings() const;
     // With ShadingPrecision::Half shaders also compute in 16-bit float. The device then needs
     // DeviceHandles::shaderFloat16.
     package::ShadingPrecision precision() const;

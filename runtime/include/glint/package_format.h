@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 7;
+inline constexpr std::uint32_t kVersion = 8;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -47,6 +47,31 @@ enum class ShadowPlacement : std::uint32_t {
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
+};
+
+// Which passes a package has.
+enum class Passes : std::uint32_t {
+    Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
+    Steps = 1,  // what traces, orders and shades rays of a host's own (RaySteps)
+};
+
+// What a ray of a host's own is answered with.
+enum class HitAnswer : std::uint32_t {
+    Radiance = 0,  // the light that comes back along the ray
+    Surface = 1,   // gpu::SurfaceRecord: the surface that it hit, for a host that lights it
+};
+
+// Where shaders find what a host binds. The defaults are those of Renderer, which takes no other.
+struct Bindings {
+    std::uint32_t sceneSet = 0;        // descriptor set of the next three
+    std::uint32_t tlas = 0;            // accelerationStructureEXT[]
+    std::uint32_t textures = 1;        // texture2D[]
+    std::uint32_t samplers = 2;        // sampler[]
+    std::uint32_t environmentSet = 1;  // descriptor set of the next
+    std::uint32_t environment = 5;     // sampler2D, in packages that read an environment map
+    std::uint32_t pushOffset = 0;      // of gpu::PushConstants in the range of push constants, bytes
+
+    friend bool operator==(const Bindings&, const Bindings&) = default;
 };
 
 // How many bits shading computes with.
@@ -91,6 +116,10 @@ struct PackageHeader {
     // A record of a material ends with its gpu::TextureRecords, and the runtime knows nothing else of it.
     std::uint32_t materialTextureOffset;  // bytes
     std::uint32_t materialTextureCount;
+    Passes passes;
+    HitAnswer answer;
+    Bindings bindings;
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -209,7 +238,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 88);
+static_assert(sizeof(PackageHeader) == 128);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

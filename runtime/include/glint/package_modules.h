@@ -24,6 +24,7 @@ struct PackageShape {
     std::uint32_t caseCount = 0;
     std::vector<std::uint32_t> retired{};  // ascending shader IDs below caseCount that have no modules
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
+    Passes passes = Passes::Frame;
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -52,8 +53,8 @@ enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect };
 
 // Which packages have a role.
 enum class Purpose : std::uint8_t {
-    Picture,     // every package
-    Hits,        // packages with an effect that sends rays, whose hits are shaded
+    Picture,     // packages that draw a frame
+    Hits,        // packages that shade hits: for a host, or with an effect that sends rays
     Shadows,     // those among them that defer shadow rays
     Refraction,  // packages with refraction
     Tracing,     // packages in which a ray tracing pipeline traces
@@ -108,6 +109,15 @@ inline constexpr Named<Ordering> kOrderingNames[] = {
 };
 static_assert(std::size(kOrderingNames) == static_cast<std::size_t>(Ordering::Count));
 
+inline constexpr Named<Passes> kPassesNames[] = {
+    {Passes::Frame, "frame", "a whole frame, for Renderer"},
+    {Passes::Steps, "steps", "what traces, orders and shades the rays of an engine's own, for RaySteps"},
+};
+inline constexpr Named<HitAnswer> kAnswerNames[] = {
+    {HitAnswer::Radiance, "radiance", "the light that comes back along it"},
+    {HitAnswer::Surface, "surface", "the surface that it hits, which the engine lights"},
+};
+
 constexpr std::span<const Named<Strategy>> namesOf(Strategy /*type*/) {
     return kStrategyNames;
 }
@@ -126,7 +136,28 @@ constexpr std::span<const Named<ShadingPrecision>> namesOf(ShadingPrecision /*ty
 constexpr std::span<const Named<Ordering>> namesOf(Ordering /*type*/) {
     return kOrderingNames;
 }
+constexpr std::span<const Named<Passes>> namesOf(Passes /*type*/) {
+    return kPassesNames;
+}
+constexpr std::span<const Named<HitAnswer>> namesOf(HitAnswer /*type*/) {
+    return kAnswerNames;
+}
 using glint::nameOf;
+
+// The members of Bindings by name.
+struct NamedBinding {
+    std::string_view name;
+    std::uint32_t Bindings::*member;
+};
+inline constexpr NamedBinding kBindingNames[] = {
+    {"scene-set", &Bindings::sceneSet},
+    {"tlas", &Bindings::tlas},
+    {"textures", &Bindings::textures},
+    {"samplers", &Bindings::samplers},
+    {"environment-set", &Bindings::environmentSet},
+    {"environment", &Bindings::environment},
+    {"push-offset", &Bindings::pushOffset},
+};
 
 constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
     return precision == ShadingPrecision::Single ? 32 : 16;
@@ -204,20 +235,21 @@ constexpr bool tracesPrimary(std::uint32_t effects) {
 
 // Whether a package of this shape needs modules with this purpose.
 constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
-    const bool hits = rayEffects(shape.effects) != 0;
+    const bool frame = shape.passes == Passes::Frame;
+    const bool hits = !frame || rayEffects(shape.effects) != 0;
     switch (purpose) {
         case Purpose::Picture:
-            return true;
+            return frame;
         case Purpose::Hits:
             return hits;
         case Purpose::Shadows:
             return hits && (shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Deferred;
         case Purpose::Refraction:
-            return (shape.effects & kEffectRefraction) != 0;
+            return frame && (shape.effects & kEffectRefraction) != 0;
         case Purpose::Tracing:
             return hits || tracesPrimary(shape.effects);
         case Purpose::Motion:
-            return shape.deforms;
+            return frame && shape.deforms;
     }
     return false;
 }

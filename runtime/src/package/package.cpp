@@ -74,6 +74,18 @@ bool Package::positionFetch() const {
     return state_->header.positionFetch != 0;
 }
 
+package::Passes Package::passes() const {
+    return state_->header.passes;
+}
+
+package::HitAnswer Package::answer() const {
+    return state_->header.answer;
+}
+
+const package::Bindings& Package::bindings() const {
+    return state_->header.bindings;
+}
+
 package::ShadingPrecision Package::precision() const {
     return state_->header.precision;
 }

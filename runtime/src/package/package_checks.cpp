@@ -109,6 +109,12 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.precision > package::ShadingPrecision::Half) {
         return outside("the precision of shading", static_cast<std::uint32_t>(header.precision));
     }
+    if (header.passes > package::Passes::Steps) {
+        return outside("the set of passes", static_cast<std::uint32_t>(header.passes));
+    }
+    if (header.answer > package::HitAnswer::Surface) {
+        return outside("the answer to a ray", static_cast<std::uint32_t>(header.answer));
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }
@@ -274,6 +280,7 @@ package::PackageShape shapeOf(const Package::State& state) {
         }
     }
     shape.deforms = header.deforms != 0;
+    shape.passes = header.passes;
     return shape;
 }
 

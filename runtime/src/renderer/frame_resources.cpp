@@ -14,23 +14,17 @@ VkDeviceSize listRays(const FrameSize& size) {
     return VkDeviceSize{size.width} * size.height * size.batchCount;
 }
 
-namespace {
-
-// Returns the number of elements of the longest list. It is that of hits, where each bucket may leave all but
-// one slot of its last group empty.
 VkDeviceSize listSlots(const FrameSize& size) {
     return listRays(size) + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
 }
 
-// Returns the largest number of rays in a one-dimensional dispatch, as lists use. A dispatch over an image is
-// no wider, and its height is within the limits of images, which are below those of dispatches.
+// Lists are dispatched in one dimension. A dispatch over an image is no wider, and its height is within the
+// limits of images, which are below those of dispatches.
 std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
     const std::uint64_t width =
         std::uint64_t{limits.core.maxComputeWorkGroupCount[0]} * limits.core.maxComputeWorkGroupSize[0];
     return std::min<std::uint64_t>(width, limits.rayPipeline.maxRayDispatchInvocationCount);
 }
-
-}  // namespace
 
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
     const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
@@ -112,8 +106,10 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     // These numbers are 0 if no effect sends rays.
-    const VkDeviceSize samples = VkDeviceSize{size.width} * size.height * size.sampleCount;
+    const VkDeviceSize samples =
+        size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * size.sampleCount;
     const VkDeviceSize rays = listRays(size);
+    const VkDeviceSize ownRays = size.hostRays ? 0 : rays;
     const VkDeviceSize hits = size.ordered ? rays : 0;
     const VkDeviceSize slots = size.ordered ? listSlots(size) : 0;
     // There is one bit for each hit, in whole words.
@@ -137,7 +133,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
          MemoryUse::Device},
         {frame.radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
-        {frame.rays, rays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        {frame.rays, ownRays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
@@ -273,6 +269,9 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
 }  // namespace
 
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    if (size.hostRays) {
+        return createBuffers(context, size, frame);
+    }
     if (Status status = createImages(context, size, frame); !status) {
         return status;
     }

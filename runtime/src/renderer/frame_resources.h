@@ -85,6 +85,7 @@ struct FrameSize {
     std::uint32_t keyBytes = 1;  // size of the key of a hit's bucket
     bool deferredShadows = false;
     bool environmentMap = false;
+    bool hostRays = false;     // the list of rays and what they bring back are the host's
     bool rayPipeline = false;  // a ray tracing pipeline dispatches lists as rays
 
     std::uint32_t roundCount() const {
@@ -101,7 +102,15 @@ VkDeviceSize listRays(const FrameSize& size);
 // Error "render-size": the frame has no pixels, or more than the device supports.
 Status checkFrameSize(const Context::State& context, const FrameSize& size);
 
-// Makes all resources, clears the images and waits for the device.
+// Returns the number of elements of the longest list. It is that of hits, where each bucket may leave all but
+// one slot of its last group empty.
+VkDeviceSize listSlots(const FrameSize& size);
+
+// Returns the largest number of rays that one dispatch of a list can have.
+std::uint64_t maxRayDispatch(const DeviceLimits& limits);
+
+// Makes all resources, or with FrameSize::hostRays the lists and counters alone, clears the images and waits
+// for the device.
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
 
 // Puts the environment into the frame's set. No commands that use the set may be in flight. Requires

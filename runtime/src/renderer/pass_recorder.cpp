@@ -10,27 +10,38 @@ constexpr VkStridedDeviceAddressRegionKHR kNoCallables{};
 
 }  // namespace
 
-PassRecorder::PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing)
+PassRecorder::PassRecorder(PassState& state, VkCommandBuffer commands, Timing timing)
     : state_(state),
       vk_(state.context.vk),
       commands_(commands),
-      pushStages_(pushStages(state.context)),
+      pushStages_(state.pipelines.pushStages),
       dependencies_(stagesOf(state.choice)),
       timesPasses_(timing == Timing::Passes) {
     pushed_.frame = state.frame.constants.address;
+    pushed_.tlasIndex = state.tlasIndex;
 }
 
 void PassRecorder::barrier(const MemoryDependency& dependency) {
     recordDependency(state_.context, commands_, dependency);
 }
 
-void PassRecorder::beginPass(const PassLabel& label) {
+void PassRecorder::beginLabel(const std::string& name) {
     if (vk_.CmdBeginDebugUtilsLabelEXT != nullptr) {
         VkDebugUtilsLabelEXT text{};
         text.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        text.pLabelName = label.name.c_str();
+        text.pLabelName = name.c_str();
         vk_.CmdBeginDebugUtilsLabelEXT(commands_, &text);
     }
+}
+
+void PassRecorder::endLabel() {
+    if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
+        vk_.CmdEndDebugUtilsLabelEXT(commands_);
+    }
+}
+
+void PassRecorder::beginPass(const PassLabel& label) {
+    beginLabel(label.name);
     if (timesPasses_) {
         state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.timed.size()));
         state_.timed.push_back(label);
@@ -41,9 +52,7 @@ void PassRecorder::endPass() {
     if (timesPasses_) {
         state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.timed.size() - 1));
     }
-    if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
-        vk_.CmdEndDebugUtilsLabelEXT(commands_);
-    }
+    endLabel();
 }
 
 std::uint32_t PassRecorder::beginStretch(const PassLabel& label) {
@@ -61,14 +70,14 @@ void PassRecorder::endStretch(std::uint32_t stretch) {
     }
 }
 
-void PassRecorder::bindSets(VkPipelineBindPoint point) {
-    const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set};
-    vk_.CmdBindDescriptorSets(commands_, point, state_.pipelines.layout.get(), gpu::kSetScene, 2, sets, 0,
-                              nullptr);
+void PassRecorder::bindSets(VkPipelineBindPoint point, std::span<const VkDescriptorSet> sets) {
+    vk_.CmdBindDescriptorSets(commands_, point, state_.pipelines.layout, gpu::kSetScene,
+                              static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
 }
 
 void PassRecorder::push() {
-    vk_.CmdPushConstants(commands_, state_.pipelines.layout.get(), pushStages_, 0, sizeof(pushed_), &pushed_);
+    vk_.CmdPushConstants(commands_, state_.pipelines.layout, pushStages_, state_.pushOffset, sizeof(pushed_),
+                         &pushed_);
 }
 
 void PassRecorder::beginRendering() {
@@ -101,12 +110,12 @@ void PassRecorder::beginRendering() {
     vk_.CmdSetScissor(commands_, 0, 1, &info.renderArea);
 }
 
-void PassRecorder::drawScene() {
+void PassRecorder::drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets) {
     beginPass({"gbuffer", Pass::Gbuffer});
     beginRendering();
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
-    bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS);
-    for (const DrawBatch& draw : state_.scene.batches) {
+    bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS, sets);
+    for (const DrawBatch& draw : batches) {
         vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
         // A front is counter-clockwise on screen in glTF, unless a mirroring transform turns it.
         vk_.CmdSetFrontFace(commands_,
@@ -127,10 +136,10 @@ void PassRecorder::bindPass(const PassPipeline& pass) {
     push();
 }
 
-void PassRecorder::bindSets() {
-    bindSets(VK_PIPELINE_BIND_POINT_COMPUTE);
+void PassRecorder::bindSets(std::span<const VkDescriptorSet> sets) {
+    bindSets(VK_PIPELINE_BIND_POINT_COMPUTE, sets);
     if (state_.choice.tracer == package::kTracerRayPipeline) {
-        bindSets(VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR);
+        bindSets(VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, sets);
     }
 }
 

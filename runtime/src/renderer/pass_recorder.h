@@ -1,17 +1,19 @@
 // Records passes one after the other, each with its label and its timer.
 #pragma once
 
+#include "renderer/draw_batches.h"
 #include "renderer/pass_dependencies.h"
-#include "renderer/renderer_state.h"
+#include "renderer/pass_state.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace glint {
 
 class PassRecorder {
 public:
-    PassRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing);
+    PassRecorder(PassState& state, VkCommandBuffer commands, Timing timing);
 
     // Begins a stretch of several passes, which is timed if passes are not. Returns its number for
     // endStretch().
@@ -19,10 +21,13 @@ public:
     void endStretch(std::uint32_t stretch);
 
     void barrier(const MemoryDependency& dependency);
-    // Binds the descriptor sets for every kind of pass except the raster pass.
-    void bindSets();
-    // Draws the scene into the G-buffer's visibility image.
-    void drawScene();
+    // Binds descriptor sets for every kind of pass except the raster pass.
+    void bindSets(std::span<const VkDescriptorSet> sets);
+    // Draws a scene into the G-buffer's visibility image.
+    void drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets);
+    // Begins and ends a label around several passes.
+    void beginLabel(const std::string& name);
+    void endLabel();
     // Dispatches the pass over the pixels of the image.
     void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
     // Dispatches `groups` workgroups.
@@ -43,12 +48,12 @@ public:
 private:
     void beginPass(const PassLabel& label);
     void endPass();
-    void bindSets(VkPipelineBindPoint point);
+    void bindSets(VkPipelineBindPoint point, std::span<const VkDescriptorSet> sets);
     void bindPass(const PassPipeline& pass);
     void push();
     void beginRendering();
 
-    Renderer::State& state_;
+    PassState& state_;
     const DeviceTable& vk_;
     VkCommandBuffer commands_;
     VkShaderStageFlags pushStages_;

@@ -1,6 +1,6 @@
 // The passes of a frame in order.
-#include "renderer/pass_recorder.h"
-#include "renderer/tile_sort.h"
+#include "renderer/hit_passes.h"
+#include "renderer/renderer_state.h"
 
 #include <cstdint>
 #include <string>
@@ -25,9 +25,10 @@ public:
         static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
         vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
         passes_.barrier(dependencies().clearToPasses);
-        passes_.drawScene();
+        const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set};
+        passes_.drawScene(state_.scene.batches, sets);
         passes_.barrier(dependencies().rasterToPasses);
-        passes_.bindSets();
+        passes_.bindSets(sets);
         passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
         passes_.barrier(dependencies().passToPass);
         recordEffects(frame.effects & state_.size.effects);
@@ -74,11 +75,6 @@ private:
         fill(state_.frame.visitedHits, VK_WHOLE_SIZE, 0);
     }
 
-    void dispatchRays(const PassLabel& label, ModuleRole role) {
-        passes_.dispatchList(label, pass(role), state_.frame.rayDispatch, 0);
-        passes_.barrier(dependencies().passToPass);
-    }
-
     // Records the rays of all effects that are on, either together or effect by effect.
     void recordEffects(std::uint32_t effects) {
         const std::uint32_t withRays = package::rayEffects(effects);
@@ -99,7 +95,11 @@ private:
             }
             passes_.barrier(dependencies().passToPass);
             const std::uint32_t stretch = passes_.beginStretch({"hits", Pass::Hits});
-            recordHits();
+            HitPasses hits(state_, passes_);
+            hits.dispatchOfList();
+            hits.trace();
+            hits.order();
+            hits.shade();
             passes_.endStretch(stretch);
             finishRound(static_cast<std::uint32_t>(rounds.size()));
             rounds.push_back(listed);
@@ -137,76 +137,6 @@ private:
         // Effects append to the same list in any order, so they need no barrier among themselves.
         passes_.dispatchPixels({name + " rays", Pass::EffectRays},
                                state_.pipelines.effectRays[package::effectNumber(info.effect)]);
-    }
-
-    void recordOrder() {
-        dispatchRays({"trace", Pass::Trace}, ModuleRole::Trace);
-        if (state_.choice.ordering == package::Ordering::TileSort) {
-            const TileSortGroups groups =
-                tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
-            passes_.dispatchGroups({"count", Pass::Count}, pass(ModuleRole::BucketCount), groups.count);
-            passes_.barrier(dependencies().passToPass);
-            passes_.dispatchGroups({"copy", Pass::Copy}, pass(ModuleRole::BucketCopy), groups.copy);
-            passes_.barrier(dependencies().passToDispatch);
-        } else {
-            dispatchRays({"count", Pass::Count}, ModuleRole::BucketCount);
-            passes_.dispatchGroups({"offset", Pass::Offset}, pass(ModuleRole::BucketOffset), 1);
-            passes_.barrier(dependencies().passToDispatch);
-            dispatchRays({"copy", Pass::Copy}, ModuleRole::BucketCopy);
-        }
-        if (state_.choice.checksOrder) {
-            // This does not dispatch by the number of rays: if there are none, it must check that buckets are
-            // empty.
-            passes_.dispatchPixels({"check order", Pass::CheckOrder}, pass(ModuleRole::OrderCheck));
-            passes_.barrier(dependencies().passToPass);
-        }
-    }
-
-    void recordBuckets() {
-        // Buckets write different samples, so they need no barrier among themselves.
-        const Buffer& arguments = state_.frame.bucketDispatch;
-        passes_.setBucket(0);
-        passes_.dispatchList({"shade miss", Pass::ShadeMiss}, pass(ModuleRole::ShadeMiss), arguments, 0);
-        for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
-            if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
-                continue;  // the bucket of a retired shader ID stays empty
-            }
-            passes_.setBucket(1 + shaderId);
-            passes_.dispatchList({"shade " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
-                                 state_.pipelines.cases[shaderId], arguments, 1 + shaderId);
-        }
-        passes_.barrier(dependencies().passToPass);
-    }
-
-    // Shades the hits of the rays in the list.
-    void recordHits() {
-        passes_.dispatchGroups({"ray dispatch", Pass::RayDispatch}, pass(ModuleRole::RayDispatch), 1);
-        passes_.barrier(dependencies().passToDispatch);
-        switch (state_.choice.strategy) {
-            case package::kStrategyUber:
-                dispatchRays({"uber", Pass::Uber}, ModuleRole::UberShade);
-                break;
-            case package::kStrategySortedUber:
-                recordOrder();
-                passes_.dispatchList({"sorted uber", Pass::SortedUber}, pass(ModuleRole::SortedShade),
-                                     state_.frame.bucketDispatch, state_.size.bucketCount);
-                passes_.barrier(dependencies().passToPass);
-                break;
-            case package::kStrategyHitShaders:
-                dispatchRays({"hit shaders", Pass::HitShaders}, ModuleRole::HitTrace);
-                break;
-            default:
-                recordOrder();
-                recordBuckets();
-        }
-        if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
-            passes_.dispatchGroups({"shadow dispatch", Pass::ShadowDispatch},
-                                   pass(ModuleRole::ShadowDispatch), 1);
-            passes_.barrier(dependencies().passToDispatch);
-            passes_.dispatchList({"shadow", Pass::Shadow}, pass(ModuleRole::ShadowTrace),
-                                 state_.frame.shadowDispatch, 0);
-            passes_.barrier(dependencies().passToPass);
-        }
     }
 
     Renderer::State& state_;

@@ -16,23 +16,28 @@ namespace {
 
 using package::ModuleRole;
 
-Status createLayout(Context::State& context, std::span<const VkDescriptorSetLayout> setLayouts,
-                    Pipelines& pipelines) {
+Status createLayout(Context::State& context, const LayoutSource& source, Pipelines& pipelines) {
+    if (source.given != VK_NULL_HANDLE) {
+        pipelines.layout = source.given;
+        pipelines.pushStages = source.givenPushStages;
+        return okStatus();
+    }
+    pipelines.pushStages = pushStages(context);
     VkPushConstantRange range{};
-    range.stageFlags = pushStages(context);
+    range.stageFlags = pipelines.pushStages;
     range.size = sizeof(gpu::PushConstants);
     VkPipelineLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = static_cast<std::uint32_t>(setLayouts.size());
-    info.pSetLayouts = setLayouts.data();
+    info.setLayoutCount = static_cast<std::uint32_t>(source.sets.size());
+    info.pSetLayouts = source.sets.data();
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
+    const VkResult result =
+        context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &pipelines.layout);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
-    pipelines.layout = UniquePipelineLayout(context, layout);
+    pipelines.ownLayout = UniquePipelineLayout(context, pipelines.layout);
     return okStatus();
 }
 
@@ -233,16 +238,18 @@ std::string pipelineName(const Package& package, const package::ModuleKey& key) 
 
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
-                                  std::span<const std::uint32_t> shaderIds,
-                                  std::span<const VkDescriptorSetLayout> setLayouts) {
+                                  std::span<const std::uint32_t> shaderIds, const LayoutSource& source) {
     const auto start = std::chrono::steady_clock::now();
     Pipelines pipelines(context);
-    if (Status status = createLayout(context, setLayouts, pipelines); !status) {
+    if (Status status = createLayout(context, source, pipelines); !status) {
         return status.error();
     }
-    const VkPipelineLayout layout = pipelines.layout.get();
+    const VkPipelineLayout layout = pipelines.layout;
     PipelinePlan plan;
-    plan.jobs.push_back(gbufferJob(context, package, layout));
+    const bool draws = package.passes() == package::Passes::Frame;
+    if (draws) {
+        plan.jobs.push_back(gbufferJob(context, package, layout));
+    }
     planComputePasses(context, package, choice, layout, plan);
     plan.rayPasses = planRayPasses(package, choice, shaderIds);
     planRayJobs(context, layout, plan);
@@ -255,7 +262,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
         return made.error();
     }
     pipelines.owned = std::move(*made);
-    pipelines.gbuffer = pipelines.owned.front().handle.get();
+    if (draws) {
+        pipelines.gbuffer = pipelines.owned.front().handle.get();
+    }
     addComputePasses(package, plan, pipelines);
     const std::size_t firstRayJob = plan.jobs.size() - plan.rayPasses.size();
     for (std::size_t i = 0; i < plan.rayPasses.size(); ++i) {

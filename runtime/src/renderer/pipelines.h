@@ -42,8 +42,10 @@ struct Pipelines {
     explicit Pipelines(Context::State& context) : pool(context) {}
 
     MemoryPool pool;
-    std::vector<Buffer> tables;  // shader binding tables
-    UniquePipelineLayout layout;
+    std::vector<Buffer> tables;      // shader binding tables
+    UniquePipelineLayout ownLayout;  // empty if the layout is the caller's
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkShaderStageFlags pushStages = 0;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
     std::vector<PassPipeline> effectRays;  // indexed by package::effectNumber()
@@ -52,6 +54,13 @@ struct Pipelines {
     std::uint32_t threads = 0;  // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
+};
+
+// A layout that the caller has, or the sets of one to make.
+struct LayoutSource {
+    std::span<const VkDescriptorSetLayout> sets{};
+    VkPipelineLayout given = VK_NULL_HANDLE;
+    VkShaderStageFlags givenPushStages = 0;
 };
 
 // Returns the part of the package's shape that decides which of its modules the choice needs.
@@ -63,11 +72,10 @@ VkShaderStageFlags pushStages(const Context::State& context);
 // Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
 std::string pipelineName(const Package& package, const package::ModuleKey& key);
 
-// Makes all pipelines of the choice. `shaderIds` are those of the scene's geometry records, in their order.
-// Errors: those of buffers and submissions, "vulkan-call".
+// Makes all pipelines of the choice. `shaderIds` are those of the hit records of the strategy hit-shaders, in
+// their order. Errors: those of buffers and submissions, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
-                                  std::span<const std::uint32_t> shaderIds,
-                                  std::span<const VkDescriptorSetLayout> setLayouts);
+                                  std::span<const std::uint32_t> shaderIds, const LayoutSource& layout);
 
 }  // namespace glint

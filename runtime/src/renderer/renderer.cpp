@@ -2,13 +2,12 @@
 #include "context/readback.h"
 #include "context/vulkan_error.h"
 #include "renderer/camera.h"
+#include "renderer/frame_constants.h"
 #include "renderer/renderer_choice.h"
 #include "renderer/renderer_state.h"
-#include "scene/instance_math.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace glint {
@@ -20,38 +19,9 @@ constexpr float kFarDistance = 1e18F;
 constexpr std::uint32_t kMaxSurfaceSamples = 4096;
 constexpr std::uint32_t kMaxInterfaces = 64;
 
-Status checkEnvironment(const Renderer::State& state, const FrameOptions& frame) {
-    if (state.size.environmentMap && frame.environment == nullptr) {
-        return makeError("environment-missing", "",
-                         "the package reads an environment map, and the frame has none",
-                         "set FrameOptions::environment, or compile the package without an environment map");
-    }
-    if (!state.size.environmentMap && frame.environment != nullptr) {
-        return makeError(
-            "environment-unread", "",
-            "the frame has an environment map, and the package was compiled without one",
-            "compile the package for an environment map, or leave FrameOptions::environment null");
-    }
-    if (!std::isfinite(frame.environmentRotation) || !std::isfinite(frame.environmentIntensity) ||
-        frame.environmentIntensity < 0.0F) {
-        return makeError(
-            "frame-options", "",
-            "environmentRotation is not finite, or environmentIntensity is negative or not finite",
-            "use radians, and a factor of at least 0");
-    }
-    return okStatus();
-}
-
 Status checkFrame(const FrameOptions& frame) {
     if (Status status = checkCamera(frame.camera); !status) {
         return status;
-    }
-    for (const std::array<float, 3>& radiance : {frame.sky.zenith, frame.sky.horizon, frame.sky.ground}) {
-        if (!std::ranges::all_of(radiance,
-                                 [](float value) { return std::isfinite(value) && value >= 0.0F; })) {
-            return makeError("sky", "", "the sky's radiance is negative or not finite",
-                             "give three finite numbers of at least 0");
-        }
     }
     if (!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness)) {
         return makeError("frame-options", "", "a limit of roughness is not finite", "use 0 to 1");
@@ -86,20 +56,8 @@ Status checkFrame(const FrameOptions& frame) {
     return okStatus();
 }
 
-// Shaders turn the direction of a lookup, and the host turns the harmonics.
-void fillEnvironment(const Environment::State& environment, const FrameOptions& options,
-                     gpu::FrameConstants& constants) {
-    const SkyHarmonics harmonics = turned(environment.harmonics, options.environmentRotation);
-    for (std::size_t i = 0; i < harmonics.size(); ++i) {
-        const auto channel = [&](std::size_t c) {
-            return static_cast<float>(harmonics[i][c] * options.environmentIntensity);
-        };
-        constants.skyHarmonics[i] = {channel(0), channel(1), channel(2)};
-    }
-    const double turns = options.environmentRotation / (2.0 * std::numbers::pi);
-    constants.environmentLevels = static_cast<float>(environment.statistics.levels);
-    constants.environmentTurn = static_cast<float>(turns - std::floor(turns));
-    constants.environmentScale = environment.scale * options.environmentIntensity;
+Outside outsideOf(const FrameOptions& frame) {
+    return {frame.sky, frame.environment, frame.environmentRotation, frame.environmentIntensity};
 }
 
 gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptions& options) {
@@ -113,8 +71,6 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.sampleIndex = options.sampleIndex;
     constants.seed = options.seed;
     constants.lightCount = state.scene.lightCount;
-    constants.bucketCount = state.size.bucketCount;
-    constants.bucketAlignment = state.size.bucketAlignment;
     constants.mirrorRoughness = options.mirrorRoughness;
     constants.maxReflectionRoughness = options.maxReflectionRoughness;
     constants.faintWeight = options.faintWeight;
@@ -129,33 +85,12 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.binning = static_cast<std::uint32_t>(options.binning);
     constants.screenSteps = options.screenSteps;
     constants.screenThickness = options.screenThickness;
-    constants.skyZenith = toVec3(options.sky.zenith);
-    constants.skyHorizon = toVec3(options.sky.horizon);
-    constants.skyGround = toVec3(options.sky.ground);
-    if (options.environment != nullptr) {
-        fillEnvironment(*options.environment->state(), options, constants);
-    }
+    fillOutside(outsideOf(options), constants);
     constants.geometries = state.scene.geometries.address;
     constants.instances = state.scene.instances.address;
     constants.materials = state.scene.materials.address;
     constants.lights = state.scene.lights.address;
-    const FrameResources& frame = state.frame;
-    constants.samples = frame.samples.address;
-    constants.radiance = frame.radiance.address;
-    constants.rays = frame.rays.address;
-    constants.hits = frame.hits.address;
-    constants.packedHits = frame.hits.address;
-    constants.shadows = frame.shadows.address;
-    constants.shadowDispatch = frame.shadowDispatch.address;
-    constants.orderedHits = frame.orderedHits.address;
-    constants.visitedHits = frame.visitedHits.address;
-    constants.bucketKeys = frame.bucketKeys.address;
-    constants.bucketCounts = frame.bucketCounts.address;
-    constants.bucketBegins = frame.bucketBegins.address;
-    constants.bucketCursors = frame.bucketCursors.address;
-    constants.rayDispatch = frame.rayDispatch.address;
-    constants.bucketDispatch = frame.bucketDispatch.address;
-    constants.counters = frame.counters.address;
+    fillLists(state.frame, state.size, constants);
     return constants;
 }
 
@@ -164,6 +99,10 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
                                                    const RendererOptions& options) {
     Context::State& contextState = context.state();
+    if (package.passes() != package::Passes::Frame) {
+        return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
+                         "compile it with --passes frame, or use RaySteps");
+    }
     Result<PipelineChoice> choice = choosePipelines(contextState, package, options);
     if (!choice) {
         return choice.error();
@@ -192,7 +131,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
     Result<Pipelines> pipelines =
         createPipelines(contextState, package, *choice, {options.pipelineThreads, options.pipelineStatistics},
-                        state->scene.shaderIds, layouts);
+                        state->scene.shaderIds, {layouts});
     if (!pipelines) {
         return pipelines.error();
     }
@@ -207,7 +146,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     if (Status status = checkFrame(frame); !status) {
         return status;
     }
-    if (Status status = checkEnvironment(*state_, frame); !status) {
+    if (Status status = checkOutside(state_->size, outsideOf(frame)); !status) {
         return status;
     }
     if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
@@ -283,20 +222,7 @@ Status Renderer::renderSamples(const FrameOptions& frame, std::uint32_t sampleCo
 }
 
 Result<std::vector<PassTiming>> Renderer::timings() {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
-    const auto count = static_cast<std::uint32_t>(state_->timed.size());
-    Result<std::vector<double>> milliseconds = state_->timer.read(count);
-    if (!milliseconds) {
-        return milliseconds.error();
-    }
-    std::vector<PassTiming> timings;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const PassLabel& label = state_->timed[i];
-        timings.push_back({label.name, (*milliseconds)[i], label.pass, label.shaderId});
-    }
-    return timings;
+    return passTimings(*state_);
 }
 
 package::Tracer Renderer::tracer() const {

@@ -128,7 +128,8 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.height = options.height;
     size.bucketCount = package.bucketCount();
     size.effects = package.shape().effects;
-    size.sampleCount = package::rayEffectCount(size.effects);
+    size.hostRays = package.passes() == package::Passes::Steps;
+    size.sampleCount = size.hostRays ? 1 : package::rayEffectCount(size.effects);
     size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
     size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;

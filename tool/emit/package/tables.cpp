@@ -231,6 +231,9 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.precision = settings.precision;
+    header.passes = settings.passes;
+    header.answer = settings.answer;
+    header.bindings = settings.bindings;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.effects = plan.effects.effects;

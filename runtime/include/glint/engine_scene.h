@@ -1,0 +1,96 @@
+// A scene that a host keeps on the device by itself: its vertex buffers, acceleration structures, textures
+// and samplers stay where they are. docs/engine.md leads through it.
+#pragma once
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace glint {
+
+// One geometry of one instance, which a hit can be on. Addresses are device addresses in the formats that the
+// package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
+// position and a normal, four a tangent and a colour, two a UV. An attribute that the package's key of this
+// primitive lacks may be 0, another may not.
+struct EngineGeometryView {
+    std::uint32_t mesh = 0;  // which primitive of the package's scene has this geometry's material and key
+    std::uint32_t primitive = 0;  // within the mesh
+    std::uint32_t instance = 0;   // index into EngineSceneView::instances
+    VkDeviceAddress indices = 0;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+    VkDeviceAddress texCoords0 = 0;
+    VkDeviceAddress texCoords1 = 0;
+    VkDeviceAddress colors = 0;
+};
+
+// A texture of the package's scene (PackageScene::textures) as the host has it.
+struct EngineTextureView {
+    std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
+    std::uint32_t width = 0;  // texels of mip 0
+    std::uint32_t height = 0;
+};
+
+// How a hit leads to a geometry. The number of a geometry's place in EngineSceneView::geometries is the
+// number of the instance's first geometry plus the index of the geometry in its BLAS.
+enum class RecordsBy : std::uint32_t {
+    CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
+    CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is
+    InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is
+};
+
+struct EngineSceneView {
+    std::uint32_t packageScene = 0;  // index of the scene in the package
+    std::span<const EngineGeometryView> geometries;
+    std::span<const std::array<float, 12>> instances;  // objectToWorld, three rows of four
+    std::span<const EngineTextureView> textures;       // one for each of PackageScene::textures
+    std::span<const std::uint32_t>
+        samplers;  // for each of PackageScene::samplers, its index in the host's array
+    std::span<const LightView> lights;
+    RecordsBy recordsBy = RecordsBy::CustomIndex;
+    std::span<const std::uint32_t> firstRecords{};
+    // For the strategy hit-shaders: for each hit record of the shader binding table, the number of the
+    // geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus the index of the
+    // geometry in its BLAS. If empty, record i is for geometry i.
+    std::span<const std::uint32_t> hitRecords{};
+};
+
+// What Glint's shaders need to know of such a scene: a record for each geometry, instance, material and
+// light. The Context must outlive it; the host keeps what it points to alive.
+class EngineScene {
+public:
+    // Makes the records and waits for the queue. The spans are not kept. Errors: "scene-package" (the package
+    // has no such scene or primitive), "engine-scene" (a number is out of range, an attribute that a key
+    // needs is missing, or a transform is not finite), "scene-light", and those of memory and Vulkan's calls.
+    static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
+                                                       const EngineSceneView& scene);
+    ~EngineScene();
+    EngineScene(const EngineScene&) = delete;
+    EngineScene& operator=(const EngineScene&) = delete;
+
+    // Records new transforms, as many as at creation, and new lights, at most as many. The transforms before
+    // become those that motion is measured from. The values travel in the command buffer, so they need not be
+    // kept and any number of frames may be in flight. Errors: "engine-scene", "scene-light".
+    Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
+                  std::span<const LightView> lights);
+
+    std::uint64_t bytes() const;  // on the device
+
+    struct State;  // for the runtime's own sources
+    State& state();
+
+private:
+    explicit EngineScene(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

@@ -1,0 +1,152 @@
+// Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings.
+// docs/engine.md leads through it.
+#pragma once
+
+#include <glint/engine_scene.h>
+#include <glint/renderer.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glint {
+
+// A ray of the host's list.
+struct EngineRay {
+    std::array<float, 3> origin{};
+    std::uint32_t slot = 0;            // where its answer goes
+    std::array<float, 3> direction{};  // unit
+    float coneWidth = 0.0F;   // footprint at the origin, metres; 0 reads the finest level of textures
+    float coneSpread = 0.0F;  // growth of the footprint in a metre
+};
+static_assert(sizeof(EngineRay) == 36);
+
+// The answer of a package with HitAnswer::Radiance: radiance, and how it was found.
+struct EngineRadiance {
+    std::array<float, 3> radiance{};
+    float path = 0.0F;  // 2: the ray hit, 3: it left the scene
+};
+static_assert(sizeof(EngineRadiance) == 16);
+
+// The answer of a package with HitAnswer::Surface. Vectors are in the world.
+struct EngineSurface {
+    std::array<float, 3> position{};         // of a miss: the direction of the ray
+    std::uint32_t shaderId = 0;              // of the case, or one of the numbers below
+    std::array<float, 3> normal{};           // unit, of shading, on the viewer's side
+    float roughness = 0.0F;                  // square root of the larger alpha
+    std::array<float, 3> geometricNormal{};  // unit, on the viewer's side
+    float clearance = 0.0F;  // metres along geometricNormal at which a ray that leaves the surface starts
+    std::array<float, 3> albedo{};    // of the diffuse reflection
+    float occlusion = 0.0F;           // of ambient light
+    std::array<float, 3> f0{};        // reflectance at normal incidence, of metal and dielectric together
+    float f90 = 0.0F;                 // and at grazing angles
+    std::array<float, 3> emission{};  // radiance; of an unlit material, its colour
+    float transmission = 0.0F;        // share of the light that passes, specularly or diffusely
+    std::array<float, 3> motion{};    // since the transforms before EngineScene::update(), metres
+    std::uint32_t material = 0;       // index of the material in its file
+
+    static constexpr std::uint32_t kMiss = 0xFFFFFFFF;
+    static constexpr std::uint32_t kUnknown = 0xFFFFFFFE;  // no case has the shader ID of what it hit
+};
+static_assert(sizeof(EngineSurface) == 112);
+
+struct RayStepsOptions {
+    package::Strategy strategy = package::kStrategyVisibility;
+    // As in RendererOptions.
+    std::optional<package::Tracer> tracer{};
+    std::optional<package::Ordering> ordering{};
+    bool checkOrder = false;
+    std::uint32_t pipelineThreads = 0;
+    std::uint32_t maxRays = 0;  // in a batch, at least 1
+    // The layout of the host's pipelines. Its sets have what Package::bindings() names, visible to compute
+    // shaders, or to the stages of ray tracing pipelines if they trace. Its range of push constants has
+    // RaySteps::kPushBytes bytes at Bindings::pushOffset for `pushStages`. It must outlive the RaySteps.
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkShaderStageFlags pushStages = VK_SHADER_STAGE_COMPUTE_BIT;  // of the range that overlaps those bytes
+};
+
+// The rays of one call.
+struct RayBatch {
+    VkDeviceAddress rays = 0;    // EngineRay[], aligned to 4 bytes
+    std::uint32_t rayCount = 0;  // at most RayStepsOptions::maxRays
+    // If not null, the device knows the number of rays: a uint32 at countOffset, at most maxRays. rayCount is
+    // then not used. The buffer needs VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    VkBuffer countBuffer = VK_NULL_HANDLE;
+    VkDeviceSize countOffset = 0;
+    VkDeviceAddress answers = 0;    // EngineRadiance[] (16-byte aligned) or EngineSurface[], by slot
+    std::uint32_t sampleIndex = 0;  // random numbers differ by slot, sample and seed
+    std::uint32_t seed = 0;
+    std::uint8_t mask = 0xFF;     // instances that share no bit with it are not hit
+    std::uint32_t tlasIndex = 0;  // which of the structures of Bindings::tlas
+    // The light that rays find which leave the scene, for answers of light.
+    SkyView sky{};
+    // With a package that reads an environment map. The host binds Environment's image at
+    // Bindings::environment.
+    const Environment* environment = nullptr;
+    float environmentRotation = 0.0F;  // radians, as in FrameOptions
+    float environmentIntensity = 1.0F;
+    Timing timing = Timing::Frame;
+};
+
+// The counters of a batch.
+struct RayStepsCounters {
+    std::uint32_t rays = 0;
+    std::uint32_t shadowRays = 0;             // deferred ones
+    std::uint32_t unknownShader = 0;          // hits whose shader ID no case has
+    std::uint32_t orderErrors = 0;            // with RayStepsOptions::checkOrder
+    std::vector<std::uint32_t> bucketCounts;  // misses, then hits by shader ID; filled if hits are ordered
+};
+
+// The pipelines and buffers that shade a host's rays. Context, EngineScene and the layout must outlive it. It
+// has no image, no camera and no descriptor set.
+//
+// The host records, in this order: its own descriptor sets for the bind points that the passes use (compute,
+// and ray tracing with that tracer), then either record() or begin(), trace(), order() and shade(), with
+// commands of its own between them if it likes. Afterwards the command buffer has another pipeline bound at
+// these bind points and other push constants in the package's bytes; nothing else of its state has changed.
+// Each step is a debug label, in which its passes are labels.
+class RaySteps {
+public:
+    static constexpr std::uint32_t kPushBytes = 24;
+
+    // Errors: "package-passes" (the package draws frames), "renderer-options", "package-strategy",
+    // "package-tracer", "device-tracer", "device-ordering", "ray-steps" (no rays, no layout, or more rays
+    // than the device can dispatch), and those of memory and Vulkan's calls.
+    static Result<std::unique_ptr<RaySteps>> create(Context& context, const Package& package,
+                                                    EngineScene& scene, const RayStepsOptions& options);
+    ~RaySteps();
+    RaySteps(const RaySteps&) = delete;
+    RaySteps& operator=(const RaySteps&) = delete;
+
+    // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
+    // travel in the command buffer. Batches share buffers, so on several queues the host orders them itself.
+    // Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
+    Status begin(VkCommandBuffer commands, const RayBatch& batch);
+    // Finds what the rays hit. The strategies uber and hit-shaders shade where they trace, so this and
+    // order() do nothing with them.
+    void trace(VkCommandBuffer commands);
+    // Orders the hits by shader.
+    void order(VkCommandBuffer commands);
+    // Shades the hits and writes the answers, which later commands may read at any stage.
+    void shade(VkCommandBuffer commands);
+    // All of it.
+    Status record(VkCommandBuffer commands, const RayBatch& batch);
+
+    // The results of the last batch, which the device must have completed. Error "frame-not-recorded".
+    Result<RayStepsCounters> counters();
+    Result<std::vector<PassTiming>> timings();
+
+    package::Tracer tracer() const;
+    package::Ordering ordering() const;
+    std::uint64_t bytes() const;  // of its buffers
+
+    struct State;  // for the runtime's own sources
+
+private:
+    explicit RaySteps(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

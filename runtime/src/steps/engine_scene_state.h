@@ -1,0 +1,33 @@
+// The part of an EngineScene that the steps see.
+#pragma once
+
+#include "context/context_state.h"
+#include "context/resources.h"
+
+#include <glint/engine_scene.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace glint {
+
+// Members are destroyed in reverse order: the pool's memory last.
+struct EngineScene::State {
+    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+
+    Context::State& context;
+    MemoryPool pool;
+    Buffer geometries;
+    Buffer instances;
+    Buffer previousInstances;
+    Buffer materials;
+    Buffer lights;
+    Buffer firstRecords;
+    std::size_t instanceCount = 0;
+    std::uint32_t lightCount = 0;
+    std::uint32_t lightCapacity = 0;
+    RecordsBy recordsBy = RecordsBy::CustomIndex;
+    std::vector<std::uint32_t> shaderIds;  // of the shader binding table's hit records
+};
+
+}  // namespace glint

@@ -1,0 +1,289 @@
+#include "renderer/frame_constants.h"
+#include "renderer/hit_passes.h"
+#include "renderer/renderer_choice.h"
+#include "steps/engine_scene_state.h"
+
+#include <glint/ray_steps.h>
+
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace glint {
+
+static_assert(sizeof(EngineRay) == sizeof(gpu::RayRecord));
+static_assert(offsetof(EngineRay, slot) == offsetof(gpu::RayRecord, target));
+static_assert(offsetof(EngineRay, coneSpread) == offsetof(gpu::RayRecord, coneSpread));
+static_assert(sizeof(EngineSurface) == sizeof(gpu::SurfaceRecord));
+static_assert(offsetof(EngineSurface, roughness) == offsetof(gpu::SurfaceRecord, roughness));
+static_assert(offsetof(EngineSurface, f0) == offsetof(gpu::SurfaceRecord, f0));
+static_assert(offsetof(EngineSurface, motion) == offsetof(gpu::SurfaceRecord, motion));
+static_assert(EngineSurface::kMiss == gpu::kSurfaceMiss && EngineSurface::kUnknown == gpu::kSurfaceUnknown);
+static_assert(RaySteps::kPushBytes == sizeof(gpu::PushConstants));
+
+struct RaySteps::State : PassState {
+    State(Context::State& contextState, EngineScene::State& sceneState, Timer passTimer)
+        : PassState(contextState, std::move(passTimer)), scene(sceneState) {}
+
+    EngineScene::State& scene;
+    std::uint32_t maxRays = 0;
+    package::HitAnswer answer{};
+    // Of the batch that begin() started.
+    Timing timing = Timing::Frame;
+    std::uint32_t whole = 0;  // the timer's stretch of it
+    std::shared_ptr<const Environment::State> environment;
+};
+
+namespace {
+
+Diagnostic wrongBatch(const std::string& what, const std::string& hint) {
+    return makeError("ray-steps", "", what, hint);
+}
+
+Outside outsideOf(const RayBatch& batch) {
+    return {batch.sky, batch.environment, batch.environmentRotation, batch.environmentIntensity};
+}
+
+Status checkBatch(const PassState& state, std::uint32_t maxRays, const RayBatch& batch) {
+    if (batch.rays == 0 || batch.answers == 0) {
+        return wrongBatch("the address of rays or answers is 0", "give the addresses of both lists");
+    }
+    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > maxRays) {
+        return wrongBatch(std::to_string(batch.rayCount) + " rays are more than RayStepsOptions::maxRays, " +
+                              std::to_string(maxRays),
+                          "split the batch, or make the steps for more rays");
+    }
+    return checkOutside(state.size, outsideOf(batch));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,
+                                                   EngineScene& scene, const RayStepsOptions& options) {
+    Context::State& contextState = context.state();
+    if (package.passes() != package::Passes::Steps) {
+        return makeError("package-passes", "", "the package draws frames, and has no steps",
+                         "compile it with --passes steps, or use Renderer");
+    }
+    if (options.layout == VK_NULL_HANDLE) {
+        return wrongBatch("there is no pipeline layout", "set RayStepsOptions::layout");
+    }
+    RendererOptions wanted;
+    wanted.strategy = options.strategy;
+    wanted.tracer = options.tracer;
+    wanted.ordering = options.ordering;
+    wanted.checkOrder = options.checkOrder;
+    wanted.width = options.maxRays;
+    wanted.height = 1;
+    Result<PipelineChoice> choice = choosePipelines(contextState, package, wanted);
+    if (!choice) {
+        return choice.error();
+    }
+    const FrameSize size = frameSize(package, *choice, wanted);
+    const std::uint64_t most = std::min<std::uint64_t>(
+        size.rayPipeline ? maxRayDispatch(contextState.limits) : std::numeric_limits<std::uint32_t>::max(),
+        contextState.limits.maxBufferBytes / sizeof(gpu::ShadowRecord));
+    if (options.maxRays == 0 || listSlots(size) > most) {
+        return wrongBatch("maxRays is " + std::to_string(options.maxRays),
+                          "use 1 to " + std::to_string(most - (listSlots(size) - listRays(size))));
+    }
+    Result<Timer> timer = Timer::create(contextState, kMaxFixedPasses + package.caseCount());
+    if (!timer) {
+        return timer.error();
+    }
+    auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
+    state->choice = *choice;
+    state->size = size;
+    state->maxRays = options.maxRays;
+    state->answer = package.answer();
+    state->pushOffset = package.bindings().pushOffset;
+    for (const package::CaseEntry& entry : package.cases()) {
+        state->caseNames.emplace_back(package.string(entry.name));
+    }
+    if (Status status = createFrameResources(contextState, size, state->frame); !status) {
+        return status.error();
+    }
+    Result<Pipelines> pipelines =
+        createPipelines(contextState, package, *choice, {options.pipelineThreads, false},
+                        scene.state().shaderIds, {{}, options.layout, options.pushStages});
+    if (!pipelines) {
+        return pipelines.error();
+    }
+    state->pipelines = std::move(*pipelines);
+    return std::unique_ptr<RaySteps>(new RaySteps(std::move(state)));
+}
+
+RaySteps::RaySteps(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RaySteps::~RaySteps() = default;
+
+namespace {
+
+void fill(const PassState& state, VkCommandBuffer commands, const Buffer& buffer, std::uint32_t value) {
+    if (buffer.bytes > 0) {
+        state.context.vk.CmdFillBuffer(commands, buffer.handle.get(), 0, VK_WHOLE_SIZE, value);
+    }
+}
+
+void clearLists(const PassState& state, VkCommandBuffer commands) {
+    fill(state, commands, state.frame.counters, 0);
+    fill(state, commands, state.frame.bucketCounts, 0);
+    fill(state, commands, state.frame.bucketCursors, 0);
+    fill(state, commands, state.frame.visitedHits, 0);
+}
+
+// Sets the counter of the list's rays, which is the first counter.
+void setRayCount(const PassState& state, VkCommandBuffer commands, const RayBatch& batch) {
+    static_assert(gpu::kCounterRays == 0);
+    const VkBuffer counters = state.frame.counters.handle.get();
+    if (batch.countBuffer == VK_NULL_HANDLE) {
+        state.context.vk.CmdUpdateBuffer(commands, counters, 0, sizeof(batch.rayCount), &batch.rayCount);
+    } else {
+        const VkBufferCopy count{batch.countOffset, 0, sizeof(std::uint32_t)};
+        state.context.vk.CmdCopyBuffer(commands, batch.countBuffer, counters, 1, &count);
+    }
+}
+
+gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& batch) {
+    gpu::FrameConstants constants{};
+    constants.width = state.maxRays;
+    constants.height = 1;
+    constants.sampleIndex = batch.sampleIndex;
+    constants.seed = batch.seed;
+    constants.effects = state.size.effects;
+    constants.lightCount = state.scene.lightCount;
+    constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
+    fillOutside(outsideOf(batch), constants);
+    constants.geometries = state.scene.geometries.address;
+    constants.instances = state.scene.instances.address;
+    constants.previousInstances = state.scene.previousInstances.address;
+    constants.materials = state.scene.materials.address;
+    constants.lights = state.scene.lights.address;
+    constants.firstRecords = state.scene.firstRecords.address;
+    constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
+    constants.rayMask = batch.mask;
+    fillLists(state.frame, state.size, constants);
+    constants.rays = batch.rays;
+    constants.radiance = batch.answers;
+    constants.surfaces = batch.answers;
+    return constants;
+}
+
+}  // namespace
+
+Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
+    if (Status status = checkBatch(*state_, state_->maxRays, batch); !status) {
+        return status;
+    }
+    state_->timed.clear();
+    state_->timing = batch.timing;
+    state_->tlasIndex = batch.tlasIndex;
+    if (batch.environment != nullptr) {
+        state_->environment = batch.environment->state();
+    }
+    state_->timer.recordReset(commands);
+    PassRecorder passes(*state_, commands, batch.timing);
+    passes.beginLabel("glint begin");
+    passes.barrier(kAllToAll);
+    state_->whole = passes.beginStretch({"rays", Pass::Hits});
+    clearLists(*state_, commands);
+    const gpu::FrameConstants constants = makeConstants(*state_, batch);
+    static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
+    state_->context.vk.CmdUpdateBuffer(commands, state_->frame.constants.handle.get(), 0, sizeof(constants),
+                                       &constants);
+    passes.barrier(kTransferToTransfer);
+    setRayCount(*state_, commands, batch);
+    passes.barrier(passes.dependencies().clearToPasses);
+    HitPasses(*state_, passes).dispatchOfList();
+    passes.endLabel();
+    state_->recorded = true;
+    return okStatus();
+}
+
+void RaySteps::trace(VkCommandBuffer commands) {
+    PassRecorder passes(*state_, commands, state_->timing);
+    passes.beginLabel("glint trace");
+    HitPasses(*state_, passes).trace();
+    passes.endLabel();
+}
+
+void RaySteps::order(VkCommandBuffer commands) {
+    PassRecorder passes(*state_, commands, state_->timing);
+    passes.beginLabel("glint order");
+    HitPasses(*state_, passes).order();
+    passes.endLabel();
+}
+
+void RaySteps::shade(VkCommandBuffer commands) {
+    PassRecorder passes(*state_, commands, state_->timing);
+    passes.beginLabel("glint shade");
+    HitPasses(*state_, passes).shade();
+    passes.endStretch(state_->whole);
+    // The counters go to host memory, and the answers to whatever the host does next.
+    passes.barrier(kAllToAll);
+    const auto copy = [&](const Buffer& source, VkDeviceSize bytes, VkDeviceSize to) {
+        const VkBufferCopy region{0, to, bytes};
+        state_->context.vk.CmdCopyBuffer(commands, source.handle.get(), state_->frame.readback.handle.get(),
+                                         1, &region);
+    };
+    copy(state_->frame.counters, kCounterBytes, 0);
+    if (state_->size.ordered) {
+        copy(state_->frame.bucketCounts, sizeof(std::uint32_t) * state_->size.bucketCount, kCounterBytes);
+    }
+    passes.barrier(kCopyToHost);
+    passes.endLabel();
+}
+
+Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) {
+    if (Status status = begin(commands, batch); !status) {
+        return status;
+    }
+    trace(commands);
+    order(commands);
+    shade(commands);
+    return okStatus();
+}
+
+Result<RayStepsCounters> RaySteps::counters() {
+    if (!state_->recorded) {
+        return makeError("frame-not-recorded", "", "no batch was recorded", "call record() first");
+    }
+    const std::uint8_t* const read = state_->frame.readback.mapped;
+    const auto counter = [&](std::uint32_t index) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, read + index * sizeof value, sizeof value);
+        return value;
+    };
+    RayStepsCounters result;
+    result.rays = counter(gpu::kCounterRays);
+    result.shadowRays = counter(gpu::kCounterShadowRays);
+    result.unknownShader = counter(gpu::kCounterUnknownShader);
+    result.orderErrors = counter(gpu::kCounterOrderErrors);
+    for (std::uint32_t i = 0; state_->size.ordered && i < state_->size.bucketCount; ++i) {
+        result.bucketCounts.push_back(counter(gpu::kCounterCount + i));
+    }
+    return result;
+}
+
+Result<std::vector<PassTiming>> RaySteps::timings() {
+    return passTimings(*state_);
+}
+
+package::Tracer RaySteps::tracer() const {
+    return state_->choice.tracer;
+}
+
+package::Ordering RaySteps::ordering() const {
+    return state_->choice.ordering;
+}
+
+std::uint64_t RaySteps::bytes() const {
+    std::uint64_t sum = 0;
+    for (const auto& [name, buffer] : state_->frame.buffers()) {
+        sum += buffer->bytes;
+    }
+    return sum;
+}
+
+}  // namespace glint

@@ -1,0 +1,34 @@
+// shade() for rays that are answered with the surface that they hit.
+#include "hit/answer_surface.glsl"
+#include "hit/material.glsl"
+
+ShadeResult shade(Hit hit, Features features) {
+    SurfaceRecord answer = noSurface(hit.shaderId);
+    answer.position = hit.position;
+    answer.geometricNormal = hit.geometricNormal;
+    answer.clearance = hit.clearance;
+    answer.motion = hit.position - hit.previousPosition;
+    answer.material = hit.material;
+    if (hasLobe(features, GLINT_UNLIT)) {
+        answer.normal = hit.geometricNormal;
+        answer.roughness = 1.0;
+        answer.occlusion = 1.0;
+        answer.emission = surfaceValues(hit, features).color.rgb;
+        return ShadeResult(answer);
+    }
+    Surface surface = evaluateSurface(hit, features);
+    Bsdf b = surface.bsdf;
+    answer.normal = surface.normal;
+    answer.roughness = surface.roughness;
+    answer.albedo = b.diffuse;
+    answer.occlusion = surface.occlusion;
+    answer.f0 = withMetal(b, features, b.f0, b.metalF0);
+    answer.f90 = hasInput(features, GLINT_PARTIAL_METAL) ? mix(b.f90, 1.0, b.metallic) : b.f90;
+    answer.emission = surface.emission;
+    answer.transmission = luminance(b.transmitted) + luminance(b.diffuseTransmitted);
+    return ShadeResult(answer);
+}
+
+void resolveHit(Hit hit, ShadeResult result) {
+    storeSurface(hit.target, result.surface);
+}
