@@ -27,7 +27,7 @@ const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
     while (rayQueryProceedEXT(query)) {                                                                         \
         uint candidate = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false) +                     \
                               rayQueryGetIntersectionGeometryIndexEXT(query, false));                           \
-        if (passesAlphaTest(GLINT_FRAME.geometries.data[candidate],                                             \
+        if (passesAlphaTest(hostGeometry(candidate),                                             \
                             uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)),                       \
                             rayQueryGetIntersectionBarycentricsEXT(query, false))) {                            \
             rayQueryConfirmIntersectionEXT(query);                                                              \

@@ -1,6 +1,6 @@
 #version 460
 // Shades bucket 0: rays that left the scene see the sky, and need no shadow ray.
-#include "effects/sky.glsl"
+#include "host/sky.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "hit/samples.glsl"
@@ -16,7 +16,7 @@ void main() {
     vec3 radiance = vec3(1.0, 0.0, 1.0);
     uint path = kPathHit;
     if (hit.geometry == kMissGeometry) {
-        radiance = skyRadiance(missDirection(hit));
+        radiance = hostSky(missDirection(hit));
         path = kPathMiss;
     } else {
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
