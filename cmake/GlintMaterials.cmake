@@ -1,8 +1,8 @@
 # glint_add_materials(TARGET target SCENES file… [NAME name] [STRATEGY list] [TRACER list] [MERGE policy] [MAX_SHADERS n]
-#                     [ALPHA policy] [MATERIALS folder…] [LOCK file] [EMBED] [OUTPUT_DIRECTORY dir] [OPTIONS option…])
+#                     [ALPHA policy] [MATERIALS folder…] [HOST folder] [LOCK file] [EMBED] [OUTPUT_DIRECTORY dir] [OPTIONS option…])
 #
 # Compiles the materials of glTF scenes into a package before TARGET, and again whenever a scene, a file that it reads, the
-# lock, a pack of materials or the tool changes. docs/integration.md describes each argument and what TARGET gets.
+# lock, a pack of materials, the host or the tool changes. docs/integration.md describes each argument and what TARGET gets.
 
 # Functions keep the policies that are set where they are defined.
 cmake_policy(PUSH)
@@ -57,7 +57,7 @@ endfunction()
 
 function(glint_add_materials)
   set(passed STRATEGY TRACER MERGE MAX_SHADERS ALPHA EFFECTS)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "EMBED" "TARGET;NAME;MERGE;MAX_SHADERS;ALPHA;LOCK;OUTPUT_DIRECTORY"
+  cmake_parse_arguments(PARSE_ARGV 0 arg "EMBED" "TARGET;NAME;MERGE;MAX_SHADERS;ALPHA;HOST;LOCK;OUTPUT_DIRECTORY"
                         "SCENES;STRATEGY;TRACER;EFFECTS;MATERIALS;OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "glint_add_materials: unknown argument ${arg_UNPARSED_ARGUMENTS}")
@@ -108,6 +108,12 @@ function(glint_add_materials)
     file(GLOB files CONFIGURE_DEPENDS "${pack}/*.json" "${pack}/*.glsl" "${pack}/*/*.json" "${pack}/*/*.glsl")
     list(APPEND pack_files ${files})
   endforeach()
+  if(arg_HOST)
+    _glint_resolve_inputs(host "${arg_HOST}")
+    list(APPEND options --host "${host}")
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS "${host}/*.glsl" "${host}/*.h")
+    list(APPEND pack_files ${files})
+  endif()
   set(products "${base}/glint_tables.h" "${base}/manifest.json" "${base}/tables.bin")
   if(arg_EMBED)
     set(source "${base}_package.cpp")

@@ -1,6 +1,6 @@
 // The sky's light on a surface, for the part that no rays bring.
 #include "bsdf/ggx.glsl"
-#include "effects/sky.glsl"
+#include "host/sky.glsl"
 #include "effects/sky_shares.glsl"
 #include "generated/layers_sky.glsl"
 #include "hit/geometry.glsl"
@@ -30,7 +30,7 @@ vec3 skyAroundLobe(Surface surface) {
         vec3 l = reflect(-b.view, h);
         // G₂ / G₁. Light from below is masked.
         float weight = max(l.z, 0.0) * ggxVisibility(l, b.view, b.alpha);
-        sum += weight * skyAround(toWorld(surface, l), tapRoughness(mirroredPdf(b.view, h, b.alpha)));
+        sum += weight * hostSkyAround(toWorld(surface, l), tapRoughness(mirroredPdf(b.view, h, b.alpha)));
         total += weight;
     }
     return sum / max(total, 1e-12);
@@ -43,10 +43,10 @@ vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELA
                                                    surface.bsdf.viewBias);
     if (hasLobe(features, GLINT_ANISOTROPY)) {
         // Later bounces have nearly forgotten where the view was.
-        vec3 again = (all - first) * skyIrradianceOverPi(surface.normal);
+        vec3 again = (all - first) * hostSkyIrradianceOverPi(surface.normal);
         return mirrored > 0.0 ? again + first * mirrored * skyAroundLobe(surface) : again;
     }
-    return (all - first * (1.0 - mirrored)) * skyAround(reflect(-view, surface.normal), surface.roughness);
+    return (all - first * (1.0 - mirrored)) * hostSkyAround(reflect(-view, surface.normal), surface.roughness);
 }
 
 // The sky behind the surface, through the microfacets. A thin wall does not bend the view; a volume bends it where it
@@ -57,7 +57,7 @@ vec3 skyBehind(Surface surface, Features features, float eta) {
         !refractDirection(surface.bsdf.view, vec3(0.0, 0.0, 1.0), eta, direction)) {
         return vec3(0.0);
     }
-    return skyAround(toWorld(surface, direction), surface.roughness);
+    return hostSkyAround(toWorld(surface, direction), surface.roughness);
 }
 
 vec3 ambientTransmission(Surface surface, Features features) {
@@ -76,14 +76,14 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     GLINT_RELAXED float below = diffusePassed(surface);
     // The occlusion texture describes the outside, and so do the rays of ambient occlusion.
     GLINT_RELAXED float open = surface.occlusion * sky.open;
-    vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * skyIrradianceOverPi(surface.normal) +
+    vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * hostSkyIrradianceOverPi(surface.normal) +
                  ambientReflection(surface, features, view, sky.mirrored);
     vec3 back = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION) && sky.transmitted > 0.0) {
         back += ambientTransmission(surface, features) * sky.transmitted;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * skyIrradianceOverPi(-surface.normal);
+        back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * hostSkyIrradianceOverPi(-surface.normal);
     }
     return addSkyOfLayers(surface, features, view, sky, open, front * open + back);
 }

@@ -3,7 +3,7 @@
 #include "bsdf/sample.glsl"
 #include "effects/sample.glsl"
 #include "effects/sky_shares.glsl"
-#include "hit/sequence.glsl"
+#include "host/random.glsl"
 #include "hit/surface.glsl"
 
 // The pairs of dimensions of the sequence.
@@ -29,9 +29,8 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
         return noSample(kRayAbsent);
     }
     float chance = luminance(back) / total;
-    bool passes = chance > 0.0 && sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed,
-                                               kPairIndirectSide).x < chance;
-    vec3 local = sampleCosine(sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairIndirect));
+    bool passes = chance > 0.0 && hostRandomPair(hit.target, kPairIndirectSide).x < chance;
+    vec3 local = sampleCosine(hostRandomPair(hit.target, kPairIndirect));
     vec3 direction = onSide(toWorld(surface, passes ? vec3(local.xy, -local.z) : local),
                             passes ? -hit.geometricNormal : hit.geometricNormal);
     vec3 weight = passes ? back / chance : front / (1.0 - chance);

@@ -5,7 +5,7 @@
 #include "generated/layers_traced.glsl"
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
-#include "hit/sequence.glsl"
+#include "host/random.glsl"
 #include "hit/surface.glsl"
 
 // The share of a uniform white sky that the base reflects at the first bounce, through the layers above it.
@@ -39,7 +39,7 @@ const uint kPairLobe = 1u;
 EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLayers layers, float traced, float chance,
                           uint chosen) {
     Bsdf b = surface.bsdf;
-    vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairDirection);
+    vec2 u = hostRandomPair(hit.target, kPairDirection);
     vec3 l = chosen == kChosenBase ? reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u))
                                    : sampleTracedLayer(surface, features, chosen, u);
     if (chosen == kChosenBase ? l.z <= 0.0 : l == vec3(0.0)) {
@@ -73,7 +73,7 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, float trac
     uint chosen = kChosenBase;
     float chance = 1.0;
     if (ofLayers > 0.0) {
-        float random = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLobe).x;
+        float random = hostRandomPair(hit.target, kPairLobe).x;
         TracedLayer layer;
         chosen = chooseLayer(layers, features, brought, random, layer);
         chance = 1.0 - ofLayers / brought;

@@ -14,7 +14,7 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "hit/images.glsl"
 #include "hit/material.glsl"
 #include "hit/primary.glsl"
-#include "hit/sequence.glsl"
+#include "host/random.glsl"
 #include "hit/trace.glsl"
 #include "materials/volume/volume.glsl"
 
@@ -66,7 +66,7 @@ struct Walker {
 };
 
 // The features of a surface that is met from either side.
-Features walkFeatures(GeometryRecord geometry) {
+Features walkFeatures(HostGeometry geometry) {
     return Features(GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
                     (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
                     geometry.featureInputs | GLINT_DOUBLE_SIDED);
@@ -98,8 +98,8 @@ float shareBehindFacets(Bsdf b, bool thin, vec3 l) {
 // other light is already shaded, so that the ray always passes.
 uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
     Bsdf b = surface.bsdf;
-    vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth);
-    vec2 choice = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairInterface + 2u * depth + 1u);
+    vec2 u = hostRandomPair(hit.target, kPairInterface + 2u * depth);
+    vec2 choice = hostRandomPair(hit.target, kPairInterface + 2u * depth + 1u);
     // The part of a surface that is not clear is shaded where it is met, in proportion.
     float clear = luminance(b.transmitted);
     float rest = luminance(b.diffuse) + luminance(b.diffuseTransmitted);
@@ -214,7 +214,7 @@ void endWith(uint target, vec3 weight, vec3 radiance) {
 uint walk(uvec2 pixel, uint target) {
     uvec2 surfaceId = imageLoad(surfaceImage, ivec2(pixel)).xy;
     CameraRay camera = cameraRay(pixel);
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
+    HostGeometry geometry = hostGeometry(surfaceId.x);
     Features features = walkFeatures(geometry);
     Hit hit = primaryHit(geometry, surfaceId.y, camera, target, features);
     Walker walker;
@@ -250,7 +250,7 @@ uint walk(uvec2 pixel, uint target) {
         walker.coneWidth += GLINT_FRAME.pixelSpread * travelled;
         if (depth + 1u >= GLINT_FRAME.maxInterfaces) {
             // The sky stands in for further interfaces.
-            endWith(target, walker.weight, skyRadiance(walker.direction));
+            endWith(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
         // Continues to the next surface. Within a medium, its back is seen too.
@@ -259,10 +259,10 @@ uint walk(uvec2 pixel, uint target) {
         HitRecord record = traceRay(ray, 0u, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
         segments += 1u;
         if (record.geometry == kMissGeometry) {
-            endWith(target, walker.weight, skyRadiance(walker.direction));
+            endWith(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
-        geometry = GLINT_FRAME.geometries.data[record.geometry];
+        geometry = hostGeometry(record.geometry);
         features = walkFeatures(geometry);
         hit = fetchHit(geometry, record.primitive,
                        vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY), walker.direction,
@@ -270,7 +270,7 @@ uint walk(uvec2 pixel, uint target) {
         travelled = record.distance_orDirectionZ;
         if (within) {
             uint medium = walker.media.material[walker.media.count - 1u];
-            walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(GLINT_FRAME.materials.data[medium]), travelled);
+            walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), travelled);
         }
         // The back of a single-sided surface is ignored, unless it is the end of a volume.
         bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;

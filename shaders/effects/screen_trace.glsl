@@ -1,6 +1,6 @@
 // Marches a reflection ray over the screen, against the depth of the primary surfaces.
 #include "effects/screen_ray.glsl"
-#include "effects/sky.glsl"
+#include "host/sky.glsl"
 #include "hit/constants.glsl"
 #include "hit/geometry.glsl"
 #include "hit/images.glsl"
@@ -135,5 +135,5 @@ vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
     uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);
     return imageLoad(radianceImage, place).rgb +
-           GLINT_FRAME.samples.data[target].weight * skyRadiance(reflect(direction, normal));
+           GLINT_FRAME.samples.data[target].weight * hostSky(reflect(direction, normal));
 }

@@ -2,9 +2,9 @@
 // (hit/shade.glsl).
 #include "hit/count.glsl"
 #include "hit/hit.glsl"
-#include "hit/punctual.glsl"
 #include "hit/sequence.glsl"
 #include "hit/trace.glsl"
+#include "host/lights.glsl"
 
 // The pair of dimensions of the sequence for the first light. Each further light has the next pair.
 const uint kPairShadow = 64u;
@@ -35,8 +35,8 @@ void reportShadows(ShadowCounts counts) {
 }
 
 // The visible share of a light's solid angle. A light without a size is visible or not.
-float visibleShare(Hit hit, LightRecord light, LightSample centre, uint index, inout ShadowCounts counts) {
-    if (light.size <= 0.0) {
+float visibleShare(Hit hit, HostLight light, LightSample centre, uint index, inout ShadowCounts counts) {
+    if (!hostLightHasSize(light)) {
         bool visible = isVisible(rayOrigin(hit, centre.direction), centre.direction, centre.distance);
         counts.rays += 1u;
         counts.misses += visible ? 1u : 0u;
@@ -47,7 +47,7 @@ float visibleShare(Hit hit, LightRecord light, LightSample centre, uint index, i
     for (uint i = 0u; i < GLINT_FRAME.shadowSamples; ++i) {
         uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + i;
         vec2 u = sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index);
-        LightSample point = sampleLightArea(light, centre, u);
+        LightSample point = hostSampleLightPoint(light, centre, u);
         // The surface itself hides the part of the light that is below it.
         if (point.distance <= 0.0) {
             seen += 1u;

@@ -1,5 +1,5 @@
 // A ray answered with the light that comes back along it.
-#include "effects/sky.glsl"
+#include "host/sky.glsl"
 #include "hit/samples.glsl"
 
 // The light that leaves the hit towards the viewer. `direct` counts only if nothing blocks the shadow ray. The caller
@@ -17,7 +17,7 @@ ShadeResult shadeUnknown() {
 }
 
 void resolveMiss(uint target, vec3 direction) {
-    storeRadiance(target, skyRadiance(direction), kPathMiss);
+    storeRadiance(target, hostSky(direction), kPathMiss);
 }
 
 void resolveUnknown(uint target) {

@@ -1,12 +1,12 @@
 // A hit with its vertex attributes fetched and interpolated: everything that materials read apart from their own
 // record.
-#include "hit/bindings.glsl"
+#include "host/geometry.glsl"
 #include "bsdf/features.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
 
 #ifndef GLINT_CORNER
-#define GLINT_CORNER(i) geometry.positions.data[corner[i]]
+#define GLINT_CORNER(i) hostPosition(geometry, corner[i])
 #endif
 
 struct Hit {
@@ -39,21 +39,21 @@ vec3 rayOrigin(Hit hit, vec3 direction) {
 }
 
 // Returns a point of a triangle in the world.
-vec3 trianglePosition(GeometryRecord geometry, uint primitive, vec2 barycentrics) {
-    vec3 p0 = geometry.positions.data[geometry.indices.data[3u * primitive]];
-    vec3 p1 = geometry.positions.data[geometry.indices.data[3u * primitive + 1u]];
-    vec3 p2 = geometry.positions.data[geometry.indices.data[3u * primitive + 2u]];
-    return transformPoint(GLINT_FRAME.instances.data[geometry.instanceIndex].objectToWorld,
+vec3 trianglePosition(HostGeometry geometry, uint primitive, vec2 barycentrics) {
+    vec3 p0 = hostPosition(geometry, hostVertex(geometry, 3u * primitive));
+    vec3 p1 = hostPosition(geometry, hostVertex(geometry, 3u * primitive + 1u));
+    vec3 p2 = hostPosition(geometry, hostVertex(geometry, 3u * primitive + 2u));
+    return transformPoint(hostInstance(geometry).objectToWorld,
                           p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
 // Fetches the attributes that `features` may need. rayDirection is a unit vector; coneWidth is that of the ray cone at
 // the hit.
-Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
+Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
              uint target, Features features) {
-    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
-    uvec3 corner = uvec3(geometry.indices.data[3u * primitive], geometry.indices.data[3u * primitive + 1u],
-                         geometry.indices.data[3u * primitive + 2u]);
+    InstanceRecord instance = hostInstance(geometry);
+    uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
+                         hostVertex(geometry, 3u * primitive + 2u));
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     bool mirrored = (instance.flags & kInstanceMirrored) != 0u;
 
@@ -71,8 +71,7 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.position = position;
 #if GLINT_ANSWERS_SURFACE
     hit.shaderId = geometry.shaderId;
-    hit.previousPosition = transformPoint(GLINT_FRAME.previousInstances.data[geometry.instanceIndex].objectToWorld,
-                                          objectPosition);
+    hit.previousPosition = transformPoint(hostPreviousInstance(geometry).objectToWorld, objectPosition);
 #endif
     hit.edges[0] = transformVector(instance.objectToWorld, e1);
     hit.edges[1] = transformVector(instance.objectToWorld, e2);
@@ -84,15 +83,15 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
 
     hit.normal = front;
     if (hasInput(features, GLINT_NORMALS)) {
-        vec3 n = weights.x * geometry.normals.data[corner.x] + weights.y * geometry.normals.data[corner.y] +
-                 weights.z * geometry.normals.data[corner.z];
+        vec3 n = weights.x * hostNormal(geometry, corner.x) + weights.y * hostNormal(geometry, corner.y) +
+                 weights.z * hostNormal(geometry, corner.z);
         hit.normal = directionOr(transformNormal(instance.normalToWorld, n), front);
     }
     hit.tangent = vec4(0.0);
     if (hasInput(features, GLINT_TANGENTS)) {
-        vec4 t0 = geometry.tangents.data[corner.x];
-        vec4 t = weights.x * t0 + weights.y * geometry.tangents.data[corner.y] +
-                 weights.z * geometry.tangents.data[corner.z];
+        vec4 t0 = hostTangent(geometry, corner.x);
+        vec4 t = weights.x * t0 + weights.y * hostTangent(geometry, corner.y) +
+                 weights.z * hostTangent(geometry, corner.z);
         hit.tangent = vec4(transformVector(instance.objectToWorld, t.xyz), mirrored ? -t0.w : t0.w);
     }
 
@@ -102,23 +101,23 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.uvEdges[0] = vec4(0.0);
     hit.uvEdges[1] = vec4(0.0);
     if (hasInput(features, GLINT_TEX_COORD_0)) {
-        vec2 uv0 = geometry.texCoords0.data[corner.x];
-        vec2 uv1 = geometry.texCoords0.data[corner.y];
-        vec2 uv2 = geometry.texCoords0.data[corner.z];
+        vec2 uv0 = hostTexCoord0(geometry, corner.x);
+        vec2 uv1 = hostTexCoord0(geometry, corner.y);
+        vec2 uv2 = hostTexCoord0(geometry, corner.z);
         hit.texCoords[0] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
         hit.uvEdges[0] = vec4(uv1 - uv0, uv2 - uv0);
     }
     if (hasInput(features, GLINT_TEX_COORD_1)) {
-        vec2 uv0 = geometry.texCoords1.data[corner.x];
-        vec2 uv1 = geometry.texCoords1.data[corner.y];
-        vec2 uv2 = geometry.texCoords1.data[corner.z];
+        vec2 uv0 = hostTexCoord1(geometry, corner.x);
+        vec2 uv1 = hostTexCoord1(geometry, corner.y);
+        vec2 uv2 = hostTexCoord1(geometry, corner.z);
         hit.texCoords[1] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
         hit.uvEdges[1] = vec4(uv1 - uv0, uv2 - uv0);
     }
     hit.color = vec4(1.0);
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
-        hit.color = weights.x * geometry.colors.data[corner.x] + weights.y * geometry.colors.data[corner.y] +
-                    weights.z * geometry.colors.data[corner.z];
+        hit.color = weights.x * hostColor(geometry, corner.x) + weights.y * hostColor(geometry, corner.y) +
+                    weights.z * hostColor(geometry, corner.z);
     }
 
     vec3 across;

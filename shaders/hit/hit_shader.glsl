@@ -17,7 +17,7 @@ uint hitGeometry() {
     return geometryOfHit(gl_InstanceID, gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT);
 }
 
-Hit shadedHit(GeometryRecord geometry, Features features) {
+Hit shadedHit(HostGeometry geometry, Features features) {
     uint target = floatBitsToUint(shaded.radiance.x);
     float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
     return fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,

@@ -2,12 +2,12 @@
 #include "hit/camera.glsl"
 #include "hit/hit.glsl"
 
-Hit primaryHit(GeometryRecord geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
-    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
+Hit primaryHit(HostGeometry geometry, uint primitive, CameraRay ray, uint pixel, Features features) {
+    InstanceRecord instance = hostInstance(geometry);
     vec3 corners[3];
     for (uint i = 0u; i < 3u; ++i) {
-        uint index = geometry.indices.data[3u * primitive + i];
-        corners[i] = transformPoint(instance.objectToWorld, geometry.positions.data[index]);
+        uint vertex = hostVertex(geometry, 3u * primitive + i);
+        corners[i] = transformPoint(instance.objectToWorld, hostPosition(geometry, vertex));
     }
     vec2 barycentrics =
         rayTriangleBarycentrics(ray, corners[0], corners[1] - corners[0], corners[2] - corners[0]);

@@ -1,6 +1,7 @@
 // Hit records in memory, whole or packed, and the bucket of each.
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
+#include "host/geometry.glsl"
 
 // A shader ID that no case has.
 const uint kNoShader = 0xFFFFFFFFu;
@@ -81,6 +82,6 @@ uint bucketOfGeometry(uint geometry) {
     if (geometry == kMissGeometry) {
         return 0u;
     }
-    uint shaderId = GLINT_FRAME.geometries.data[geometry].shaderId;
+    uint shaderId = hostShaderId(geometry);
     return shaderId < GLINT_CASE_COUNT ? 1u + shaderId : 0u;
 }

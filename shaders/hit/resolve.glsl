@@ -6,13 +6,13 @@
 #include "generated/shade.glsl"
 #include "hit/shadow.glsl"
 
-Hit loadHit(HitRecord record, vec3 direction, GeometryRecord geometry, Features features) {
+Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features features) {
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
     return fetchHit(geometry, record.primitive, barycentrics, direction, record.coneWidth, record.target, features);
 }
 
 // Returns the direction of the ray of a stored hit.
-vec3 rayDirection(HitRecord record, GeometryRecord geometry) {
+vec3 rayDirection(HitRecord record, HostGeometry geometry) {
 #if GLINT_HIT_RECORD_PACKED && !GLINT_STEPS
     // It points from the start of the ray to the point of the triangle.
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);

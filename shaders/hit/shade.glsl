@@ -1,17 +1,21 @@
 // shade(): the one function that every strategy calls for a hit. Here it answers with the light that comes back.
 #include "effects/ambient.glsl"
 #include "hit/answer_radiance.glsl"
-#include "hit/bindings.glsl"
 #include "hit/material.glsl"
-#include "hit/punctual.glsl"
-#include "hit/random.glsl"
 #include "hit/samples.glsl"
-#include "hit/sequence.glsl"
+#include "host/lights.glsl"
+#include "host/random.glsl"
 
 // The dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
+const uint kDimensionHostLight = 1u;  // and one for each further light
 // The pairs of the sequence.
 const uint kPairLightArea = 5u;
+
+// The light at a number of the host's lists.
+HostLight lightOfHost(Hit hit, uint index) {
+    return hostLight(index, hit.position, hostRandom(hit.target, kDimensionHostLight + index));
+}
 
 // The light of one light on a surface, without its shadow.
 vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
@@ -19,13 +23,12 @@ vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample li
 }
 
 // Aims the shadow ray at the light's position, or at a point of a light that has a size.
-void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
-    LightSample aim = sampleLight(light, hit.position);
+void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
+    LightSample aim = hostSampleLight(light, hit.position);
 #if GLINT_EFFECT_SHADOW
-    if (light.size > 0.0) {
+    if (hostLightHasSize(light)) {
         vec3 centre = aim.direction;
-        vec2 u = sequencePair(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kPairLightArea);
-        aim = sampleLightArea(light, aim, u);
+        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, kPairLightArea));
         if (aim.distance <= 0.0) {
             // The point is within the light.
             result.radiance += result.direct;
@@ -43,13 +46,14 @@ void aimAtLight(Hit hit, LightRecord light, inout ShadeResult result) {
 // would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
 // dominates.
 void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
-    float random = randomUnit(hit.target, GLINT_FRAME.sampleIndex, GLINT_FRAME.seed, kDimensionLight);
+    float random = hostRandom(hit.target, kDimensionLight);
+    uint lights = hostLightCount(hit.position);
     float total = 0.0;
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
     uint index = 0u;
-    for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
-        LightSample light = sampleLight(GLINT_FRAME.lights.data[i], hit.position);
+    for (uint i = 0u; i < lights; ++i) {
+        LightSample light = hostSampleLight(lightOfHost(hit, i), hit.position);
         vec3 contribution = unshadowedLight(hit, surface, features, light);
         float weight = luminance(contribution);
         if (weight <= 0.0) {
@@ -68,7 +72,7 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
     }
     result.direct = chosen * (total / chosenWeight);
     if (total > 0.0) {
-        aimAtLight(hit, GLINT_FRAME.lights.data[index], result);
+        aimAtLight(hit, lightOfHost(hit, index), result);
     }
 }
 

@@ -1,10 +1,9 @@
 // The material's textures at a hit.
 #include "hit/hit.glsl"
+#include "host/material.glsl"
+#include "host/texture.glsl"
 
-#define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
-#define GLINT_SAMPLER(record)                                      \
-    sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
-              sceneSamplers[nonuniformEXT((record).samplerIndex)])
+#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
 
 // Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
@@ -22,11 +21,12 @@ GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, 
                        dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
     }
     if (GLINT_TEXTURE_LOD_CONES == 0) {
-        vec4 finest = textureLod(GLINT_SAMPLER(record), uv, 0.0);
+        vec4 finest = hostFinestTexture(record, uv);
         return finest;
     }
-    vec4 gradients = coneGradients(hit.footprint, uvEdges, record.texels, record.anisotropy);
-    vec4 texel = textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
+    vec3 filtered = hostTextureFilter(record);
+    vec4 gradients = coneGradients(hit.footprint, uvEdges, filtered.xy, filtered.z);
+    vec4 texel = hostTexture(record, uv, gradients);
     return texel;
 }
 

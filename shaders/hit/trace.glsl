@@ -29,7 +29,7 @@ const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
         uint candidate = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),                      \
                                        rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),             \
                                        rayQueryGetIntersectionGeometryIndexEXT(query, false));                  \
-        if (passesAlphaTest(GLINT_FRAME.geometries.data[candidate],                                             \
+        if (passesAlphaTest(hostGeometry(candidate),                                                            \
                             uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)),                       \
                             rayQueryGetIntersectionBarycentricsEXT(query, false))) {                            \
             rayQueryConfirmIntersectionEXT(query);                                                              \

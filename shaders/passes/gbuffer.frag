@@ -1,7 +1,10 @@
 #version 460
 // G-buffer: stores which triangle each pixel sees. The lighting pass reads materials, once for each pixel.
-#include "hit/bindings.glsl"
+#define GLINT_RASTER
 #include "bsdf/features.glsl"
+#include "host/geometry.glsl"
+#include "host/material.glsl"
+#include "host/texture.glsl"
 
 layout(location = 0) flat in uint primitive;
 layout(location = 3) flat in uint geometryIndex;
@@ -14,21 +17,16 @@ layout(location = 0) out uvec2 surface;
 
 void main() {
 #if GLINT_HAS_MASKED
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[geometryIndex];
+    HostGeometry geometry = hostGeometry(geometryIndex);
     if ((geometry.flags & kGeometryMasked) != 0u) {
-        MaterialRecord material = GLINT_FRAME.materials.data[geometry.materialIndex];
+        MaterialRecord material = hostMaterials().data[geometry.materialIndex];
         float alpha = material.baseColorFactor.a * vertexAlpha;
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
             TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
-            // All instances of a draw have one material: the indices are uniform.
 #if GLINT_TEXTURE_LOD_CONES
-            alpha *= texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
-                             texCoord, GLINT_FRAME.sampleLodBias)
-                         .a;
+            alpha *= hostScreenTexture(record, texCoord, GLINT_FRAME.sampleLodBias).a;
 #else
-            alpha *= textureLod(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]),
-                                texCoord, 0.0)
-                         .a;
+            alpha *= hostFinestTexture(record, texCoord).a;
 #endif
         }
         if (alpha < material.alphaCutoff) {

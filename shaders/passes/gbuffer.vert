@@ -1,9 +1,10 @@
 #version 460
 // G-buffer: vertices are pulled by address. Each triangle has its own three, so its number needs no geometry shader
 // capability.
-#include "hit/bindings.glsl"
 #include "bsdf/features.glsl"
 #include "hit/geometry.glsl"
+#include "host/geometry.glsl"
+#include "host/material.glsl"
 
 layout(location = 0) flat out uint primitive;
 layout(location = 3) flat out uint geometryIndex;
@@ -14,10 +15,10 @@ layout(location = 2) out float vertexAlpha;
 
 void main() {
     geometryIndex = pushed.geometry + uint(gl_InstanceIndex) * pushed.geometryStride;
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[geometryIndex];
-    InstanceRecord instance = GLINT_FRAME.instances.data[geometry.instanceIndex];
-    uint index = geometry.indices.data[gl_VertexIndex];
-    vec4 world = vec4(transformPoint(instance.objectToWorld, geometry.positions.data[index]), 1.0);
+    HostGeometry geometry = hostGeometry(geometryIndex);
+    InstanceRecord instance = hostInstance(geometry);
+    uint vertex = hostVertex(geometry, uint(gl_VertexIndex));
+    vec4 world = vec4(transformPoint(instance.objectToWorld, hostPosition(geometry, vertex)), 1.0);
     gl_Position = vec4(dot(GLINT_FRAME.worldToClip[0], world), dot(GLINT_FRAME.worldToClip[1], world),
                        dot(GLINT_FRAME.worldToClip[2], world), dot(GLINT_FRAME.worldToClip[3], world));
     primitive = gl_VertexIndex / 3u;
@@ -26,13 +27,13 @@ void main() {
     texCoord = vec2(0.0);
     vertexAlpha = 1.0;
     if ((geometry.flags & kGeometryMasked) != 0u) {
-        TextureRecord record = GLINT_TEXTURE(GLINT_FRAME.materials.data[geometry.materialIndex], kBaseColorTexture);
+        TextureRecord record = GLINT_TEXTURE(hostMaterials().data[geometry.materialIndex], kBaseColorTexture);
         if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
-            vec2 uv = record.texCoord == 0u ? geometry.texCoords0.data[index] : geometry.texCoords1.data[index];
+            vec2 uv = record.texCoord == 0u ? hostTexCoord0(geometry, vertex) : hostTexCoord1(geometry, vertex);
             texCoord = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         }
         if ((geometry.featureInputs & GLINT_VERTEX_COLOR) != 0u) {
-            vertexAlpha = geometry.colors.data[index].a;
+            vertexAlpha = hostColor(geometry, vertex).a;
         }
     }
 #endif

@@ -14,12 +14,13 @@ GLINT_PIXEL_WORKGROUP
 
 vec3 directLight(Hit hit, Surface surface, Features features) {
     vec3 sum = vec3(0.0);
+    uint lights = hostLightCount(hit.position);
 #if GLINT_EFFECT_SHADOW
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
 #endif
-    for (uint i = 0u; i < GLINT_FRAME.lightCount; ++i) {
-        LightRecord light = GLINT_FRAME.lights.data[i];
-        LightSample centre = sampleLight(light, hit.position);
+    for (uint i = 0u; i < lights; ++i) {
+        HostLight light = lightOfHost(hit, i);
+        LightSample centre = hostSampleLight(light, hit.position);
         vec3 contribution = unshadowedLight(hit, surface, features, centre);
         bool reaches = luminance(contribution) > 0.0;
 #if GLINT_EFFECT_SHADOW
@@ -46,13 +47,13 @@ void main() {
     uint number = pixel.x + pixel.y * GLINT_FRAME.width;
     uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
     CameraRay ray = cameraRay(pixel);
-    vec4 radianceDepth = vec4(skyRadiance(ray.direction), 0.0);
+    vec4 radianceDepth = vec4(hostSky(ray.direction), 0.0);
     vec4 position = vec4(0.0);
 
     if (surfaceId.x == kNoSurface) {
         skipEffects(number, kRayNoSurface);
     } else {
-        GeometryRecord geometry = GLINT_FRAME.geometries.data[surfaceId.x];
+        HostGeometry geometry = hostGeometry(surfaceId.x);
         Features features = GLINT_PRIMARY_FEATURES(geometry);
         Hit hit = primaryHit(geometry, surfaceId.y, ray, number, features);
         vec3 origin = rayOrigin(hit, hit.geometricNormal);

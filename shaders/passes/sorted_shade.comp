@@ -37,8 +37,8 @@ void main() {
     }
     // The first hit of a workgroup gives the case of all its hits.
     uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);
-    uint shaderId = first == kMissGeometry ? kNoShader : GLINT_FRAME.geometries.data[first].shaderId;
-    GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
+    uint shaderId = first == kMissGeometry ? kNoShader : hostShaderId(first);
+    HostGeometry geometry = hostGeometry(record.geometry);
     Hit hit = loadHit(record, rayDirection(record, geometry), geometry, GLINT_HIT_FEATURES(geometry));
     resolveHit(hit, shadeHit(shaderId, hit, geometry));
 }

@@ -20,7 +20,7 @@ void main() {
     if (record.geometry == kMissGeometry) {
         resolveMiss(record.target, ray.direction);
     } else {
-        GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
+        HostGeometry geometry = hostGeometry(record.geometry);
         Hit hit = loadHit(record, ray.direction, geometry, GLINT_HIT_FEATURES(geometry));
         resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
     }

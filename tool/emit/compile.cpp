@@ -4,6 +4,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
+#include "emit/host.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
 #include "emit/package/header.h"
@@ -125,9 +126,14 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
 }
 
-// Says what to do about an error in GLSL to which packs may have contributed.
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
-    if (error.id != "glsl" || model.sources.empty()) {
+// Says what to do about an error in GLSL to which packs or a host may have contributed.
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host) {
+    if (error.id != "glsl" || (model.sources.empty() && host.empty())) {
+        return error;
+    }
+    if (!host.empty() && isHostPlace(error.where, host)) {
+        error.message += "; it is GLSL of --host";
+        error.hint = "correct the file; docs/host.md says which functions it must have";
         return error;
     }
     for (const FeatureCode& code : model.code) {
@@ -138,9 +144,11 @@ Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
             return error;
         }
     }
-    error.hint =
-        "look whether a pack has all functions of its stages (docs/material_features.md); "
-        "otherwise this is a defect of Glint";
+    error.hint = host.empty()
+                     ? "look whether a pack has all functions of its stages (docs/material_features.md); "
+                       "otherwise this is a defect of Glint"
+                     : "look whether the files of --host have all functions of those that they replace "
+                       "(docs/host.md), and packs those of their stages; otherwise this is a defect of Glint";
     return error;
 }
 
@@ -155,7 +163,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
             ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache)
             : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
     if (!compiled) {
-        return explainGlslError(compiled.error(), *prepared->plan.model);
+        return explainGlslError(compiled.error(), *prepared->plan.model, settings.host);
     }
     CompiledPackage package;
     package.plan = std::move(prepared->plan);

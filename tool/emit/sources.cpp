@@ -3,6 +3,7 @@
 #include "emit/builtin.h"
 #include "emit/context.h"
 #include "emit/effects.h"
+#include "emit/host.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
 
@@ -121,6 +122,9 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     }
     for (const ModelSource& source : plan.model->sources) {
         sources.add(source.name, source.text);
+    }
+    if (Status status = addHost(sources, settings.host); !status) {
+        return status.error();
     }
     sources.add("generated/features.glsl", plan.model->featureDefines());
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));

@@ -26,7 +26,7 @@ private:
 };
 
 // Returns the embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl".
-// Has the errors of renderTemplate().
+// Has the errors of addHost() and renderTemplate().
 Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
 
 // Returns the C++ declarations of every structure that host and device share, flattened from shaders/interop.

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace glint {
 
@@ -51,6 +52,8 @@ struct CompileSettings {
     bool emitHeader = true;  // glint_tables.h
     bool emitGlsl = false;   // writes the flattened sources, in glsl/
     bool debugInfo = false;  // keeps names in the SPIR-V
+    // A folder with files that stand in for those of shaders/host; empty: none (emit/host.h).
+    std::string host{};
     // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.
     std::optional<StrategyAdvice> strategyChoice{};
     // The folder in which `glint compile-module` left the modules. If it is empty, modules are compiled here.

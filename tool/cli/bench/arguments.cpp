@@ -24,7 +24,8 @@ constexpr const char* kQuickSize = "80x45";
 // were given.
 bool isView(const CLI::Option& option) {
     constexpr std::string_view kViews[] = {"--camera",       "--environment", "--variant",
-                                           "--strict-paths", "--materials",   "--device"};
+                                           "--strict-paths", "--materials",   "--host",
+                                           "--device"};
     const std::string name = option.get_name();
     return std::ranges::find(kViews, name) != std::end(kViews) ||
            std::ranges::any_of(settingsTable(), [&](const Descriptor& row) {

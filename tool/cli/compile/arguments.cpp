@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "emit/host.h"
 #include "emit/package/embed_source.h"
 #include "materials/packs.h"
 
@@ -30,6 +31,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addCalibration(command, arguments.settings);
     addProfileInput(command, arguments.settings);
     addLockOptions(command, arguments.lock);
+    addHostOption(command, arguments.settings);
     addFlag(command, "--environment-map", arguments.settings.compile.environmentMap,
             "rays that leave the scene see an environment map, which\n"
             "every frame then needs, instead of a gradient")
@@ -162,10 +164,14 @@ std::vector<std::filesystem::path> furtherInputs(const CompileArguments& argumen
             files.emplace_back(file);
         }
     }
-    // Where the folders can't be listed, reading the packs says so.
+    // Where the folders can't be listed, reading them says so.
     if (const Result<std::vector<std::filesystem::path>> packs = packFiles(arguments.settings.materials);
         packs) {
         files.insert(files.end(), packs->begin(), packs->end());
+    }
+    if (const Result<std::vector<std::filesystem::path>> host = hostFiles(arguments.settings.compile.host);
+        host) {
+        files.insert(files.end(), host->begin(), host->end());
     }
     return files;
 }

@@ -168,6 +168,13 @@ void addReadingOptions(CLI::App& command, Settings& settings) {
         .allow_extra_args(false);
 }
 
+void addHostOption(CLI::App& command, Settings& settings) {
+    addText(command, "--host", settings.compile.host, "DIR",
+            "read geometry, materials, textures, lights and sky by the\n"
+            "functions in this folder's GLSL (docs/host.md)")
+        .group("Shaders");
+}
+
 Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages) {
     const Result<const MaterialModel*> model = loadMaterialModel(settings.materials);
     if (!model) {

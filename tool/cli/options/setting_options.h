@@ -25,6 +25,8 @@ void addCalibration(CLI::App& command, Settings& settings);
 // Adds --variant NAME, --strict-paths and --materials DIR.
 void addReadingOptions(CLI::App& command, Settings& settings);
 
+// For commands that compile shaders.
+void addHostOption(CLI::App& command, Settings& settings);
 // Returns how a scene is read. Has the errors of loadMaterialModel().
 Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages);
 

@@ -113,6 +113,9 @@ void checkPackageChoice(const CLI::App& command) {
     if (command.count("--package") == 0) {
         return;
     }
+    if (command.count("--host") > 0) {
+        throw CLI::ValidationError("--host", "is decided by --package; leave out one of them");
+    }
     for (const Descriptor& row : settingsTable()) {
         const std::string option = "--" + std::string(row.name);
         const bool isDecided = (row.commands & kOfRender) != 0 && row.stage == SettingStage::Package;
@@ -132,6 +135,7 @@ void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addEnvironmentOptions(command, arguments);
     addSettings(command, kOfRender, arguments);
     addCalibration(command, arguments);
+    addHostOption(command, arguments);
     addDeviceOptions(command, arguments);
 }
 
@@ -155,7 +159,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
             "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
-            "--precision,\n--shadows, --hit-record, --effects and --profile)")
+            "--precision,\n--shadows, --hit-record, --effects, --profile and --host)")
         .group("Shaders");
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {

@@ -2,6 +2,7 @@
 
 #include "base/json_depth.h"
 #include "emit/context.h"
+#include "emit/host.h"
 #include "emit/modules.h"
 #include "emit/package/json.h"
 #include "settings/table.h"
@@ -84,6 +85,12 @@ ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& compi
     }
     object["sky"] = compile.environmentMap ? "map" : "gradient";
     return object;
+}
+
+// The files were read when the modules were made, so they are there.
+ManifestJson hostNames(const CompileSettings& settings) {
+    const Result<std::vector<std::string>> names = replacedHostFiles(settings.host);
+    return names ? ManifestJson(*names) : ManifestJson::array();
 }
 
 // Returns the budget of cases, or null if there is none.
@@ -247,6 +254,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["merge"] = nameOf(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
     manifest["alpha"] = nameOf(settings.plan.keys.alpha);
+    manifest["host"] = hostNames(settings);
     manifest["settings"] = settingsOf(*package.plan.model, settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();

@@ -1,0 +1,35 @@
+// Lights that a surface may see. The light at a point is the sum over all of them. Here they are the punctual lights of
+// Glint's scene.
+//
+// A host with many lights may return few: each stands for those that it was chosen from, at random, and its irradiance
+// is divided by the probability with which it was chosen. Then the mean of the sum is right, and so is the picture's.
+#include "host/resources.glsl"
+#include "hit/punctual.glsl"
+
+// A light. Glint only hands it back to the functions below.
+#define HostLight LightRecord
+
+uint hostLightCount(vec3 position) {
+    return GLINT_FRAME.lightCount;
+}
+
+// `random` is uniform in [0, 1), for hosts that choose. The same arguments give the same light.
+HostLight hostLight(uint index, vec3 position, float random) {
+    return GLINT_FRAME.lights.data[index];
+}
+
+// The light of the light's centre at a point, without shadows.
+LightSample hostSampleLight(HostLight light, vec3 position) {
+    return sampleLight(light, position);
+}
+
+// Whether shadow rays go to a random point of the light, instead of its centre.
+bool hostLightHasSize(HostLight light) {
+    return light.size > 0.0;
+}
+
+// Samples a point of a light that has a size, by the solid angle that it fills. `centre` comes from hostSampleLight(),
+// and u is uniform in [0, 1)². The distance is 0 if the point is within the light.
+LightSample hostSampleLightPoint(HostLight light, LightSample centre, vec2 u) {
+    return sampleLightArea(light, centre, u);
+}

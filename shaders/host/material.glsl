@@ -1,0 +1,7 @@
+// Where the records of materials are.
+#include "host/resources.glsl"
+
+// Returns the address of the records. That of a geometry's material is at its materialIndex.
+MaterialArray hostMaterials() {
+    return GLINT_FRAME.materials;
+}

@@ -1,0 +1,30 @@
+// Filtered samples of textures. A TextureRecord names the texture and its sampler. Here these are indices into the
+// arrays of Glint's scene.
+#include "host/resources.glsl"
+
+#define GLINT_SAMPLER(record)                                      \
+    sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
+              sceneSamplers[nonuniformEXT((record).samplerIndex)])
+
+// `gradients` are (du, dv) along one axis of the footprint, then along the other. They are 0 for the finest level.
+vec4 hostTexture(TextureRecord record, vec2 uv, vec4 gradients) {
+    return textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
+}
+
+// The finest level.
+vec4 hostFinestTexture(TextureRecord record, vec2 uv) {
+    return textureLod(GLINT_SAMPLER(record), uv, 0.0);
+}
+
+// Returns the size of the finest level in texels, and the most anisotropy that the sampler covers (1 for none).
+vec3 hostTextureFilter(TextureRecord record) {
+    return vec3(record.texels, record.anisotropy);
+}
+
+#ifdef GLINT_RASTER
+// In fragment shaders: the level that the derivatives of the screen choose, plus `bias`. The record is the same for the
+// whole draw.
+vec4 hostScreenTexture(TextureRecord record, vec2 uv, float bias) {
+    return texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]), uv, bias);
+}
+#endif
