@@ -4,6 +4,7 @@
 
 #include <glint/context.h>
 #include <glint/package.h>
+#include <glint/renderer.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
@@ -73,13 +74,17 @@ public:
     // needs is missing, or a transform is not finite), "scene-light", and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
+    // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene yet.
+    // The GpuScene must outlive it, and update() is GpuScene's. The host binds GpuScene::descriptorSet().
+    static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
     EngineScene& operator=(const EngineScene&) = delete;
 
     // Records new transforms, as many as at creation, and new lights, at most as many. The transforms before
     // become those that motion is measured from. The values travel in the command buffer, so they need not be
-    // kept and any number of frames may be in flight. Errors: "engine-scene", "scene-light".
+    // kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared scene),
+    // "scene-light".
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
                   std::span<const LightView> lights);
 

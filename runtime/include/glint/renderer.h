@@ -66,6 +66,10 @@ public:
         double tlasBuildMs = 0.0;
     };
     const Statistics& statistics() const;
+    // The descriptor set with the scene's structures, textures and samplers, at the bindings that
+    // package::Bindings has by default, and its layout. They are for hosts that record RaySteps.
+    VkDescriptorSet descriptorSet() const;
+    VkDescriptorSetLayout descriptorSetLayout() const;
     // Lists buffers and images by what they hold. allocatedBytes() is the memory that was allocated for them.
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;

@@ -296,6 +296,14 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GpuScene::~GpuScene() = default;
 
+VkDescriptorSet GpuScene::descriptorSet() const {
+    return state_->set;
+}
+
+VkDescriptorSetLayout GpuScene::descriptorSetLayout() const {
+    return state_->setLayout.get();
+}
+
 const GpuScene::Statistics& GpuScene::statistics() const {
     return state_->statistics;
 }

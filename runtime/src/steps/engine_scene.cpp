@@ -1,6 +1,7 @@
 #include "context/upload.h"
 #include "interop/frame.h"
 #include "renderer/pass_dependencies.h"
+#include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
 #include "scene/scene_checks.h"
 #include "scene/textures.h"
@@ -261,6 +262,20 @@ Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const
     if (Status status = (*uploader)->finish(); !status) {
         return status.error();
     }
+    state->addresses = {state->geometries.address,        state->instances.address,
+                        state->previousInstances.address, state->materials.address,
+                        state->lights.address,            state->firstRecords.address};
+    return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
+}
+
+Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {
+    const GpuScene::State& given = scene.state();
+    auto state = std::make_unique<State>(context.state());
+    state->addresses = {given.geometries.address, given.instances.address, given.instances.address,
+                        given.materials.address,  given.lights.address,    0};
+    state->shaderIds = given.shaderIds;
+    state->lightCount = given.lightCount;
+    state->shared = true;
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
 
@@ -269,6 +284,9 @@ EngineScene::~EngineScene() = default;
 
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
                            std::span<const LightView> lights) {
+    if (state_->shared) {
+        return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
+    }
     if (instances.size() != state_->instanceCount || lights.size() > state_->lightCapacity) {
         return makeError("engine-scene", "",
                          "there are " + std::to_string(instances.size()) + " instances and " +

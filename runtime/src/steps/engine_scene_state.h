@@ -23,6 +23,17 @@ struct EngineScene::State {
     Buffer materials;
     Buffer lights;
     Buffer firstRecords;
+    // The same, or those of a GpuScene.
+    struct Addresses {
+        VkDeviceAddress geometries = 0;
+        VkDeviceAddress instances = 0;
+        VkDeviceAddress previousInstances = 0;
+        VkDeviceAddress materials = 0;
+        VkDeviceAddress lights = 0;
+        VkDeviceAddress firstRecords = 0;
+    };
+    Addresses addresses;
+    bool shared = false;
     std::size_t instanceCount = 0;
     std::uint32_t lightCount = 0;
     std::uint32_t lightCapacity = 0;

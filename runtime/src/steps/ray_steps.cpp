@@ -155,12 +155,12 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.lightCount = state.scene.lightCount;
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
     fillOutside(outsideOf(batch), constants);
-    constants.geometries = state.scene.geometries.address;
-    constants.instances = state.scene.instances.address;
-    constants.previousInstances = state.scene.previousInstances.address;
-    constants.materials = state.scene.materials.address;
-    constants.lights = state.scene.lights.address;
-    constants.firstRecords = state.scene.firstRecords.address;
+    constants.geometries = state.scene.addresses.geometries;
+    constants.instances = state.scene.addresses.instances;
+    constants.previousInstances = state.scene.addresses.previousInstances;
+    constants.materials = state.scene.addresses.materials;
+    constants.lights = state.scene.addresses.lights;
+    constants.firstRecords = state.scene.addresses.firstRecords;
     constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
     constants.rayMask = batch.mask;
     fillLists(state.frame, state.size, constants);

@@ -1,0 +1,367 @@
+// The steps that a host records for rays of its own.
+#include "context/commands.h"
+#include "context/readback.h"
+#include "render/harness.h"
+#include "render/rooms.h"
+#include "render/scene_builder.h"
+#include "renderer/pass_dependencies.h"
+#include "renderer/renderer_state.h"
+
+#include <glint/ray_steps.h>
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+// Rays of a Renderer, and the light that it found for them, by slot.
+struct KnownRays {
+    std::vector<EngineRay> rays;
+    std::vector<EngineRadiance> answers;
+};
+
+template <typename T>
+std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count) {
+    std::vector<T> result(count);
+    std::memcpy(result.data(), bytes.data(), count * sizeof(T));
+    return result;
+}
+
+// Traces the reflections of a scene as Renderer does.
+KnownRays knownRays(const Scene& scene, const RenderSetup& setup) {
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = MergePolicy::All;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    const LoadedScene loaded(scene, settings);
+    KnownRays known;
+    if (!loaded.ok()) {
+        return known;
+    }
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup.width;
+    options.height = setup.height;
+    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    EXPECT_TRUE(renderer) << toString(renderer.error());
+    if (!renderer || !(*renderer)->render(setup.frame)) {
+        return known;
+    }
+    Renderer::State& state = (*renderer)->state();
+    Result<CommandRunner> runner = CommandRunner::create(state.context);
+    const auto rays = readFrameBuffer(state, *runner, state.frame.rays);
+    const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
+    EXPECT_TRUE(rays && radiance);
+    known.rays = arrayOf<EngineRay>(*rays, (*renderer)->counters()->rays);
+    known.answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
+    return known;
+}
+
+// A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and its
+// answers.
+class Host {
+public:
+    Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
+         std::size_t answerBytes)
+        : context_(sharedContext().state()), pool_(context_), loaded_(loaded), rays_(rays), slots_(slots) {
+        const VkDescriptorSetLayout empty = makeEmptyLayout();
+        const VkDescriptorSetLayout sets[] = {empty, empty, loaded.gpuScene().descriptorSetLayout()};
+        const VkPushConstantRange range{kStages, 0, 16 + RaySteps::kPushBytes};
+        VkPipelineLayoutCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+        info.setLayoutCount = 3;
+        info.pSetLayouts = sets;
+        info.pushConstantRangeCount = 1;
+        info.pPushConstantRanges = &range;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        EXPECT_EQ(context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout),
+                  VK_SUCCESS);
+        layout_ = UniquePipelineLayout(context_, layout);
+        list_ = make(rays.size() * sizeof(EngineRay), MemoryUse::Upload);
+        std::memcpy(list_.mapped, rays.data(), rays.size() * sizeof(EngineRay));
+        count_ = make(sizeof(std::uint32_t), MemoryUse::Upload);
+        const auto count = static_cast<std::uint32_t>(rays.size());
+        std::memcpy(count_.mapped, &count, sizeof count);
+        answers_ = make(slots * answerBytes, MemoryUse::Readback);
+    }
+
+    // Records the steps and waits. `apart` records them one by one, with the count on the device.
+    template <typename Answer>
+    std::vector<Answer> answers(RayStepsOptions options, const FrameOptions& frame, bool apart,
+                                RayStepsCounters* counters = nullptr) {
+        options.layout = layout_.get();
+        options.pushStages = kStages;
+        options.maxRays = static_cast<std::uint32_t>(slots_);
+        const auto scene = EngineScene::share(sharedContext(), loaded_.gpuScene());
+        const auto steps = RaySteps::create(sharedContext(), loaded_.package(), **scene, options);
+        EXPECT_TRUE(steps) << toString(steps.error());
+        if (!steps) {
+            return {};
+        }
+        RayBatch batch;
+        batch.rays = list_.address;
+        batch.answers = answers_.address;
+        batch.rayCount = static_cast<std::uint32_t>(rays_.size());
+        batch.sky = frame.sky;
+        batch.sampleIndex = frame.sampleIndex;
+        batch.seed = frame.seed;
+        Result<CommandRunner> runner = CommandRunner::create(context_);
+        const Result<VkCommandBuffer> commands = runner->begin();
+        const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
+        for (const VkPipelineBindPoint point :
+             {VK_PIPELINE_BIND_POINT_COMPUTE, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR}) {
+            context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
+        }
+        if (apart) {
+            batch.rayCount = 0;
+            batch.countBuffer = count_.handle.get();
+            EXPECT_TRUE((*steps)->begin(*commands, batch));
+            (*steps)->trace(*commands);
+            (*steps)->order(*commands);
+            (*steps)->shade(*commands);
+        } else {
+            const Status status = (*steps)->record(*commands, batch);
+            EXPECT_TRUE(status) << toString(status.error());
+        }
+        recordDependency(context_, *commands,
+                         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+        EXPECT_TRUE(runner->submitAndWait());
+        if (counters != nullptr) {
+            *counters = *(*steps)->counters();
+        }
+        std::vector<Answer> read(slots_);
+        std::memcpy(read.data(), answers_.mapped, slots_ * sizeof(Answer));
+        return read;
+    }
+
+private:
+    static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
+
+    VkDescriptorSetLayout makeEmptyLayout() {
+        VkDescriptorSetLayoutCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+        VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+        EXPECT_EQ(context_.vk.CreateDescriptorSetLayout(context_.handles.device, &info, nullptr, &layout),
+                  VK_SUCCESS);
+        empty_ = UniqueSetLayout(context_, layout);
+        return layout;
+    }
+
+    Buffer make(std::size_t bytes, MemoryUse use) {
+        Result<Buffer> buffer =
+            createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use);
+        EXPECT_TRUE(buffer) << toString(buffer.error());
+        return std::move(*buffer);
+    }
+
+    Context::State& context_;
+    MemoryPool pool_;
+    const LoadedScene& loaded_;
+    const std::vector<EngineRay>& rays_;
+    std::size_t slots_;
+    UniqueSetLayout empty_;
+    UniquePipelineLayout layout_;
+    Buffer list_;
+    Buffer count_;
+    Buffer answers_;
+};
+
+CompileSettings stepSettings() {
+    CompileSettings settings;
+    settings.passes = package::Passes::Steps;
+    settings.strategies = package::kAllStrategies;
+    settings.tracers = package::kAllTracers;
+    settings.plan.merge = MergePolicy::All;
+    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.bindings.sceneSet = 2;
+    settings.bindings.pushOffset = 16;
+    return settings;
+}
+
+struct Way {
+    package::Strategy strategy;
+    package::Tracer tracer;
+};
+constexpr Way kWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
+                         {package::kStrategyUber, package::kTracerRayPipeline},
+                         {package::kStrategyVisibility, package::kTracerRayQuery},
+                         {package::kStrategyVisibility, package::kTracerRayPipeline},
+                         {package::kStrategySortedUber, package::kTracerRayQuery},
+                         {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+
+TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
+    const Scene scene = roomWithFence();
+    const RenderSetup setup = defaultSetup(scene, 48, 27);
+    const KnownRays known = knownRays(scene, setup);
+    ASSERT_GT(known.rays.size(), 100U);
+    for (const auto record : {package::HitRecordFormat::Full, package::HitRecordFormat::Packed}) {
+        CompileSettings settings = stepSettings();
+        settings.hitRecord = record;
+        const LoadedScene loaded(scene, settings);
+        ASSERT_TRUE(loaded.ok());
+        Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+        for (const Way& way : kWays) {
+            const bool packed = record == package::HitRecordFormat::Packed;
+            if (packed && way.strategy != package::kStrategySortedUber) {
+                continue;
+            }
+            RayStepsOptions options;
+            options.strategy = way.strategy;
+            options.tracer = way.tracer;
+            options.checkOrder = true;
+            RayStepsCounters counters;
+            const auto answers = host.answers<EngineRadiance>(
+                options, setup.frame, way.strategy == package::kStrategyVisibility, &counters);
+            ASSERT_EQ(answers.size(), known.answers.size());
+            EXPECT_EQ(counters.rays, known.rays.size());
+            EXPECT_EQ(counters.orderErrors, 0U);
+            EXPECT_EQ(counters.unknownShader, 0U);
+            std::size_t far = 0;
+            for (const EngineRay& ray : known.rays) {
+                const EngineRadiance& mine = answers[ray.slot];
+                const EngineRadiance& renderer = known.answers[ray.slot];
+                bool near = mine.path == renderer.path;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
+                                       (packed ? 1e-2F : 1e-4F) * std::max(1.0F, renderer.radiance[i]);
+                }
+                far += near ? 0 : 1;
+            }
+            // Packed records round the place on a triangle, which a shadow's edge shows.
+            EXPECT_LE(far, packed ? known.rays.size() / 50 : 0) << nameOf(way.strategy);
+        }
+    }
+    expectNoValidationMessages();
+}
+
+// A wall of a known material, seen at an angle, and the sky beside it.
+TEST(RaySteps, AnswerWithSurfaces) {
+    Scene scene = emptyScene();
+    Material paint;
+    paint["baseColorFactor"] = {0.5F, 0.25F, 0.125F, 1.0F};
+    paint["metallicFactor"] = 0.0F;
+    paint["roughnessFactor"] = 0.5F;
+    paint["emissiveFactor"] = {0.0F, 0.75F, 0.0F};
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    const Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    CompileSettings settings = stepSettings();
+    settings.answer = package::HitAnswer::Surface;
+    settings.plan.merge = MergePolicy::None;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    const float tilt = 1.0F / std::sqrt(17.0F);
+    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 2, {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F},
+                                      {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
+                                      {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
+    Host host(loaded, rays, 3, sizeof(EngineSurface));
+    for (const Way& way : kWays) {
+        SCOPED_TRACE(std::string(nameOf(way.strategy)));
+        RayStepsOptions options;
+        options.strategy = way.strategy;
+        options.tracer = way.tracer;
+        const auto answers = host.answers<EngineSurface>(options, {}, false);
+        ASSERT_EQ(answers.size(), 3U);
+        const EngineSurface& wall = answers[2];
+        const auto expectVector = [](const std::array<float, 3>& v, const std::array<float, 3>& truth) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                EXPECT_NEAR(v[i], truth[i], 1e-5F);
+            }
+        };
+        expectVector(wall.position, {0.5F, 0.25F, -4.0F});
+        expectVector(wall.normal, {0, 0, 1});
+        expectVector(wall.geometricNormal, {0, 0, 1});
+        expectVector(wall.albedo, {0.5F, 0.25F, 0.125F});
+        expectVector(wall.f0, {0.04F, 0.04F, 0.04F});
+        expectVector(wall.emission, {0, 0.75F, 0});
+        expectVector(wall.motion, {0, 0, 0});
+        EXPECT_NEAR(wall.roughness, 0.5F, 1e-6F);
+        EXPECT_EQ(wall.f90, 1.0F);
+        EXPECT_EQ(wall.material, 0U);
+        EXPECT_LT(wall.shaderId, loaded.package().caseCount());
+        EXPECT_GT(wall.clearance, 0.0F);
+        expectVector(answers[0].position, {4.0F, 0.0F, -4.0F});
+        expectVector(answers[0].emission, {0.25F, 0.5F, 1.0F});
+        expectVector(answers[0].albedo, {0, 0, 0});
+        EXPECT_NE(answers[0].shaderId, wall.shaderId);
+        EXPECT_EQ(answers[0].material, 1U);
+        EXPECT_EQ(answers[1].shaderId, EngineSurface::kMiss);
+        expectVector(answers[1].position, {0, 1, 0});
+    }
+    expectNoValidationMessages();
+}
+
+TEST(RaySteps, RefuseWhatTheyCannotDo) {
+    const Scene scene = roomWithFence();
+    CompileSettings frames;
+    frames.strategies = package::kStrategyUber;
+    const LoadedScene framePackage(scene, frames);
+    CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kTracerRayQuery;
+    const LoadedScene stepPackage(scene, settings);
+    ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
+    const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
+    ASSERT_TRUE(shared);
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    options.maxRays = 16;
+    const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
+    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), stepPackage.package(), **shared, options)), "ray-steps");
+    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), framePackage.package(), **shared, options)),
+              "package-passes");
+    RendererOptions renderer;
+    renderer.strategy = package::kStrategyUber;
+    EXPECT_EQ(
+        idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
+        "package-passes");
+    EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {})), "engine-scene");
+}
+
+// A scene of a host's own is checked before anything is made of it.
+TEST(EngineScene, NamesWhatIsWrong) {
+    CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kTracerRayQuery;
+    const LoadedScene loaded(roomWithFence(), settings);
+    ASSERT_TRUE(loaded.ok());
+    const PackageScene known = loaded.package().scene(0);
+    const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+    const std::vector<EngineTextureView> textures(known.textures.size(), {0, 4, 4});
+    const std::vector<std::uint32_t> samplers(known.samplers.size());
+    const auto create = [&](const EngineGeometryView& geometry, std::span<const EngineTextureView> images,
+                            std::span<const std::uint32_t> firstRecords) {
+        EngineSceneView view;
+        view.geometries = {&geometry, 1};
+        view.instances = instances;
+        view.textures = images;
+        view.samplers = samplers;
+        view.firstRecords = firstRecords;
+        const auto scene = EngineScene::create(sharedContext(), loaded.package(), view);
+        return scene ? std::string() : toString(scene.error());
+    };
+    const package::PrimitiveEntry& entry = known.primitives.front();
+    EngineGeometryView geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
+    EXPECT_EQ(create(geometry, textures, {}), "");
+    const std::uint32_t far[] = {5};
+    EXPECT_NE(create(geometry, textures, far).find("entry 0 of firstRecords"), std::string::npos);
+    EXPECT_NE(create(geometry, {}, {}).find("PackageScene::textures"), std::string::npos);
+    geometry.instance = 3;
+    EXPECT_NE(create(geometry, textures, {}).find("instance 3 is out of range"), std::string::npos);
+    geometry.instance = 0;
+    geometry.positions = 0;
+    EXPECT_NE(create(geometry, textures, {}).find("reads positions"), std::string::npos);
+    geometry.mesh = 10000;
+    EXPECT_NE(create(geometry, textures, {}).find("mesh 10000"), std::string::npos);
+}
+
+}  // namespace
