@@ -101,7 +101,7 @@ constexpr std::string_view kMain = R"(
 layout(local_size_x = 1) in;
 
 void main() {
-    vec3 v = vec3(gl_GlobalInvocationID);
+    vec3 v;
     GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.0), v, 0.0, 0u));
     v += glintEvaluate(surface, v, v);
     v += glintSample(surface, v, v).weight;
@@ -208,7 +208,9 @@ Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan
         mustache::data one = makeContext(scenes, plan, settings.plan);
         mustache::data entry;
         addCase(entry, scenes, *plan.model, shaderCase);
-        one.set("cases", mustache::data(mustache::data::list{entry}));
+        mustache::data list(mustache::data::type::list);
+        list.push_back(entry);
+        one.set("cases", list);
         addCase(one, scenes, *plan.model, shaderCase);
         one.set("title", fmt::format("// Glint's library: the shading of hits with the shader ID {}.",
                                      shaderCase.shaderId));

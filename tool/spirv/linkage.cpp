@@ -21,7 +21,7 @@ using Words = std::vector<std::uint32_t>;
 // The parts of a module, in the order of the specification (2.4).
 struct Parts {
     Words capabilities;
-    Words settings;  // extensions, imports of instructions, memory model
+    Words settings;  // extensions, imports of instructions, memory model, entry points
     Words names;
     Words decorations;
     Words globals;
@@ -60,7 +60,7 @@ std::map<std::uint32_t, Fate> fatesOf(std::span<const std::uint32_t> words,
         fates[function.id] = imported ? Fate::Declared : Fate::Defined;
     }
     forEachInstruction(words, [&](std::size_t at, spv::Op opcode) {
-        if (opcode == spv::OpEntryPoint) {
+        if (opcode == spv::OpEntryPoint && !names.keepsEntryPoint) {
             fates[words[at + 2]] = Fate::Removed;
         }
     });
@@ -121,7 +121,7 @@ bool isSetting(spv::Op opcode) {
 }
 
 Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint32_t, Fate>& fates,
-                  bool keepNames) {
+                  bool keepsEntryPoint, bool keepNames) {
     const std::set<std::uint32_t> removed = removedResults(words, fates);
     Parts parts;
     Fate fate = Fate::Defined;
@@ -149,8 +149,12 @@ Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint
             if (!removed.contains(words[at + 1])) {
                 append(parts.decorations, instruction);
             }
-        } else if (opcode != spv::OpEntryPoint && opcode != spv::OpExecutionMode &&
-                   opcode != spv::OpExecutionModeId) {
+        } else if (opcode == spv::OpEntryPoint || opcode == spv::OpExecutionMode ||
+                   opcode == spv::OpExecutionModeId) {
+            if (keepsEntryPoint) {
+                append(parts.settings, instruction);
+            }
+        } else {
             append(parts.globals, instruction);
         }
     });
@@ -168,7 +172,7 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
                              "its entry point must call every function that it exports");
         }
     }
-    Parts parts = splitModule(words, fatesOf(words, functions, names), keepNames);
+    Parts parts = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
     append(parts.capabilities,
            std::vector<std::uint32_t>{2U << spv::WordCountShift | spv::OpCapability, spv::CapabilityLinkage});
     for (const SpirvFunction& function : functions) {

@@ -14,9 +14,10 @@ namespace glint {
 struct LinkNames {
     std::vector<std::string> exported;
     std::vector<std::string> imported;
+    bool keepsEntryPoint = false;  // of a program, which libraries are linked to
 };
 
-// Makes a library of a compiled shader that keeps its names: it removes the entry point with its function,
+// Makes a library of a compiled shader whose names were kept: it removes the entry point with its function,
 // exports functions under their names, and turns those to import into declarations. Only functions that are
 // called are imported. `keepNames` keeps the other names too. Error "spirv-linkage" if an exported function
 // is not there.

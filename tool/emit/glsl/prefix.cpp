@@ -11,8 +11,8 @@ namespace glint {
 
 namespace {
 
-constexpr std::string_view kPrefix = "glint_";
-constexpr std::string_view kPublic[] = {"glint", "Glint", "GLINT_"};
+constexpr std::string_view kPublic[] = {"glint", "Glint"};
+constexpr std::string_view kMacro = "GLINT_";
 
 bool isWordCharacter(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -46,6 +46,11 @@ std::vector<Token> tokensOf(std::string_view glsl) {
 
 bool isPublic(std::string_view name) {
     return std::ranges::any_of(kPublic, [&](std::string_view begin) { return name.starts_with(begin); });
+}
+
+std::string renamedOf(std::string_view name) {
+    return name.starts_with(kMacro) ? "GLINT_LIBRARY_" + std::string(name.substr(kMacro.size()))
+                                    : "glint_" + std::string(name);
 }
 
 using Names = std::set<std::string_view>;
@@ -113,8 +118,7 @@ std::string prefixNames(std::string_view glsl) {
         const bool renamed =
             token.isName && last != '.' &&
             (types.contains(token.text) || (!members.inside() && names.contains(token.text)));
-        text += renamed ? kPrefix : std::string_view();
-        text += token.text;
+        text += renamed ? renamedOf(token.text) : std::string(token.text);
         last = token.text.back();
     }
     return text;
