@@ -8,13 +8,16 @@
 
 // The dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
-const uint kDimensionHostLight = 1u;  // and one for each further light
+const uint kDimensionHostLight = 1u;  // and the next two; three more for each further light
 // The pairs of the sequence.
 const uint kPairLightArea = 5u;
 
-// The light at a number of the host's lists.
+// A light of the host's list.
 HostLight lightOfHost(Hit hit, uint index) {
-    return hostLight(index, hit.position, hostRandom(hit.target, kDimensionHostLight + index));
+    uint dimension = kDimensionHostLight + 3u * index;
+    vec3 random = vec3(hostRandom(hit.target, dimension), hostRandom(hit.target, dimension + 1u),
+                       hostRandom(hit.target, dimension + 2u));
+    return hostLight(index, hit.position, random);
 }
 
 // The light of one light on a surface, without its shadow.
@@ -76,13 +79,9 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
     }
 }
 
-ShadeResult shade(Hit hit, Features features) {
+// Lights a surface that is lit.
+ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    if (hasLobe(features, GLINT_UNLIT)) {
-        result.radiance = surfaceValues(hit, features).color.rgb;
-        return result;
-    }
-    Surface surface = evaluateSurface(hit, features);
     SkyShares sky = wholeSky();
 #if GLINT_EFFECT_REFRACTION
     if (hasLobe(features, GLINT_TRANSMISSION) && hit.target / pixelCount() == GLINT_SLOT_REFRACTION) {
@@ -93,4 +92,11 @@ ShadeResult shade(Hit hit, Features features) {
     result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
     chooseLight(hit, surface, features, result);
     return result;
+}
+
+ShadeResult shade(Hit hit, Features features) {
+    if (hasLobe(features, GLINT_UNLIT)) {
+        return ShadeResult(surfaceValues(hit, features).color.rgb, vec3(0.0), vec3(0.0), 0.0);
+    }
+    return shadeSurface(hit, evaluateSurface(hit, features), features);
 }

@@ -13,8 +13,8 @@ uint hostLightCount(vec3 position) {
     return GLINT_FRAME.lightCount;
 }
 
-// `random` is uniform in [0, 1), for hosts that choose. The same arguments give the same light.
-HostLight hostLight(uint index, vec3 position, float random) {
+// `random` is uniform in [0, 1)³, for hosts that choose. The same arguments give the same light.
+HostLight hostLight(uint index, vec3 position, vec3 random) {
     return GLINT_FRAME.lights.data[index];
 }
 

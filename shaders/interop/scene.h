@@ -3,6 +3,7 @@
 #define GLINT_INTEROP_SCENE_H
 
 #include "interop/lights.h"
+#include "interop/surface.h"
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint data[]; };
@@ -17,9 +18,6 @@ GLINT_INTEROP_BEGIN
 GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: the candidate must be tested
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
 GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass tests alpha, whether or not hits do
-
-// InstanceRecord::flags
-GLINT_CONSTANT(kInstanceMirrored, 1u);  // the determinant of objectToWorld is negative
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing
 // attribute is 0, and featureInputs then lacks its bit.
@@ -37,26 +35,6 @@ struct GeometryRecord {
     GLINT_ADDRESS(Vec2) texCoords0;
     GLINT_ADDRESS(Vec2) texCoords1;
     GLINT_ADDRESS(Vec4) colors;  // linear RGBA
-};
-
-// One instance of a mesh. Matrices are three rows of four (positions) or three (normals).
-struct InstanceRecord {
-    vec4 objectToWorld[3];
-    vec3 normalToWorld[3];  // cofactors of the linear part times a scale with its determinant's sign: finite even if it
-                            // is singular
-    uint flags;             // kInstance*
-};
-
-// One texture of a material, at the end of its record. uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1))), as in KHR_texture_transform.
-struct TextureRecord {
-    uint textureIndex;  // index into the bindless images
-    uint samplerIndex;  // index into the bindless samplers
-    uint texCoord;      // 0 or 1
-    vec3 rowU;
-    vec3 rowV;
-    // The next two are 0 in a package, because only the runtime knows image and device.
-    vec2 texels;       // size of mip 0
-    float anisotropy;  // maximum of the sampler's filter; 1 for none
 };
 
 GLINT_INTEROP_END

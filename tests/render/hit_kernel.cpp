@@ -41,11 +41,13 @@ HitKernel::HitKernel(GpuScene::State& scene) : scene_(scene) {}
 Result<std::unique_ptr<HitKernel>> HitKernel::create(const Scene& scene, const LoadedScene& loaded,
                                                      const std::string& shader) {
     const Result<std::vector<std::uint32_t>> words = compileKernel(scene, loaded, shader);
-    if (!words) {
-        return words.error();
-    }
+    return words ? create(loaded, *words) : words.error();
+}
+
+Result<std::unique_ptr<HitKernel>> HitKernel::create(const LoadedScene& loaded,
+                                                     const std::vector<std::uint32_t>& words) {
     std::unique_ptr<HitKernel> kernel(new HitKernel(loaded.gpuScene().state()));
-    if (Status status = kernel->createPipeline(*words); !status) {
+    if (Status status = kernel->createPipeline(words); !status) {
         return status.error();
     }
     return kernel;

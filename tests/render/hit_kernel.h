@@ -22,6 +22,10 @@ public:
     static Result<std::unique_ptr<HitKernel>> create(const Scene& scene, const LoadedScene& loaded,
                                                      const std::string& shader);
 
+    // The same for a compiled shader.
+    static Result<std::unique_ptr<HitKernel>> create(const LoadedScene& loaded,
+                                                     const std::vector<std::uint32_t>& words);
+
     // Returns the first `outputs` words; words that the shader did not write are 0. `constants` may hold
     // further inputs.
     Result<std::vector<std::uint32_t>> run(gpu::FrameConstants constants,

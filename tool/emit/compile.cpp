@@ -5,6 +5,7 @@
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
 #include "emit/host.h"
+#include "emit/library.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
 #include "emit/package/header.h"
@@ -17,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <new>
 #include <set>
 #include <utility>
@@ -179,6 +181,13 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
             return header.error();
         }
         package.files.push_back({package::kHeaderFile, toBytes(*header)});
+    }
+    if (settings.emitLibrary || settings.emitLinkable) {
+        Result<std::vector<PackageFile>> library = makeLibrary(scenes, package.plan, settings);
+        if (!library) {
+            return library.error();
+        }
+        std::ranges::move(*library, std::back_inserter(package.files));
     }
     std::ranges::sort(package.files, {}, &PackageFile::name);
     package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});

@@ -48,10 +48,12 @@ struct CompileSettings {
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
-    int jobs = 0;            // threads; 0 means one for each core
-    bool emitHeader = true;  // glint_tables.h
-    bool emitGlsl = false;   // writes the flattened sources, in glsl/
-    bool debugInfo = false;  // keeps names in the SPIR-V
+    int jobs = 0;               // threads; 0 means one for each core
+    bool emitHeader = true;     // glint_tables.h
+    bool emitGlsl = false;      // writes the flattened sources, in glsl/
+    bool emitLibrary = false;   // writes shading as functions in GLSL, in library/
+    bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
+    bool debugInfo = false;     // keeps names in the SPIR-V
     // A folder with files that stand in for those of shaders/host; empty: none (emit/host.h).
     std::string host{};
     // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.

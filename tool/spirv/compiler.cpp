@@ -140,6 +140,33 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
     return optimized;
 }
 
+Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, const LinkNames& names,
+                                                   const ShaderCompileOptions& options) {
+    if (!initializeGlslang()) {
+        return makeError("glsl", source.name, "glslang can't be initialised");
+    }
+    Result<std::vector<std::uint32_t>> translated = translate(source);
+    if (!translated) {
+        return translated;
+    }
+    std::vector<std::string> apart = source.functionsApart;
+    apart.insert(apart.end(), names.exported.begin(), names.exported.end());
+    apart.insert(apart.end(), names.imported.begin(), names.imported.end());
+    const Result<std::vector<std::uint32_t>> optimized =
+        optimizeSpirv(*translated, source.name, apart, true, options.halvesAll);
+    if (!optimized) {
+        return optimized;
+    }
+    Result<std::vector<std::uint32_t>> linkable =
+        makeLinkable(*optimized, names, source.name, options.debugInfo);
+    if (linkable) {
+        if (Status valid = validateSpirv(*linkable, source.name, SpirvUse::Link); !valid) {
+            return valid.error();
+        }
+    }
+    return linkable;
+}
+
 std::string compilerIdentity() {
     const glslang::Version version = glslang::GetVersion();
     return fmt::format("glslang {}.{}.{}{}; {}; {}", version.major, version.minor, version.patch,

@@ -1,6 +1,8 @@
 // Compiles GLSL to optimised, validated SPIR-V, in process.
 #pragma once
 
+#include "spirv/linkage.h"
+
 #include <glint/result.h>
 
 #include <cstdint>
@@ -30,6 +32,12 @@ struct ShaderCompileOptions {
 // messages, first error first), "spirv-optimize", "spirv-validate".
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options);
+
+// Compiles a shader whose main() calls the functions of a library, and makes the library of it: see
+// makeLinkable(). Functions to import have bodies in the source, which do not matter. The library is valid
+// SPIR-V 1.5, but no Vulkan shader. Errors are those of compileShader(), and "spirv-linkage".
+Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, const LinkNames& names,
+                                                   const ShaderCompileOptions& options);
 
 // Returns a text that is equal for two programs whose compileShader() gives the same words for the same
 // source. It consists of the versions of glslang and SPIRV-Tools and a hash of the code around them.

@@ -125,7 +125,8 @@ std::set<std::uint32_t> idsOf(const std::vector<SpirvFunction>& functions,
     return ids;
 }
 
-// Returns the functions that those of `roots` call and that are not inlined yet.
+// Returns the functions that those of `roots` call and that are not inlined yet. The roots stay apart from
+// each other.
 std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
                                 const std::set<std::uint32_t>& roots) {
     std::set<std::uint32_t> calls;
@@ -133,6 +134,9 @@ std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
         if (roots.contains(function.id)) {
             calls.insert(function.calls.begin(), function.calls.end());
         }
+    }
+    for (const std::uint32_t root : roots) {
+        calls.erase(root);
     }
     return calls;
 }
@@ -222,9 +226,9 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
     return optimized;
 }
 
-Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name) {
+Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name, SpirvUse use) {
     std::string message;
-    spvtools::SpirvTools tools(kTarget);
+    spvtools::SpirvTools tools(use == SpirvUse::Link ? SPV_ENV_UNIVERSAL_1_5 : kTarget);
     tools.SetMessageConsumer(keepFirstError(message));
     spvtools::ValidatorOptions options;
     options.SetScalarBlockLayout(true);

@@ -21,8 +21,14 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
                                                  const std::vector<std::string>& apart, bool keepNames,
                                                  bool halvesAll = false);
 
-// Validates for Vulkan 1.2 with scalar block layout. Error "spirv-validate", with the validator's first
-// message.
-Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name);
+// What a module is for.
+enum class SpirvUse {
+    Vulkan,  // a shader for Vulkan 1.2
+    Link     // a library, which only SPIR-V itself knows
+};
+
+// Validates with scalar block layout. Error "spirv-validate", with the validator's first message.
+Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name,
+                     SpirvUse use = SpirvUse::Vulkan);
 
 }  // namespace glint

@@ -71,9 +71,11 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
                    "it, for programs that ship no files; -o is then optional")
         .group("Output")
         ->type_name("FILE.cpp");
-    addChoices(command, "--emit", arguments.emit, {"glsl", "header"},
+    addChoices(command, "--emit", arguments.emit, {"glsl", "header", "library", "linkable"},
                "what else the package holds, separated by commas:\n"
-               "glsl: the shaders' sources; header: C++ tables")
+               "glsl: the shaders' sources; header: C++ tables; library:\n"
+               "shading as GLSL functions, for shaders of your own;\n"
+               "linkable: these functions as SPIR-V, for linkers")
         .group("Output");
     CLI::Option& dry =
         addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
@@ -152,6 +154,8 @@ CompileSettings settingsOf(const CompileArguments& arguments, const PlanOptions&
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
+    settings.emitLibrary = emits("library");
+    settings.emitLinkable = emits("linkable");
     settings.modules = arguments.modules;
     return settings;
 }

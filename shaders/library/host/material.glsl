@@ -1,0 +1,5 @@
+#include "host/resources.glsl"
+
+MaterialArray hostMaterials() {
+    return MaterialArray(glintHostMaterials());
+}

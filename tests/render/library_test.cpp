@@ -1,0 +1,290 @@
+// The library in shaders of the tests' own, against Glint's shading; and a host of the tests' own.
+#include "emit/library.h"
+
+#include "base/files.h"
+#include "emit/compile.h"
+#include "emit/glsl/flatten.h"
+#include "emit/sources.h"
+#include "gltf/import.h"
+#include "materials/packs.h"
+#include "render/hit_kernel.h"
+#include "render/pixel_test.h"
+#include "spirv/compiler.h"
+#include "spirv/optimize.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#ifdef GLINT_HAS_SPIRV_LINK
+#include <spirv-tools/linker.hpp>
+#endif
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+const std::string kPacks = GLINT_SOURCE_DIR "/examples/materials";
+const std::string kShaders = GLINT_SOURCE_DIR "/tests/render/shaders/";
+constexpr std::size_t kValues = 32;  // as in library_values.comp
+constexpr std::uint32_t kTilts = 4;
+
+const Scene& packsScene() {
+    static const Scene kScene = [] {
+        const Result<const MaterialModel*> model = loadMaterialModel(std::vector{kPacks});
+        EXPECT_TRUE(model) << toString(model.error());
+        ImportOptions import;
+        import.decodeImages = true;
+        import.materialModel = *model;
+        Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+        EXPECT_TRUE(scene) << toString(scene.error());
+        return std::move(*scene);
+    }();
+    return kScene;
+}
+
+CompileSettings librarySettings() {
+    CompileSettings settings;
+    settings.plan.merge = MergePolicy::None;
+    settings.strategies = package::kStrategyUber;
+    settings.effects = {};
+    return settings;
+}
+
+std::string textAt(const std::string& path) {
+    const Result<Bytes> bytes = readFile(path);
+    EXPECT_TRUE(bytes) << toString(bytes.error());
+    return bytes ? std::string(bytes->begin(), bytes->end()) : std::string();
+}
+
+// A scene with its library, and the values that kernels read from both.
+class Library : public ::testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_TRUE(loaded_.ok());
+        CompileSettings settings = librarySettings();
+        settings.emitLibrary = true;
+        settings.emitLinkable = true;
+        Result<std::vector<PackageFile>> files =
+            makeLibrary(SceneList({&packsScene(), 1}), loaded_.compiled().plan, settings);
+        ASSERT_TRUE(files) << toString(files.error());
+        files_ = std::move(*files);
+    }
+
+    std::string fileText(std::string_view name) const {
+        for (const PackageFile& file : files_) {
+            if (file.name == name) {
+                return {file.bytes.begin(), file.bytes.end()};
+            }
+        }
+        ADD_FAILURE() << name;
+        return {};
+    }
+
+    std::uint32_t hits() const {
+        std::size_t geometries = 0;
+        for (const Instance& instance : packsScene().instances) {
+            geometries += packsScene().meshes[static_cast<std::size_t>(instance.mesh)].primitives.size();
+        }
+        return static_cast<std::uint32_t>(geometries) * kTilts;
+    }
+
+    // The kernel's source with a text in the place of the library.
+    ShaderSource kernel(const std::string& library, bool product) const {
+        ShaderSource source{"library_values.comp", ShaderStage::Compute, {}, {}};
+        Result<SourceSet> sources =
+            makeSourceSet(SceneList({&packsScene(), 1}), loaded_.compiled().plan, librarySettings());
+        EXPECT_TRUE(sources) << toString(sources.error());
+        sources->add("library.glsl", library);
+        sources->add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
+        std::string text = textAt(kShaders + source.name);
+        text.insert(text.find('\n') + 1, fmt::format("#define PRODUCT {}\nconst uint kTestMaterials = {}u;\n",
+                                                     product ? 1 : 0, packsScene().materials.size()));
+        const Result<std::string> glsl = flatten(source.name, text, sources->lookup(), FlattenSide::Glsl);
+        EXPECT_TRUE(glsl) << toString(glsl.error());
+        source.glsl = glsl ? *glsl : "";
+        return source;
+    }
+
+    std::vector<float> valuesOf(const Result<std::vector<std::uint32_t>>& words, std::size_t perHit) const {
+        if (!words) {
+            ADD_FAILURE() << toString(words.error());
+            return {};
+        }
+        Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(loaded_, *words);
+        if (!kernel) {
+            ADD_FAILURE() << toString(kernel.error());
+            return {};
+        }
+        gpu::FrameConstants constants{};
+        constants.seed = 7;
+        constants.skyZenith = {0.3F, 0.5F, 0.9F};
+        constants.skyHorizon = {0.8F, 0.7F, 0.6F};
+        constants.skyGround = {0.1F, 0.2F, 0.1F};
+        const Result<std::vector<std::uint32_t>> output =
+            (*kernel)->run(constants, {}, hits(), hits() * perHit);
+        EXPECT_TRUE(output) << toString(output.error());
+        std::vector<float> values(output ? output->size() : 0);
+        if (output) {
+            std::memcpy(values.data(), output->data(), values.size() * sizeof(float));
+        }
+        expectNoValidationMessages();
+        return values;
+    }
+
+    LoadedScene loaded_{packsScene(), librarySettings()};
+    std::vector<PackageFile> files_;
+};
+
+void expectClose(float value, float reference, float tolerance, std::size_t hit, std::size_t place) {
+    ASSERT_TRUE(std::isfinite(value)) << "hit " << hit << " value " << place;
+    EXPECT_LE(std::abs(value - reference), tolerance * std::max(1.0F, std::abs(reference)))
+        << "hit " << hit << " value " << place << ": " << value << " " << reference;
+}
+
+TEST_F(Library, GivesWhatTheRendererGives) {
+    const std::string library = fileText("library/glint_library.glsl");
+    const std::vector<float> values = valuesOf(compileShader(kernel(library, true), {}), 2 * kValues);
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::size_t hit = i / (2 * kValues);
+        const std::size_t place = i % (2 * kValues);
+        if (place < kValues) {
+            expectClose(values[i], values[i + kValues], 1e-5F, hit, place);
+            sum += std::abs(values[i]);
+        }
+    }
+    EXPECT_GT(sum, static_cast<float>(hits()));
+}
+
+#ifdef GLINT_HAS_SPIRV_LINK
+
+// The program is the kernel, which imports the library's functions and exports the host's.
+TEST_F(Library, LinkedGivesWhatTheGlslGives) {
+    const std::string library = fileText("library/glint_library.glsl");
+    const std::vector<float> expected = valuesOf(compileShader(kernel(library, false), {}), kValues);
+
+    // The declarations of the library, with bodies that are not used.
+    std::string declared = library.substr(0, library.find("\n// Reads the surface that a ray has hit"));
+    LinkNames names;
+    names.keepsEntryPoint = true;
+    const std::pair<const char*, const char*> functions[] = {
+        {"GlintSurface glintSurface", "const GlintHit hit"},
+        {"vec3 glintEvaluate", "const GlintSurface surface, const vec3 wo, const vec3 wi"},
+        {"GlintSample glintSample", "const GlintSurface surface, const vec3 wo, const vec3 random"},
+        {"float glintDensity", "const GlintSurface surface, const vec3 wo, const vec3 wi"},
+        {"GlintRadiance glintRadiance", "const GlintSurface surface"}};
+    for (const auto& [function, parameters] : functions) {
+        const std::string head = function;
+        const std::string type = head.substr(0, head.find(' '));
+        declared += fmt::format("\n{}({}) {{\n    {} none;\n    return none;\n}}\n", head, parameters, type);
+        names.imported.push_back(head.substr(type.size() + 1));
+    }
+    for (const char* const name : {"Geometry", "ObjectToWorld", "Vertex", "Position", "Normal", "Tangent",
+                                   "TexCoord", "Color", "Materials", "Texture", "TextureFilter", "LightCount",
+                                   "Light", "Sky", "SkyAround", "SkyIrradianceOverPi", "Random"}) {
+        names.exported.push_back(std::string("glintHost") + name);
+    }
+    ShaderSource source = kernel(declared, false);
+    // Every function that is exported is called.
+    const std::string calls =
+        "    store(glintHostNormal(0u, 0u) + glintHostTangent(0u, 0u).xyz + glintHostColor(0u, 0u).xyz + "
+        "glintHostSkyAround(vec3(1.0), 0.5));\n"
+        "    store(glintHostTexCoord(0u, 0u, 0u).x + float(glintHostMaterials().x + "
+        "glintHostLightCount(vec3(0.0))) +\n"
+        "          float(glintHostGeometry(0u).shaderId) + glintHostRandom(0u, 0u));\n"
+        "    store(glintHostTexture(0u, 0u, vec2(0.0), vec2(0.0), vec2(0.0)).x + glintHostTextureFilter(0u, "
+        "0u).x +\n"
+        "          glintHostLight(0u, vec3(0.0), vec3(0.0)).distance);\n";
+    source.glsl.insert(source.glsl.rfind('}'), "    if (GLINT_FRAME.width == 0u) {\n" + calls + "    }\n");
+    const Result<std::vector<std::uint32_t>> program = compileLinkable(source, names, {});
+    ASSERT_TRUE(program) << toString(program.error());
+
+    const std::string bytes = fileText("library/glint_library.spv");
+    std::vector<std::uint32_t> module(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(module.data(), bytes.data(), bytes.size());
+    std::string message;
+    spvtools::Context context(SPV_ENV_UNIVERSAL_1_5);
+    context.SetMessageConsumer(
+        [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { message += text; });
+    std::vector<std::uint32_t> linked;
+    ASSERT_EQ(spvtools::Link(context, {*program, module}, &linked), SPV_SUCCESS) << message;
+    const Status valid = validateSpirv(linked, "linked");
+    ASSERT_TRUE(valid) << toString(valid.error());
+
+    const std::vector<float> values = valuesOf(linked, kValues);
+    ASSERT_EQ(values.size(), expected.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        expectClose(values[i], expected[i], 1e-6F, i / kValues, i % kValues);
+    }
+}
+
+#endif
+
+// A shader of a user's own has nothing of Glint's but the library.
+TEST_F(Library, CompilesInAShaderOfAUser) {
+    int cases = 0;
+    for (const PackageFile& file : files_) {
+        const std::string text(file.bytes.begin(), file.bytes.end());
+        if (!file.name.ends_with(".glsl") || file.name.ends_with("glint_host.glsl")) {
+            continue;
+        }
+        EXPECT_EQ(text.find("void main"), std::string::npos);
+        EXPECT_EQ(text.find("binding"), std::string::npos);
+        EXPECT_EQ(text.find("push_constant"), std::string::npos);
+        EXPECT_EQ(text.find("#include"), std::string::npos);
+        std::string shader = "#version 460\n" + fileText("library/glint_host.glsl") + text;
+        // The bodies of the host's functions do not matter here.
+        const std::string host = fileText("library/glint_host.glsl");
+        for (std::size_t place = host.find(" glintHost"); place != std::string::npos;
+             place = host.find(" glintHost", place + 1)) {
+            const std::size_t begin = host.rfind('\n', place) + 1;
+            const std::string type = host.substr(begin, place - begin);
+            if (type.find(' ') == std::string::npos) {
+                const std::string head = host.substr(begin, host.find(';', place) - begin);
+                shader += fmt::format("{} {{\n    {} none;\n    return none;\n}}\n", head, type);
+            }
+        }
+        // Names that a user may have, too.
+        shader +=
+            "struct Hit { float kPi; };\nfloat luminance(vec3 v) { return v.x; }\n"
+            "layout(binding = 0) buffer Output { vec3 sum; };\nlayout(local_size_x = 1) in;\n"
+            "void main() {\n"
+            "    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), sum, 0.0, 0u));\n"
+            "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
+            "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
+            "          glintRayOrigin(surface, sum);\n}\n";
+        const Result<std::vector<std::uint32_t>> words =
+            compileShader({file.name, ShaderStage::Compute, shader}, {});
+        EXPECT_TRUE(words) << toString(words.error());
+        ++cases;
+    }
+    EXPECT_EQ(cases, 1 + static_cast<int>(loaded_.compiled().plan.cases.size()));
+}
+
+TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
+    RenderSetup setup = defaultSetup(packsScene(), 75, 30);
+    CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = MergePolicy::All;
+    const LoadedScene own(packsScene(), settings);
+    settings.host = GLINT_SOURCE_DIR "/tests/render/host";
+    const LoadedScene other(packsScene(), settings);
+    ASSERT_TRUE(own.ok());
+    ASSERT_TRUE(other.ok());
+    const LinearImage reference = own.render(package::kStrategyUber, setup);
+    expectSameImage(other.render(package::kStrategyUber, setup), reference, "host");
+    expectNoValidationMessages();
+    // It is not the same shader.
+    for (std::size_t i = 0; i < own.compiled().modules.size(); ++i) {
+        const CompiledModule& module = own.compiled().modules[i];
+        if (module.key.role == package::ModuleRole::UberShade) {
+            EXPECT_NE(module.spirv, other.compiled().modules[i].spirv);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing

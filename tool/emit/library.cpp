@@ -1,0 +1,231 @@
+#include "emit/library.h"
+
+#include "emit/builtin.h"
+#include "emit/context.h"
+#include "emit/glsl/flatten.h"
+#include "emit/glsl/prefix.h"
+#include "emit/glsl/prune.h"
+#include "emit/glsl/readable.h"
+#include "emit/material_code.h"
+#include "emit/sources.h"
+#include "spirv/compiler.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <regex>
+#include <string>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+namespace mustache = kainjow::mustache;
+
+constexpr std::string_view kTemplate = "library.glsl.mustache";
+constexpr std::string_view kHostFile = "library/host.glsl";
+constexpr std::string_view kAdapters = "library/host/";
+
+// Puts the library's forms in the place of the files that read resources.
+Result<SourceSet> librarySources(const SceneList& scenes, Plan plan, CompileSettings settings) {
+    plan.effects.effects = 0;
+    settings.host.clear();
+    settings.precision = package::ShadingPrecision::Single;
+    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
+    if (!sources) {
+        return sources;
+    }
+    for (const BuiltinFile& file : builtinFiles()) {
+        if (file.name.starts_with(kAdapters)) {
+            sources->add("host/" + std::string(file.name.substr(kAdapters.size())), std::string(file.text));
+        }
+    }
+    // Nothing of the library asks for samples in memory.
+    sources->add("hit/samples.glsl", "");
+    return sources;
+}
+
+std::string hostText(const SourceSet& sources) {
+    return std::string(sources.find(kHostFile).value_or(""));
+}
+
+// Joins the library's own text and the declarations of the host, which shaders may have included before.
+std::string withHost(std::string text, const std::string& host) {
+    constexpr std::string_view kVersion = "#version 460\n";
+    text.erase(0, kVersion.size());
+    const std::size_t place = text.find("\n// --- ");
+    const std::string code = prefixNames(std::string_view(text).substr(place));
+    return text.substr(0, place) +
+           "\n#ifdef GLINT_LIBRARY\n#error a shader includes one file of a library of Glint's\n#endif\n"
+           "#define GLINT_LIBRARY\n\n" +
+           host + code;
+}
+
+void setModule(mustache::data& context, std::string alwaysLobes, std::string alwaysInputs,
+               const std::string& anyLobes, const std::string& anyInputs) {
+    context.set("moduleAlwaysLobes", std::move(alwaysLobes));
+    context.set("moduleAlwaysInputs", std::move(alwaysInputs));
+    context.set("moduleAnyLobes", anyLobes);
+    context.set("moduleAnyInputs", anyInputs);
+}
+
+// Files of `own` stand in for those of `sources`.
+Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, const mustache::data& context,
+                             const std::string& name) {
+    const Result<std::string> rendered = renderTemplate(sources, kTemplate, context);
+    if (!rendered) {
+        return rendered;
+    }
+    const auto lookup = [&](std::string_view file) -> std::optional<std::string_view> {
+        if (file == kHostFile) {
+            return "";
+        }
+        const std::optional<std::string_view> found = own.find(file);
+        return found ? found : sources.find(file);
+    };
+    const Result<std::string> flattened = flatten(name, *rendered, lookup, FlattenSide::Glsl);
+    if (!flattened) {
+        return flattened;
+    }
+    return withHost(makeReadable(dropUnused(*flattened), ""), hostText(sources));
+}
+
+constexpr const char* kExported[] = {"glintSurface",  "glintEvaluate", "glintSample",   "glintDensity",
+                                     "glintRadiance", "glintMirror",   "glintRayOrigin"};
+// Of each case.
+constexpr const char* kOfCase[] = {"surface", "evaluate", "sample", "density", "radiance"};
+
+// Calls every function, so that none is dropped.
+constexpr std::string_view kMain = R"(
+layout(local_size_x = 1) in;
+
+void main() {
+    vec3 v;
+    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.0), v, 0.0, 0u));
+    v += glintEvaluate(surface, v, v);
+    v += glintSample(surface, v, v).weight;
+    v += glintDensity(surface, v, v);
+    v += glintRadiance(surface).radiance;
+    v += glintMirror(surface).weight;
+    v += glintRayOrigin(surface, v);
+}
+)";
+
+// A function of the host, as glint_host.glsl declares it.
+struct HostFunction {
+    std::string name;
+    std::string declaration;  // without the semicolon
+    std::string type;
+};
+
+std::vector<HostFunction> hostFunctions(const std::string& host) {
+    static const std::regex kPrototype(R"((?:^|\n)((\w+) (glintHost\w+)\([^;]*\));)");
+    std::vector<HostFunction> functions;
+    for (std::sregex_iterator place(host.begin(), host.end(), kPrototype), end; place != end; ++place) {
+        functions.push_back({(*place)[3], (*place)[1], (*place)[2]});
+    }
+    return functions;
+}
+
+// Compiles the library of all cases for linkers.
+Result<PackageFile> makeLinkableFile(const std::string& library, const std::string& host, const Plan& plan,
+                                     bool debugInfo) {
+    ShaderSource source{"glint_library.spv", ShaderStage::Compute, "#version 460\n" + library, {}};
+    LinkNames names{{std::begin(kExported), std::end(kExported)}, {}};
+    for (const HostFunction& function : hostFunctions(host)) {
+        source.glsl +=
+            fmt::format("\n{} {{\n    {} none;\n    return none;\n}}\n", function.declaration, function.type);
+        names.imported.push_back(function.name);
+    }
+    source.glsl += kMain;
+    for (const Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired()) {
+            continue;
+        }
+        for (const char* const function : kOfCase) {
+            source.functionsApart.push_back(fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
+        }
+    }
+    const Result<std::vector<std::uint32_t>> words = compileLinkable(source, names, {debugInfo});
+    if (!words) {
+        return words.error();
+    }
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(words->data());
+    return PackageFile{std::string(kLibraryFolder) + source.name,
+                       {first, first + words->size() * sizeof(std::uint32_t)}};
+}
+
+PackageFile fileOf(const std::string& name, std::string_view text) {
+    return {std::string(kLibraryFolder) + name, {text.begin(), text.end()}};
+}
+
+}  // namespace
+
+Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan& plan,
+                                             const CompileSettings& settings) {
+    const Result<SourceSet> sources = librarySources(scenes, plan, settings);
+    if (!sources) {
+        return sources.error();
+    }
+    MaterialCodeOfCases codeOfCases(*sources, *plan.model);
+    std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(*sources))};
+    const auto add = [&](const mustache::data& context, FeatureMask features,
+                         const std::string& name) -> Status {
+        const Result<const SourceSet*> code = codeOfCases.find(features);
+        if (!code) {
+            return code.error();
+        }
+        const Result<std::string> text = makeFile(*sources, **code, context, name);
+        if (!text) {
+            return text.error();
+        }
+        files.push_back(fileOf(name, *text));
+        return okStatus();
+    };
+
+    mustache::data all = makeContext(scenes, plan, settings.plan);
+    all.set("title",
+            "// Glint's library: the shading of every case. The shader ID of a hit chooses the case.");
+    all.set("isSwitch", mustache::data(true));
+    setModule(all, "GLINT_HIT_ALWAYS_LOBES", "GLINT_HIT_ALWAYS_INPUTS",
+              "(GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)",
+              "(GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)");
+    if (Status status = add(all, plan.always | plan.sometimes, "glint_library.glsl"); !status) {
+        return status.error();
+    }
+    if (settings.emitLinkable) {
+        const std::string text(files.back().bytes.begin(), files.back().bytes.end());
+        Result<PackageFile> linkable = makeLinkableFile(text, hostText(*sources), plan, settings.debugInfo);
+        if (!linkable) {
+            return linkable.error();
+        }
+        files.push_back(std::move(*linkable));
+    }
+    for (const Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired() || !settings.emitLibrary) {
+            continue;
+        }
+        mustache::data one = makeContext(scenes, plan, settings.plan);
+        mustache::data entry;
+        addCase(entry, scenes, *plan.model, shaderCase);
+        mustache::data list(mustache::data::type::list);
+        list.push_back(entry);
+        one.set("cases", list);
+        addCase(one, scenes, *plan.model, shaderCase);
+        one.set("title", fmt::format("// Glint's library: the shading of hits with the shader ID {}.",
+                                     shaderCase.shaderId));
+        one.set("isSwitch", mustache::data(false));
+        const auto word = [](FeatureMask mask) { return fmt::format("{:#x}u", mask & kLobeMask); };
+        const FeatureMask any = shaderCase.always | shaderCase.sometimes;
+        setModule(one, word(shaderCase.always), word(shaderCase.always >> 32U), word(any), word(any >> 32U));
+        const std::string name =
+            fmt::format("glint_case_{}_{}.glsl", shaderCase.shaderId, shaderCase.name.substr(0, 100));
+        if (Status status = add(one, any, name); !status) {
+            return status.error();
+        }
+    }
+    return files;
+}
+
+}  // namespace glint
