@@ -94,7 +94,7 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
 constexpr const char* kExported[] = {"glintSurface",  "glintEvaluate", "glintSample",   "glintDensity",
                                      "glintRadiance", "glintMirror",   "glintRayOrigin"};
 // Of each case.
-constexpr const char* kOfCase[] = {"surface", "evaluate", "sample", "density", "radiance"};
+constexpr const char* kOfCase[] = {"surface", "evaluate", "sample", "density", "radiance", "mirror"};
 
 // Calls every function, so that none is dropped.
 constexpr std::string_view kMain = R"(
