@@ -50,10 +50,25 @@ std::string hostText(const SourceSet& sources) {
     return std::string(sources.find(kHostFile).value_or(""));
 }
 
+// Returns the text without a macro that stands for nothing.
+std::string withoutMacro(std::string text, const std::string& name) {
+    const auto drop = [&](const std::string& words) {
+        for (std::size_t place = text.find(words); place != std::string::npos;
+             place = text.find(words, place)) {
+            text.erase(place, words.size());
+        }
+    };
+    drop("#define " + name + "\n");
+    drop(name + " ");
+    return text;
+}
+
 // Joins the library's own text and the declarations of the host, which shaders may have included before.
 std::string withHost(std::string text, const std::string& host) {
     constexpr std::string_view kVersion = "#version 460\n";
     text.erase(0, kVersion.size());
+    // Shading in 16 bits needs statements that a file that is included can't make.
+    text = withoutMacro(std::move(text), "GLINT_RELAXED");
     const std::size_t place = text.find("\n// --- ");
     const std::string code = prefixNames(std::string_view(text).substr(place));
     return text.substr(0, place) +

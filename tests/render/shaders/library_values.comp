@@ -1,11 +1,6 @@
 #version 460
 // Writes what Glint's library says about a few hits of each geometry of the scene. With PRODUCT, what Glint's own
-// functions say stands behind it.
-#if PRODUCT
-#include "bsdf/sample.glsl"
-#include "hit/shade.glsl"
-#include "generated/cases.glsl"
-#endif
+// functions say stands behind it; the test then includes them.
 #include "library.glsl"
 #include "library_host.glsl"
 

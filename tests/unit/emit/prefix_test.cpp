@@ -9,14 +9,14 @@ namespace {
 
 TEST(PrefixNames, RenamesWhatTheTextDeclaresAndNothingElse) {
     EXPECT_EQ(
-        prefixNames("const float kHalf = 0.5;\n"
-                    "struct Hit {\n    vec3 normal;\n    float twice;\n};\n"
+        prefixNames("const float kHalf = 0.5;\nconst uint kCount = 2u;\n"
+                    "struct Hit {\n    vec3 normal;\n    float twice;\n    float words[kCount];\n};\n"
                     "#define GLINT_A(x) twice(x)\n"
                     "float twice(float x) {\n    return 2.0 * x;  // twice\n}\n"
                     "float glintValue(Hit hit, float twiceAs) {\n"
                     "    return twice(hit.twice) + kHalf + GLINT_A(twiceAs) + length(hit.normal);\n}\n"),
-        "const float glint_kHalf = 0.5;\n"
-        "struct glint_Hit {\n    vec3 normal;\n    float twice;\n};\n"
+        "const float glint_kHalf = 0.5;\nconst uint glint_kCount = 2u;\n"
+        "struct glint_Hit {\n    vec3 normal;\n    float twice;\n    float words[glint_kCount];\n};\n"
         "#define GLINT_LIBRARY_A(x) glint_twice(x)\n"
         "float glint_twice(float x) {\n    return 2.0 * x;  // twice\n}\n"
         "float glintValue(glint_Hit hit, float twiceAs) {\n"

@@ -48,6 +48,12 @@ bool isPublic(std::string_view name) {
     return std::ranges::any_of(kPublic, [&](std::string_view begin) { return name.starts_with(begin); });
 }
 
+// Returns whether a name can only be a macro or a constant, which members use and never are.
+bool isConstant(std::string_view name) {
+    return name.starts_with(kMacro) ||
+           (name.size() > 1 && name[0] == 'k' && std::isupper(static_cast<unsigned char>(name[1])) != 0);
+}
+
 std::string renamedOf(std::string_view name) {
     return name.starts_with(kMacro) ? "GLINT_LIBRARY_" + std::string(name.substr(kMacro.size()))
                                     : "glint_" + std::string(name);
@@ -115,9 +121,9 @@ std::string prefixNames(std::string_view glsl) {
     char last = '\n';
     for (const Token& token : tokens) {
         members.add(token);
-        const bool renamed =
-            token.isName && last != '.' &&
-            (types.contains(token.text) || (!members.inside() && names.contains(token.text)));
+        const bool renamed = token.isName && last != '.' &&
+                             (types.contains(token.text) ||
+                              (names.contains(token.text) && (!members.inside() || isConstant(token.text))));
         text += renamed ? renamedOf(token.text) : std::string(token.text);
         last = token.text.back();
     }

@@ -23,8 +23,10 @@ namespace {
 constexpr std::size_t kWordBytes = 8;
 constexpr std::size_t kWordsPerLine = 5;
 
+// The runtime reads the tables and the modules, which are in the package's folder itself.
 bool isRead(const PackageFile& file) {
-    return file.name == package::kTablesFile || file.name.ends_with(".spv");
+    return file.name == package::kTablesFile ||
+           (file.name.ends_with(".spv") && file.name.find('/') == std::string::npos);
 }
 
 // Reads a word in little-endian order; bytes beyond the end are 0.
