@@ -15,9 +15,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #ifdef GLINT_HAS_SPIRV_LINK
+#include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/linker.hpp>
 #endif
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -114,7 +116,8 @@ protected:
     void keepCasesApart(ShaderSource& source) const {
         for (const Case& shaderCase : loaded_.compiled().plan.cases) {
             source.functionsApart.push_back("shade" + shaderCase.name);
-            for (const char* const function : {"surface", "evaluate", "sample", "density", "radiance"}) {
+            for (const char* const function :
+                 {"surface", "evaluate", "sample", "density", "radiance", "mirror"}) {
                 source.functionsApart.push_back(
                     fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
             }
@@ -152,9 +155,9 @@ protected:
         }
         gpu::FrameConstants constants{};
         constants.seed = 7;
-        constants.skyZenith = {0.3F, 0.5F, 0.9F};
-        constants.skyHorizon = {0.8F, 0.7F, 0.6F};
-        constants.skyGround = {0.1F, 0.2F, 0.1F};
+        constants.skyZenith = sky_[0];
+        constants.skyHorizon = sky_[1];
+        constants.skyGround = sky_[2];
         const Result<std::vector<std::uint32_t>> output =
             (*kernel)->run(constants, {}, hits(), hits() * perHit);
         EXPECT_TRUE(output) << toString(output.error());
@@ -168,6 +171,7 @@ protected:
 
     LoadedScene loaded_{libraryScene(), librarySettings()};
     std::vector<PackageFile> files_;
+    gpu::vec3 sky_[3] = {{0.3F, 0.5F, 0.9F}, {0.8F, 0.7F, 0.6F}, {0.1F, 0.2F, 0.1F}};
 };
 
 void expectClose(float value, float reference, float tolerance, std::size_t hit, std::size_t place) {
@@ -193,8 +197,38 @@ TEST_F(Library, GivesWhatTheRendererGives) {
 
 #ifdef GLINT_HAS_SPIRV_LINK
 
-// The program is the kernel, which imports the library's functions and exports the host's.
+// The part of a host that is written by hand, as another front end might: a sky of one colour.
+constexpr const char* kSky = R"(
+               OpCapability Shader
+               OpCapability PhysicalStorageBufferAddresses
+               OpCapability Linkage
+               OpMemoryModel PhysicalStorageBuffer64 GLSL450
+               OpDecorate %around LinkageAttributes "glintHostSkyAround" Export
+               OpDecorate %irradiance LinkageAttributes "glintHostSkyIrradianceOverPi" Export
+      %float = OpTypeFloat 32
+    %v3float = OpTypeVector %float 3
+        %of2 = OpTypeFunction %v3float %v3float %float
+        %of1 = OpTypeFunction %v3float %v3float
+          %r = OpConstant %float 0.25
+          %g = OpConstant %float 0.5
+          %b = OpConstant %float 0.75
+     %colour = OpConstantComposite %v3float %r %g %b
+     %around = OpFunction %v3float None %of2
+  %direction = OpFunctionParameter %v3float
+  %roughness = OpFunctionParameter %float
+          %1 = OpLabel
+               OpReturnValue %colour
+               OpFunctionEnd
+ %irradiance = OpFunction %v3float None %of1
+     %normal = OpFunctionParameter %v3float
+          %2 = OpLabel
+               OpReturnValue %colour
+               OpFunctionEnd
+)";
+
+// The program is the kernel, which imports the library's functions and exports the host's, but for the sky.
 TEST_F(Library, LinkedGivesWhatTheGlslGives) {
+    std::ranges::fill(sky_, gpu::vec3{0.25F, 0.5F, 0.75F});
     const std::string library = fileText("library/glint_library.glsl");
     const std::vector<float> expected = valuesOf(compileShader(kernel(library, false), {}), kValues);
 
@@ -207,23 +241,23 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
         {"vec3 glintEvaluate", "const GlintSurface surface, const vec3 wo, const vec3 wi"},
         {"GlintSample glintSample", "const GlintSurface surface, const vec3 wo, const vec3 random"},
         {"float glintDensity", "const GlintSurface surface, const vec3 wo, const vec3 wi"},
-        {"GlintRadiance glintRadiance", "const GlintSurface surface"}};
+        {"GlintRadiance glintRadiance", "const GlintSurface surface"},
+        {"GlintMirror glintMirror", "const GlintSurface surface"}};
     for (const auto& [function, parameters] : functions) {
         const std::string head = function;
         const std::string type = head.substr(0, head.find(' '));
         declared += fmt::format("\n{}({}) {{\n    {} none;\n    return none;\n}}\n", head, parameters, type);
         names.imported.push_back(head.substr(type.size() + 1));
     }
-    for (const char* const name : {"Geometry", "ObjectToWorld", "Vertex", "Position", "Normal", "Tangent",
-                                   "TexCoord", "Color", "Materials", "Texture", "TextureFilter", "LightCount",
-                                   "Light", "Sky", "SkyAround", "SkyIrradianceOverPi", "Random"}) {
+    for (const char* const name :
+         {"Geometry", "ObjectToWorld", "Vertex", "Position", "Normal", "Tangent", "TexCoord", "Color",
+          "Materials", "Texture", "TextureFilter", "LightCount", "Light", "Random"}) {
         names.exported.push_back(std::string("glintHost") + name);
     }
     ShaderSource source = kernel(declared, false);
     // Every function that is exported is called.
     const std::string calls =
-        "    store(glintHostNormal(0u, 0u) + glintHostTangent(0u, 0u).xyz + glintHostColor(0u, 0u).xyz + "
-        "glintHostSkyAround(vec3(1.0), 0.5));\n"
+        "    store(glintHostNormal(0u, 0u) + glintHostTangent(0u, 0u).xyz + glintHostColor(0u, 0u).xyz);\n"
         "    store(glintHostTexCoord(0u, 0u, 0u).x + float(glintHostMaterials().x + "
         "glintHostLightCount(vec3(0.0))) +\n"
         "          float(glintHostGeometry(0u).shaderId) + glintHostRandom(0u, 0u));\n"
@@ -241,8 +275,11 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
     spvtools::Context context(SPV_ENV_UNIVERSAL_1_5);
     context.SetMessageConsumer(
         [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { message += text; });
+    std::vector<std::uint32_t> sky;
+    spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_5);
+    ASSERT_TRUE(tools.Assemble(kSky, &sky));
     std::vector<std::uint32_t> linked;
-    ASSERT_EQ(spvtools::Link(context, {*program, module}, &linked), SPV_SUCCESS) << message;
+    ASSERT_EQ(spvtools::Link(context, {*program, sky, module}, &linked), SPV_SUCCESS) << message;
     const Status valid = validateSpirv(linked, "linked");
     ASSERT_TRUE(valid) << toString(valid.error());
 
@@ -285,7 +322,8 @@ TEST_F(Library, CompilesInAShaderOfAUser) {
             "layout(binding = 0) buffer Output { vec3 sum; };\nlayout(local_size_x = 1) in;\n"
             "void main() {\n"
             "    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), sum, 0.0, 0u));\n"
-            "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
+            "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance + "
+            "glintMirror(surface).weight +\n"
             "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
             "          glintRayOrigin(surface, sum);\n}\n";
         ShaderSource source{file.name, ShaderStage::Compute, shader};

@@ -32,6 +32,7 @@ Result<SourceSet> librarySources(const SceneList& scenes, Plan plan, CompileSett
     plan.effects.effects = 0;
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
+    settings.answer = package::HitAnswer::Radiance;
     Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources;

@@ -67,6 +67,7 @@ void main() {
     store(glintDensity(surface, wo, wi));
     store(drawn.weight);
     store(drawn.density);
+    store(glintMirror(surface).weight);
 
 #if PRODUCT
     place = 2u * kValues * index + kValues;
@@ -101,5 +102,6 @@ void main() {
     }
     store(weight);
     store(sampled.pdf);
+    store(singleScatterAlbedo(own.bsdf, features, own.bsdf.viewLoss, own.bsdf.viewBias) * baseShare(own, features));
 #endif
 }
