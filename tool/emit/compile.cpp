@@ -4,6 +4,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
+#include "emit/material_code.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
 #include "emit/package/header.h"
@@ -108,25 +109,6 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
         return modules.error();
     }
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
-}
-
-// Says what to do about an error in GLSL to which packs may have contributed.
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
-    if (error.id != "glsl" || model.sources.empty()) {
-        return error;
-    }
-    for (const FeatureCode& code : model.code) {
-        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
-        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
-            error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
-            error.hint = "correct the file; docs/material_features.md says what each stage may use";
-            return error;
-        }
-    }
-    error.hint =
-        "look whether a pack has all functions of its stages (docs/material_features.md); "
-        "otherwise this is a defect of Glint";
-    return error;
 }
 
 Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,

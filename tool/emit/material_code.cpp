@@ -141,6 +141,24 @@ Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, Fea
     return okStatus();
 }
 
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
+    if (error.id != "glsl" || model.sources.empty()) {
+        return error;
+    }
+    for (const FeatureCode& code : model.code) {
+        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
+        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
+            error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
+            error.hint = "correct the file; docs/material_features.md says what each stage may use";
+            return error;
+        }
+    }
+    error.hint =
+        "look whether a pack has all functions of its stages (docs/material_features.md); "
+        "otherwise this is a defect of Glint";
+    return error;
+}
+
 Result<const SourceSet*> MaterialCodeOfCases::find(FeatureMask used) {
     FeatureMask withCode = 0;
     for (const FeatureCode& code : model_.code) {

@@ -15,6 +15,9 @@ namespace glint {
 Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
                        SourceSet& generated);
 
+// Says what to do about an error in GLSL to which packs may have contributed, and which feature it is of.
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model);
+
 // The material code of modules that know their features: those of a case. Their text then has no code of
 // other features, so that a change of a feature's GLSL leaves the shaders of other cases as they are.
 class MaterialCodeOfCases {

@@ -17,7 +17,7 @@ bool isFileName(std::string_view name) {
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "emission", "after", "coversEmission", "traced"});
+                          {"surface", "bsdf", "layer", "emission", "after", "coversEmission", "traced", "reciprocal"});
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -43,7 +43,8 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     declared.after = members.texts("after");
     code.coversEmission = members.flag("coversEmission", false);
     code.isTraced = members.flag("traced", false);
-    for (const std::string_view ofLayer : {"coversEmission", "traced"}) {
+    code.isReciprocal = members.flag("reciprocal", false);
+    for (const std::string_view ofLayer : {"coversEmission", "traced", "reciprocal"}) {
         if (members.has(ofLayer) && code.layer.empty()) {
             failAt(members.at(ofLayer), "is for layers; there is no \"layer\"");
         }

@@ -169,6 +169,7 @@ struct FeatureCode {
     std::string emission{};
     bool coversEmission = false;  // the layer takes what it reflects from the emission, too
     bool isTraced = false;        // rays may trace the layer's reflection
+    bool isReciprocal = false;    // the layer claims that view and light may change places
     bool isOfPack = false;        // of a user's own
 };
 
