@@ -12,5 +12,10 @@ layout(push_constant, scalar) uniform PushBlock {
 
 #define GLINT_FRAME pushed.frame.data
 
+// Returns the seconds that materials may follow.
+float frameTime() {
+    return GLINT_FRAME.time;
+}
+
 layout(set = kSetScene, binding = kBindingTextures) uniform texture2D sceneTextures[];
 layout(set = kSetScene, binding = kBindingSamplers) uniform sampler sceneSamplers[];

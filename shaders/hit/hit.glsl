@@ -2,6 +2,7 @@
 // record.
 #include "hit/bindings.glsl"
 #include "bsdf/features.glsl"
+#include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
 
@@ -25,6 +26,9 @@ struct Hit {
     vec4 uvEdges[2]; // for each UV set: (Δu, Δv) along each edge
     vec4 footprint;  // axes of the ray cone's ellipse, across the ray and along it, in units of the edges
     float scale;     // metres of the world for one unit of the mesh
+#if GLINT_VERTEX_ATTRIBUTES
+    VertexAttributes attributes;  // of packs
+#endif
 };
 
 // Returns the start of a ray from the surface. It lies off the surface, on the side to which `direction` points.
@@ -111,6 +115,10 @@ Hit fetchHit(GeometryRecord geometry, uint primitive, vec2 barycentrics, vec3 ra
         hit.color = weights.x * geometry.colors.data[corner.x] + weights.y * geometry.colors.data[corner.y] +
                     weights.z * geometry.colors.data[corner.z];
     }
+
+#if GLINT_VERTEX_ATTRIBUTES
+    hit.attributes = fetchAttributes(geometry, corner, weights, features);
+#endif
 
     vec3 across;
     vec3 along;

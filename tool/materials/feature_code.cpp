@@ -17,7 +17,8 @@ bool isFileName(std::string_view name) {
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "emission", "after", "coversEmission", "traced", "reciprocal"});
+                          {"surface", "bsdf", "layer", "emission", "coordinates", "opacity", "after",
+                           "coversEmission", "traced", "reciprocal"});
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -28,8 +29,12 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     struct {
         std::string_view member;
         std::string& file;
-    } const stages[] = {
-        {"surface", code.surface}, {"bsdf", code.bsdf}, {"layer", code.layer}, {"emission", code.emission}};
+    } const stages[] = {{"surface", code.surface},
+                        {"bsdf", code.bsdf},
+                        {"layer", code.layer},
+                        {"emission", code.emission},
+                        {"coordinates", code.coordinates},
+                        {"opacity", code.opacity}};
     for (const auto& [member, place] : stages) {
         if (members.has(member)) {
             const std::string name = members.text(member);
@@ -55,6 +60,12 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     if (!code.layer.empty() && declaration.text("stage") != "layer") {
         // Only lobes are asked for as layers are.
         failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
+    }
+    for (const std::string_view stage : {"coordinates", "opacity"}) {
+        // This code also runs in traversal, for keys that no case of the module has.
+        if (members.has(stage) && feature < 0) {
+            failAt(members.at(stage), "needs a feature of its own: give the declaration \"neutral\"");
+        }
     }
     if (!code.layer.empty() && code.bsdf.empty()) {
         failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-Result<UniquePipelineLayout> createLayout(GpuScene::State& scene) {
+Result<UniquePipelineLayout> createKernelLayout(GpuScene::State& scene) {
     Context::State& context = scene.context;
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(gpu::PushConstants)};
     const VkDescriptorSetLayout sets[] = {scene.setLayout.get()};
@@ -71,7 +71,7 @@ SceneKernel::State& SceneKernel::state() {
 
 Result<std::unique_ptr<SceneKernel>> SceneKernel::create(GpuScene& scene,
                                                          std::span<const std::uint32_t> words) {
-    Result<UniquePipelineLayout> layout = createLayout(scene.state());
+    Result<UniquePipelineLayout> layout = createKernelLayout(scene.state());
     if (!layout) {
         return layout.error();
     }
