@@ -122,6 +122,18 @@ void addLayers(mustache::data& context, const MaterialModel& model,
         layers.push_back(std::move(entry));
         lower.push_back(layer);
     }
+    mustache::data diffuse(mustache::data::type::list);
+    for (const FeatureCode* const one : code) {
+        if (!one->diffuse.empty()) {
+            mustache::data entry;
+            entry.set("name", one->name);
+            entry.set("type", typeName(one->name));
+            entry.set("file", one->diffuse);
+            entry.set("when", conditionOf(model, *one, Asked::OfModule));
+            diffuse.push_back(std::move(entry));
+        }
+    }
+    context.set("diffuse", diffuse);
     context.set("layers", layers);
     context.set("mirrors", mirrors);
 }

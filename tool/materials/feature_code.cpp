@@ -17,8 +17,8 @@ bool isFileName(std::string_view name) {
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "emission", "coordinates", "opacity", "after",
-                           "coversEmission", "traced", "reciprocal"});
+                          {"surface", "bsdf", "layer", "diffuse", "emission", "coordinates", "opacity",
+                           "after", "coversEmission", "traced", "reciprocal"});
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -34,7 +34,8 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
                         {"layer", code.layer},
                         {"emission", code.emission},
                         {"coordinates", code.coordinates},
-                        {"opacity", code.opacity}};
+                        {"opacity", code.opacity},
+                        {"diffuse", code.diffuse}};
     for (const auto& [member, place] : stages) {
         if (members.has(member)) {
             const std::string name = members.text(member);
@@ -66,6 +67,10 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
         if (members.has(stage) && feature < 0) {
             failAt(members.at(stage), "needs a feature of its own: give the declaration \"neutral\"");
         }
+    }
+    if (!code.diffuse.empty() && (feature < 0 || code.bsdf.empty() || !code.layer.empty())) {
+        failAt(members.at("diffuse"),
+               "needs a feature of its own, and \"bsdf\", which sets its parameters; it can't be a layer");
     }
     if (!code.layer.empty() && code.bsdf.empty()) {
         failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");

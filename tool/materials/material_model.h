@@ -180,11 +180,12 @@ struct FeatureCode {
     int unless = -1;          // Keys with this feature do not run it.
     // Names of files as an #include gives them, empty where there is no such function. surface:
     // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); coordinates:
-    // clearcoatCoordinates(); opacity: clearcoatOpacity(); layer: the struct Clearcoat and the functions that
-    // shaders/bsdf/layer.glsl lists.
+    // clearcoatCoordinates(); opacity: clearcoatOpacity(); diffuse: the struct Clearcoat and
+    // clearcoatDiffuse(); layer: the struct Clearcoat and the functions that shaders/bsdf/layer.glsl lists.
     std::string surface{};
     std::string bsdf{};
     std::string layer{};
+    std::string diffuse{};
     std::string emission{};
     std::string coordinates{};
     std::string opacity{};

@@ -81,7 +81,7 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             // Zero stays apart from the background.
-            image.pixels[pixels[i]][channel] = 0.01F + 0.75F * (*outputs)[i].reflected[channel] / white;
+            image.pixels[pixels[i]][channel] = 0.03F + 0.75F * (*outputs)[i].reflected[channel] / white;
         }
     }
     return FeaturePicture{on.feature.code->name + "_lobe", std::move(image)};
