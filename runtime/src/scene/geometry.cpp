@@ -35,14 +35,14 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<c
 
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, std::span<const std::uint32_t> indices,
-                                     std::span<const float> attributes) {
+                                     std::span<const float> declared) {
     GpuPrimitive primitive;
     primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
     primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    std::vector<AttributeUpload> attributes = attributesOf(view, indices, attributes);
+    std::vector<AttributeUpload> attributes = attributesOf(view, indices, declared);
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
