@@ -17,7 +17,7 @@ constexpr const char* kTemplate = "check_features.comp.mustache";
 constexpr const char* kName = "check_features.comp";
 
 static_assert(sizeof(FeatureKernelInput) == 14 * sizeof(std::uint32_t));
-static_assert(sizeof(FeatureKernelOutput) == 27 * sizeof(float));
+static_assert(sizeof(FeatureKernelOutput) == 28 * sizeof(float));
 
 std::vector<const FeatureCode*> layersOf(const Plan& plan) {
     const FeatureMask used = plan.primaryAlways | plan.primarySometimes;

@@ -40,6 +40,7 @@ struct FeatureKernelOutput {
     float albedoPassed = 0.0F;
     float roughness = 0.0F;
     float occlusion = 0.0F;
+    float alpha = 0.0F;  // what the stage opacity makes of 1
 };
 
 struct FeatureKernel {

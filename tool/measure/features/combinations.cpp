@@ -104,8 +104,20 @@ void addCheckedTexture(Scene& scene) {
 }
 
 // A square of two metres in the plane z = 0, whose front faces +Z.
-Primitive squareOf(int material) {
+Primitive squareOf(int material, const MaterialModel& model) {
     Primitive square;
+    for (const VertexAttribute& attribute : model.attributes) {
+        if (std::ranges::find(square.attributes, attribute.gltf, &VertexValues::name) !=
+            square.attributes.end()) {
+            continue;
+        }
+        VertexValues& given = square.attributes.emplace_back();
+        given.name = attribute.gltf;
+        given.channels = static_cast<std::uint32_t>(attribute.channels);
+        for (std::uint32_t i = 0; i < 4 * given.channels; ++i) {
+            given.values.push_back(static_cast<float>(scrambled(i + 1) % 5) / 4.0F);
+        }
+    }
     square.pointer = fmt::format("/meshes/{}/primitives/0", material);
     square.material = material;
     square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -119,7 +131,7 @@ Primitive squareOf(int material) {
 std::uint32_t addSquare(Scene& scene, const Material& material) {
     const auto number = static_cast<int>(scene.materials.size());
     scene.materials.push_back(material);
-    scene.meshes.push_back({{}, {squareOf(number)}});
+    scene.meshes.push_back({{}, {squareOf(number, material.model())}});
     Node node;
     node.mesh = number;
     for (const std::size_t diagonal : {0U, 5U, 10U, 15U}) {
@@ -135,6 +147,7 @@ bool hasFeature(const Material& material, int feature) {
     inputs.hasNormals = true;
     inputs.hasTangents = true;
     inputs.hasTexCoords0 = true;
+    inputs.attributes = ~std::uint64_t{0};
     return feature < 0 || (makeKey(material, inputs, {}) &
                            material.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
 }
@@ -150,6 +163,7 @@ std::vector<CheckedMaterial> addCombinations(const MaterialModel& model, const F
         }
         const int base = static_cast<int>(made.size() % std::size(kCheckedBases));
         Material material = baseMaterial(model, base);
+        material.alphaMode = code.opacity.empty() ? AlphaMode::Opaque : AlphaMode::Mask;
         CheckPlace place;
         place.base = kCheckedBases[base].name;
         for (std::size_t i = 0; i < choice.size(); ++i) {

@@ -40,9 +40,9 @@ struct CheckedScene {
     std::vector<std::uint32_t> bases;  // the squares that have a base alone
 };
 
-// Makes a square with normals, tangents and UVs for up to `combinations` combinations of the parameters of
-// each feature of a pack. Combinations for which the feature changes nothing are left out. Error
-// "check-unreachable" if none is left.
+// Makes a square with normals, tangents, UVs and all declared attributes for up to `combinations`
+// combinations of the parameters of each feature of a pack. Combinations for which the feature changes
+// nothing are left out. Error "check-unreachable" if none is left.
 Result<CheckedScene> makeCheckedScene(const MaterialModel& model, std::uint32_t combinations);
 
 // The values at which a parameter is checked: a usual one, the least and the greatest.
