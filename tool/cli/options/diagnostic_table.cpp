@@ -125,6 +125,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
     {"gltf", kError, "A scene can't be read, for a reason that has no id of its own."},
     {"half-precision", kError, "A package computes in 16-bit float, which the device does not support."},
+    {"hit-lobe-unknown", kError, "`--hit-lobes` names a lobe that neither Glint nor a pack has."},
     {"image-data", kError, "An image has no source, or two."},
     {"image-decode", kError, "An image can't be decoded."},
     {"image-extension", kError, "The file name of an image has an unknown extension."},
