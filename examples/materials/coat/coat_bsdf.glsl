@@ -13,7 +13,8 @@ void coatBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surf
     surface.bsdf.layers.coat = Coat(factor, max(roughness * roughness, kMinAlpha), f0, 0.0);
 
     // The colour is that of light which passes straight down and up. A slanted way through the coat is longer.
-    float sine2 = (1.0 - pow(dot(surface.normal, hit.view), 2.0)) / (ior * ior);
+    float cosine = dot(surface.normal, hit.view);
+    float sine2 = (1.0 - cosine * cosine) / (ior * ior);
     float way = 0.5 + 0.5 / sqrt(max(1.0 - sine2, 1e-4));
     vec3 tint = pow(GLINT_MATERIAL_COAT_COLOR_FACTOR(hit), vec3(way));
     // Light that the coat's inner side reflects meets the base again and again. K is the share of it for diffuse light,
