@@ -38,8 +38,9 @@ TEST_F(Bench, MeasuresPacks) {
     writeMudPack(path("pack"), 0.25);
     const Outcome outcome = bench({"--only", "strategy", "--max-error", "1000", "--materials", "pack"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Json report = outcome.json();
     for (const char* const strategy : {"uber", "sorted-uber"}) {
-        const Json* const one = point(outcome.json(), std::string("strategy ") + strategy);
+        const Json* const one = point(report, std::string("strategy ") + strategy);
         ASSERT_NE(one, nullptr);
         EXPECT_TRUE(one->at("sameImage").get<bool>()) << strategy;
         EXPECT_TRUE(has(one->at("command").dump(), "--materials")) << one->at("command");
