@@ -11,6 +11,8 @@ layout(push_constant, scalar) uniform PushBlock {
 };
 
 #define GLINT_FRAME pushed.frame.data
+// The record of the material of a Hit or a SurfacePoint.
+#define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
 
 // Returns the seconds that materials may follow.
 float frameTime() {

@@ -1,7 +1,6 @@
 // The material's textures at a hit.
 #include "hit/hit.glsl"
 
-#define GLINT_MATERIAL(hit) GLINT_FRAME.materials.data[(hit).material]
 #define GLINT_SAMPLER(record)                                      \
     sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
               sceneSamplers[nonuniformEXT((record).samplerIndex)])
