@@ -28,17 +28,19 @@ struct CheckInfo {
 constexpr CheckInfo kCheckInfos[] = {
     {MaterialCheck::Range, "range", "distance from the range", "check-range", "",
      "pixels would be black or wrong, and the light of all samples with them"},
-    {MaterialCheck::Density, "density", "distance of the integral and the lost samples from one",
-     "check-density", "{}Density()", "light that is sampled would be too bright or too dark by this factor"},
+    {MaterialCheck::Density, "density",
+     "distance of the integral and the lost samples from one, beyond noise", "check-density", "{}Density()",
+     "light that is sampled would be too bright or too dark by this factor"},
     {MaterialCheck::Samples, "samples", "probability of a difference like this by chance", "check-samples",
      "{}Sample()", "pictures would not converge to what the layer evaluates"},
     {MaterialCheck::Reciprocity, "reciprocity", "difference as a share of the lobe", "check-reciprocity",
      "{}Evaluate()",
      "the declaration claims that it is reciprocal; light paths and camera paths would differ"},
-    {MaterialCheck::Energy, "energy", "light that is made, as a share of what comes in", "check-energy", "",
+    {MaterialCheck::Energy, "energy",
+     "light that is made, as a share of what comes in, beyond errors of quadrature", "check-energy", "",
      "light that bounces between such surfaces would grow"},
-    {MaterialCheck::Albedo, "albedo", "difference of shares of a white sky", "check-albedo", "{}Shares()",
-     "the sky's light on it would differ from that of rays"},
+    {MaterialCheck::Albedo, "albedo", "difference of shares of a white sky, beyond errors of quadrature",
+     "check-albedo", "{}Shares()", "the sky's light on it would differ from that of rays"},
 };
 
 const CheckInfo& infoOf(MaterialCheck check) {

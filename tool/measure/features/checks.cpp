@@ -297,9 +297,9 @@ void judgeIntegrals(const LobeIntegrals& integrals, const FeatureKernelOutput& s
     if (isLayer) {
         const double total = integrals.density + integrals.lost;
         const double noise = 4.0 * std::sqrt(integrals.lost * (1.0 - integrals.lost) / samples);
-        const double distance = std::abs(total - 1.0);
         // What noise and the quadrature's own error explain is no fault.
-        isNormalised = distance <= kDensityLimit + noise + integrals.densityError;
+        const double distance = std::max(std::abs(total - 1.0) - noise - integrals.densityError, 0.0);
+        isNormalised = distance <= kDensityLimit;
         keepWorst(outcomes.density, distance, distance > outcomes.density.worst, !isNormalised,
                   fmt::format("integrates to {:.4f} and {:.4f} of the samples have no direction; the sum "
                               "should be 1",
@@ -321,17 +321,17 @@ void judgeIntegrals(const LobeIntegrals& integrals, const FeatureKernelOutput& s
             off = std::max(
                 off, std::abs(integrals.reflected[channel] - static_cast<double>(shares.albedo[channel])));
         }
+        off = std::max(off - integrals.wholeError, 0.0);
         keepWorst(
-            outcomes.albedo, off, off > outcomes.albedo.worst, off > kAlbedoLimit + integrals.wholeError,
+            outcomes.albedo, off, off > outcomes.albedo.worst, off > kAlbedoLimit,
             fmt::format("reflects {:.3f}, {:.3f}, {:.3f} of a white sky, and says {:.3f}, {:.3f}, {:.3f}",
                         integrals.reflected[0], integrals.reflected[1], integrals.reflected[2],
                         shares.albedo[0], shares.albedo[1], shares.albedo[2]),
             place);
     }
     const double energy = largestOf(integrals.whole);
-    const double excess = std::max(energy - std::max(1.0, baseEnergy), 0.0);
-    keepWorst(outcomes.energy, excess, excess > outcomes.energy.worst,
-              excess > kEnergyLimit + integrals.wholeError,
+    const double excess = std::max(energy - std::max(1.0, baseEnergy) - integrals.wholeError, 0.0);
+    keepWorst(outcomes.energy, excess, excess > outcomes.energy.worst, excess > kEnergyLimit,
               fmt::format("{:.4f} of the light of a white furnace leaves the {}", energy, place.base), place);
 }
 

@@ -152,55 +152,64 @@ bool hasFeature(const Material& material, int feature) {
                            material.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
 }
 
+// One combination, before it is known whether its key has the feature.
+struct Combined {
+    Material material;
+    CheckPlace place;
+};
+
+Combined combine(const MaterialModel& model, const FeatureCode& code, const Ingredients& ingredients,
+                 const Choice& choice, int base, bool textured) {
+    Combined made{baseMaterial(model, base), {}};
+    made.material.alphaMode = code.opacity.empty() ? AlphaMode::Opaque : AlphaMode::Mask;
+    made.place.base = kCheckedBases[base].name;
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+        const Parameter& parameter = *ingredients.parameters[i];
+        const float value = ingredients.values[i][choice[i]];
+        made.material[parameter.name] = value;
+        made.place.parameters.emplace_back(
+            parameter.name, std::vector<float>(static_cast<std::size_t>(parameter.channels), value));
+    }
+    const int object = code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].object;
+    if (object >= 0) {
+        made.material.give(model.objects[static_cast<std::size_t>(object)].name);
+    }
+    if (textured) {
+        for (const MaterialTexture* const texture : ingredients.textures) {
+            made.material.texture(texture->name).texture = 0;
+        }
+        made.place.parameters.emplace_back("textures", std::vector<float>{1.0F});
+    }
+    return made;
+}
+
 std::vector<CheckedMaterial> addCombinations(const MaterialModel& model, const FeatureCode& code,
                                              std::uint32_t most, Scene& scene) {
     const Ingredients ingredients = ingredientsOf(model, code);
     std::vector<CheckedMaterial> made;
-    std::set<std::vector<float>> known;
+    std::set<Choice> known;
     for (const Choice& choice : choicesOf(ingredients.values, most)) {
         if (made.size() == most) {
             break;
         }
-        const int base = static_cast<int>(made.size() % std::size(kCheckedBases));
-        Material material = baseMaterial(model, base);
-        material.alphaMode = code.opacity.empty() ? AlphaMode::Opaque : AlphaMode::Mask;
-        CheckPlace place;
-        place.base = kCheckedBases[base].name;
-        for (std::size_t i = 0; i < choice.size(); ++i) {
-            const Parameter& parameter = *ingredients.parameters[i];
-            const float value = ingredients.values[i][choice[i]];
-            material[parameter.name] = value;
-            place.parameters.emplace_back(
-                parameter.name, std::vector<float>(static_cast<std::size_t>(parameter.channels), value));
-        }
-        if (code.feature >= 0) {
-            const int object = model.features[static_cast<std::size_t>(code.feature)].object;
-            if (object >= 0) {
-                material.give(model.objects[static_cast<std::size_t>(object)].name);
-            }
-        }
-        // Textures are there in every second pair of combinations, or always if nothing works without.
-        const bool textured = !ingredients.textures.empty() && made.size() / 2 % 2 == 1;
-        const auto addTextures = [&] {
-            for (const MaterialTexture* const texture : ingredients.textures) {
-                material.texture(texture->name).texture = 0;
-            }
-            place.parameters.emplace_back("textures", std::vector<float>{1.0F});
-        };
-        if (textured) {
-            addTextures();
-        }
-        if (!hasFeature(material, code.feature) && !textured && !ingredients.textures.empty()) {
-            addTextures();
-        }
-        std::vector<float> numbers = material.values;
-        numbers.push_back(place.parameters.empty() || place.parameters.back().first != "textures" ? 0.0F
-                                                                                                  : 1.0F);
-        // The base is no part of the choice.
-        if (!hasFeature(material, code.feature) || (!choice.empty() && !known.insert(numbers).second)) {
+        if (!known.insert(choice).second) {
             continue;
         }
-        made.push_back({addSquare(scene, material), base, std::move(place)});
+        // Bases take turns. Textures are there in every second pair. Where the feature would change nothing,
+        // the others are tried.
+        const int bases = static_cast<int>(std::size(kCheckedBases));
+        const int firstBase = static_cast<int>(made.size()) % bases;
+        const bool firstTextured = !ingredients.textures.empty() && made.size() / 2 % 2 == 1;
+        bool found = false;
+        for (int attempt = 0; attempt < 2 * bases && !found; ++attempt) {
+            const int base = (firstBase + attempt) % bases;
+            const bool textured = firstTextured != (attempt >= bases && !ingredients.textures.empty());
+            Combined combined = combine(model, code, ingredients, choice, base, textured);
+            found = hasFeature(combined.material, code.feature);
+            if (found) {
+                made.push_back({addSquare(scene, combined.material), base, std::move(combined.place)});
+            }
+        }
     }
     return made;
 }
