@@ -138,7 +138,7 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__.strip())
     positions, normals, tangents, uvs, indices = sphere()
-    floor = [-9, 0, 4, 9, 0, 4, 9, 0, -5, -9, 0, -5]
+    floor = [-12, 0, 6, 12, 0, 6, 12, 0, -9, -12, 0, -9]
     data = b""
     views, accessors = [], []
 
@@ -156,7 +156,7 @@ def main():
             "TEXCOORD_0": add(uvs, "f", "VEC2", 2, 5126)}
     hills = {**ball, "_TERRAIN": add(terrain_shares(positions), "f", "VEC3", 3, 5126)}
     faces = add(indices, "H", "SCALAR", 1, 5123)
-    ground = {"POSITION": add(floor, "f", "VEC3", 3, 5126, min=[-9, 0, -5], max=[9, 0, 4])}
+    ground = {"POSITION": add(floor, "f", "VEC3", 3, 5126, min=[-12, 0, -9], max=[12, 0, 6])}
     ground_faces = add([0, 1, 2, 0, 2, 3], "H", "SCALAR", 1, 5123)
     count = len(MATERIALS)
     meshes = [{"primitives": [{"attributes": hills if m["name"] == "Terrain" else ball, "indices": faces,
@@ -165,20 +165,20 @@ def main():
 
     def place(i):
         row, column = (0, i) if i < FRONT else (1, i - FRONT)
-        return [2.3 * (column - (FRONT - 1) / 2), 1, 1.4 - 2.9 * row]
+        return [2.3 * (column - (FRONT - 1) / 2), 1, 1.2 - 3.2 * row]
 
     nodes = [{"mesh": i, "translation": place(i)} for i in range(count - 1)]
     nodes.append({"mesh": count - 1})
     nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}},
                   "rotation": [-0.5, 0.2, 0.1, 0.83666]})
-    nodes.append({"camera": 0, "translation": [0, 6.2, 15], "rotation": [-0.17365, 0, 0, 0.98481]})
+    nodes.append({"camera": 0, "translation": [0, 8.4, 16], "rotation": [-0.21644, 0, 0, 0.9763]})
     images = [{"mimeType": "image/png", "uri": "data:image/png;base64," + base64.b64encode(png(64, 64, f)).decode()}
               for f in (brick_color, brick_normal)]
     names = sorted({name for m in MATERIALS for name in m.get("extensions", {})} | {"KHR_lights_punctual"})
     scene = {"asset": {"version": "2.0", "generator": "make_scene.py"}, "extensionsUsed": names, "scene": 0,
              "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes, "materials": MATERIALS,
              "images": images, "textures": [{"source": 0}, {"source": 1}],
-             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.36, "znear": 0.1, "aspectRatio": 2.5}}],
+             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.284, "znear": 0.1, "aspectRatio": 3}}],
              "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2.5}]}},
              "accessors": accessors, "bufferViews": views,
              "buffers": [{"byteLength": len(data),

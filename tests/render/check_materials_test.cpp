@@ -140,7 +140,7 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
             EXPECT_TRUE(failures.empty()) << toString(failures.front());
             continue;
         }
-        ASSERT_EQ(failures.size(), 1U) << feature.feature;
+        ASSERT_EQ(failures.size(), 1U) << feature.feature << ": " << toString(failures.back());
         EXPECT_EQ(failures[0].id, planted->id);
         EXPECT_TRUE(failures[0].where.ends_with(feature.feature + ".json")) << failures[0].where;
         EXPECT_NE(failures[0].message.find(planted->says), std::string::npos) << failures[0].message;

@@ -83,10 +83,11 @@ Material blackWith(const char* extension) {
     return material;
 }
 
-// A quad whose first and third corners have these colours; the middle of the quad has their mean.
+// A quad whose colour changes along a diagonal; in its middle it is (0.5, 0.25, 0.5).
 Primitive tintedQuad(int material, Float3 corner, Float3 right, Float3 up) {
     Primitive quad = makeQuad(material, corner, right, up);
-    quad.attributes.push_back({"_TINT", 3, {1, 0, 0, 9, 9, 9, 0, 0.5F, 1, 9, 9, 9}});
+    quad.attributes.push_back(
+        {"_TINT", 3, {0.6F, 0.2F, 0.5F, 0.5F, 0.25F, 0.5F, 0.4F, 0.3F, 0.5F, 0.5F, 0.25F, 0.5F}});
     return quad;
 }
 

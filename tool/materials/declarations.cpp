@@ -138,6 +138,7 @@ public:
                 parameter.scaledBy = model_.parameters[static_cast<std::size_t>(parameter.aliasOf)].scaledBy;
             }
         }
+        keepPlacesOfUnlit();
         std::vector<DeclaredCode> code;
         for (const File& file : files_) {
             const Members members = membersOf(file);
@@ -841,6 +842,21 @@ private:
             }
             placed[static_cast<std::size_t>(*next)] = true;
             model_.order.push_back(*next);
+        }
+    }
+
+    // Unlit surfaces read a texture and have an opacity, so packs may change where and how much.
+    void keepPlacesOfUnlit() {
+        FeatureMask kept = 0;
+        for (const Feature& feature : model_.features) {
+            const Feature& owner = feature.lobe < 0 ? feature : featureAt(feature.lobe);
+            const bool isPlace = owner.stage == Stage::Coordinates || owner.stage == Stage::Opacity;
+            kept |= isPlace ? feature.mask() : 0;
+        }
+        for (Exclusion& exclusion : model_.exclusions) {
+            if ((featureAt(exclusion.by).mask() & model_.unlit) != 0) {
+                exclusion.excluded &= ~kept;
+            }
         }
     }
 

@@ -17,20 +17,18 @@ namespace {
 const MaterialModel& modelWithWear() {
     static const TemporaryFolder folder;
     static const Result<const MaterialModel*> model = [&] {
-        const std::string text = R"({
+        const std::string text = R"json({
             "name": "wear", "stage": "surface", "extension": "TEST_wear", "glsl": { "surface": "wear.glsl" },
             "attributes": [{ "name": "wearShare", "at": "_WEAR", "type": "vec2" },
                            { "name": "wearAge", "at": "_AGE", "type": "float", "default": 3 }],
-            "neutral": [{ "when": "not attribute(wearAge)",
-                          "because" : "nothing is old" }]
-})";
+            "neutral": [{ "when": "not attribute(wearAge)", "because": "nothing is old" }]
+        })json";
         EXPECT_TRUE(writeFile(folder.path() / "wear.json", text));
-EXPECT_TRUE(writeFile(folder.path() / "wear.glsl", std::string("// wear\n")));
-return loadMaterialModel(std::vector{folder.path().string()});
-}
-();
-EXPECT_TRUE(model) << toString(model.error());
-return **model;
+        EXPECT_TRUE(writeFile(folder.path() / "wear.glsl", std::string("// wear\n")));
+        return loadMaterialModel(std::vector{folder.path().string()});
+    }();
+    EXPECT_TRUE(model) << toString(model.error());
+    return **model;
 }
 
 ImportOptions withWear() {
