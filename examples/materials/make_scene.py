@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes a scene of spheres on a floor, one with each of the example materials.
+"""Writes a scene of spheres on a floor in two rows, one with each of the example materials.
 
 usage: make_scene.py OUTPUT.gltf
 """
@@ -37,6 +37,9 @@ def sphere():
     return positions, normals, tangents, uvs, indices
 
 
+# Spheres of the front row; the others stand behind.
+FRONT = 6
+
 MATERIALS = [
     {"name": "Paint with flakes",
      "pbrMetallicRoughness": {"baseColorFactor": [0.02, 0.05, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0.5},
@@ -59,6 +62,29 @@ MATERIALS = [
      "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 0.7},
      "extensions": {"EXAMPLE_materials_triplanar": {"triplanarScale": 0.7, "triplanarColorTexture": {"index": 0},
                                                     "triplanarNormalTexture": {"index": 1}}}},
+    {"name": "Terrain",
+     "pbrMetallicRoughness": {"metallicFactor": 0},
+     "extensions": {"EXAMPLE_materials_terrain": {"terrainScale": 0.25}}},
+    {"name": "Lava",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.03, 0.025, 0.022, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
+     "extensions": {"EXAMPLE_materials_lava": {"lavaStrength": 6, "lavaScale": 0.3}}},
+    {"name": "Perforated steel", "alphaMode": "MASK", "doubleSided": True,
+     "pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.6, 0.62, 1], "metallicFactor": 1, "roughnessFactor": 0.35},
+     "extensions": {"EXAMPLE_materials_perforation": {"perforationRows": [36, 18], "perforationRadius": 0.32}}},
+    {"name": "Flowing bricks",
+     "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0, "roughnessFactor": 0.6},
+     "extensions": {"EXAMPLE_materials_flow": {"flowVelocity": [0.05, 0], "flowRipple": 0.03, "flowWaves": 3}}},
+    {"name": "Varnished wood",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.3, 0.14, 1], "metallicFactor": 0, "roughnessFactor": 0.7},
+     "extensions": {"KHR_materials_coat": {"coatFactor": 1, "coatColorFactor": [1, 0.8, 0.55],
+                                           "coatRoughnessFactor": 0.1, "coatIor": 1.6}}},
+    {"name": "Fuzzy cloth",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.05, 0.08, 0.2, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
+     "extensions": {"KHR_materials_fuzz": {"fuzzFactor": 0.9, "fuzzColorFactor": [0.7, 0.8, 1],
+                                           "fuzzRoughnessFactor": 0.5}}},
+    {"name": "Clay",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.3, 0.2, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
+     "extensions": {"KHR_materials_diffuse_roughness": {"diffuseRoughnessFactor": 1}}},
     {"name": "Floor",
      "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0, "roughnessFactor": 0.9}},
 ]
@@ -98,11 +124,21 @@ def brick_normal(x, y):
     return tuple(round(127.5 + 127.5 * c / length) for c in (-dx, dy, 3))
 
 
+def terrain_shares(positions):
+    """Returns the shares of grass, rock and snow for each vertex: by height."""
+    shares = []
+    for y in positions[1::3]:
+        snow = min(max((y - 0.35) / 0.3, 0), 1)
+        grass = min(max((0.1 - y) / 0.4, 0), 1)
+        shares += (grass, 1 - snow - grass, snow)
+    return shares
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__.strip())
     positions, normals, tangents, uvs, indices = sphere()
-    floor = [-6, 0, 3, 6, 0, 3, 6, 0, -3, -6, 0, -3]
+    floor = [-12, 0, 6, 12, 0, 6, 12, 0, -9, -12, 0, -9]
     data = b""
     views, accessors = [], []
 
@@ -118,24 +154,31 @@ def main():
     ball = {"POSITION": add(positions, "f", "VEC3", 3, 5126, min=[-1, -1, -1], max=[1, 1, 1]),
             "NORMAL": add(normals, "f", "VEC3", 3, 5126), "TANGENT": add(tangents, "f", "VEC4", 4, 5126),
             "TEXCOORD_0": add(uvs, "f", "VEC2", 2, 5126)}
+    hills = {**ball, "_TERRAIN": add(terrain_shares(positions), "f", "VEC3", 3, 5126)}
     faces = add(indices, "H", "SCALAR", 1, 5123)
-    ground = {"POSITION": add(floor, "f", "VEC3", 3, 5126, min=[-6, 0, -3], max=[6, 0, 3])}
+    ground = {"POSITION": add(floor, "f", "VEC3", 3, 5126, min=[-12, 0, -9], max=[12, 0, 6])}
     ground_faces = add([0, 1, 2, 0, 2, 3], "H", "SCALAR", 1, 5123)
     count = len(MATERIALS)
-    meshes = [{"primitives": [{"attributes": ball, "indices": faces, "material": i}]} for i in range(count - 1)]
+    meshes = [{"primitives": [{"attributes": hills if m["name"] == "Terrain" else ball, "indices": faces,
+                               "material": i}]} for i, m in enumerate(MATERIALS[:-1])]
     meshes.append({"primitives": [{"attributes": ground, "indices": ground_faces, "material": count - 1}]})
-    nodes = [{"mesh": i, "translation": [2.2 * (i - (count - 2) / 2), 1, 0]} for i in range(count - 1)]
+
+    def place(i):
+        row, column = (0, i) if i < FRONT else (1, i - FRONT)
+        return [2.3 * (column - (FRONT - 1) / 2), 1, 1.2 - 3.2 * row]
+
+    nodes = [{"mesh": i, "translation": place(i)} for i in range(count - 1)]
     nodes.append({"mesh": count - 1})
     nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}},
                   "rotation": [-0.5, 0.2, 0.1, 0.83666]})
-    nodes.append({"camera": 0, "translation": [0, 2.2, 11], "rotation": [-0.0575, 0, 0, 0.99834]})
+    nodes.append({"camera": 0, "translation": [0, 8.4, 16], "rotation": [-0.21644, 0, 0, 0.9763]})
     images = [{"mimeType": "image/png", "uri": "data:image/png;base64," + base64.b64encode(png(64, 64, f)).decode()}
               for f in (brick_color, brick_normal)]
     names = sorted({name for m in MATERIALS for name in m.get("extensions", {})} | {"KHR_lights_punctual"})
     scene = {"asset": {"version": "2.0", "generator": "make_scene.py"}, "extensionsUsed": names, "scene": 0,
              "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes, "materials": MATERIALS,
              "images": images, "textures": [{"source": 0}, {"source": 1}],
-             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.4, "znear": 0.1, "aspectRatio": 2.5}}],
+             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.284, "znear": 0.1, "aspectRatio": 3}}],
              "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2.5}]}},
              "accessors": accessors, "bufferViews": views,
              "buffers": [{"byteLength": len(data),

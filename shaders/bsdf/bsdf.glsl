@@ -181,7 +181,8 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         float lightLoss = lobeAlbedo(b, features, l).x;
         specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
     }
-    GLINT_RELAXED vec3 diffuse = b.diffuse * (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
+    GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
+                                 (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
     return (diffuse + specular) * l.z;
 }
 

@@ -2,6 +2,7 @@
 // record.
 #include "host/geometry.glsl"
 #include "bsdf/features.glsl"
+#include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
 
@@ -28,6 +29,9 @@ struct Hit {
 #if GLINT_ANSWERS_SURFACE
     uint shaderId;
     vec3 previousPosition;  // of the same point of the mesh, in the frame before
+#endif
+#if GLINT_VERTEX_ATTRIBUTES
+    VertexAttributes attributes;  // of packs
 #endif
 };
 
@@ -119,6 +123,10 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
         hit.color = weights.x * hostColor(geometry, corner.x) + weights.y * hostColor(geometry, corner.y) +
                     weights.z * hostColor(geometry, corner.z);
     }
+
+#if GLINT_VERTEX_ATTRIBUTES
+    hit.attributes = fetchAttributes(geometry, corner, weights, features);
+#endif
 
     vec3 across;
     vec3 along;

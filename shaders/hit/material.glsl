@@ -1,11 +1,17 @@
 // Makes a Surface of a hit and its material, by the stages of the material's features.
 #include "generated/material_stages.glsl"
 
-// Returns what the material says about the surface. Unlit keys have a colour alone.
-SurfaceValues surfaceValues(Hit hit, Features features) {
+// Returns what the material says about the surface at coordinates that are already changed.
+SurfaceValues valuesAt(Hit hit, Features features) {
     SurfaceValues values = SurfaceValues(vec4(1.0), 1.0, 1.0, vec3(0.04), 1.0, hit.normal, 1.0, 1.0);
     runSurfaceStage(hit, features, values);
     return values;
+}
+
+// Returns what the material says about the surface. Unlit keys have a colour alone.
+SurfaceValues surfaceValues(Hit hit, Features features) {
+    changeCoordinates(hit, features);
+    return valuesAt(hit, features);
 }
 
 // Returns the base's BSDF: glTF 2.0, appendix B.3.5. The layers are not set.
@@ -26,7 +32,8 @@ Bsdf makeBase(SurfaceValues values, Features features) {
 
 // Requires a lit key.
 Surface evaluateSurface(Hit hit, Features features) {
-    SurfaceValues values = surfaceValues(hit, features);
+    changeCoordinates(hit, features);
+    SurfaceValues values = valuesAt(hit, features);
     values.dielectric = 1.0 - values.metallic;
     Surface surface;
     surface.normal = values.normal * facing(hit, features);

@@ -3,7 +3,6 @@
 #include "host/material.glsl"
 #include "host/texture.glsl"
 
-#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
 
 // Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {

@@ -7,6 +7,7 @@
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FloatArray { float data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec2Array { vec2 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec3Array { vec3 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec4Array { vec4 data[]; };
@@ -35,6 +36,7 @@ struct GeometryRecord {
     GLINT_ADDRESS(Vec2) texCoords0;
     GLINT_ADDRESS(Vec2) texCoords1;
     GLINT_ADDRESS(Vec4) colors;  // linear RGBA
+    GLINT_ADDRESS(Float) attributes;  // of packs: the package's, vertex by vertex; 0 if no feature of the key reads any
 };
 
 GLINT_INTEROP_END

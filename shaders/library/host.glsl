@@ -39,8 +39,15 @@ vec4 glintHostTangent(const uint geometry, const uint vertex);
 vec2 glintHostTexCoord(const uint geometry, const uint vertex, const uint set);
 vec4 glintHostColor(const uint geometry, const uint vertex);
 
+// One number of a vertex's attributes that packs declare; `channel` counts over all of them, in the order of
+// Package::attributes().
+float glintHostAttribute(const uint geometry, const uint vertex, const uint channel);
+
 // The address of an array of the package's material records (MaterialRecord in glint_tables.h): low word, high word.
 uvec2 glintHostMaterials();
+
+// The seconds that materials of packs may follow.
+float glintHostTime();
 
 // A filtered sample of a texture. Both indices are those of the material's TextureRecord. gradientX and gradientY are
 // (du, dv) along the axes of the footprint, and 0 for the finest level.

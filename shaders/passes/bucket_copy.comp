@@ -2,9 +2,9 @@
 // Ordering, last pass: writes each hit's index into the next free slot of its bucket.
 #define GLINT_BUCKET_WORDS bucketCursors
 #define GLINT_HITS_NUMBERED 1
-#include "hit/bucket_key.glsl"
+#include "order/bucket_key.glsl"
 #include "hit/list.glsl"
-#include "hit/ordering.glsl"
+#include "order/ordering.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 

@@ -10,8 +10,8 @@
 
 #define GLINT_SCAN_GROUP_SIZE kThreads
 #define GLINT_SCAN_SHUFFLES 1
-#include "hit/bucket_scan.glsl"
-#include "hit/tile_sort.glsl"
+#include "order/bucket_scan.glsl"
+#include "order/tile_sort.glsl"
 
 // On a multiprocessor, an H200 has shared memory for three of the small workgroups, for two of the next size, or for
 // one of the large ones, whose tiles have twice as many hits of each bucket. A device that cannot run the large ones
@@ -27,7 +27,7 @@ const uint kThreads = gl_WorkGroupSize.x;
 #endif
 const uint kTileHits = kThreads * kTileHitsOfThread;
 
-#include "hit/scan.glsl"
+#include "order/scan.glsl"
 
 // The number of counters of a bucket. With several, neighbours whose hits are in the same bucket do not wait for each
 // other, because atomics that return a value are executed in turn. There are few, because they have to be scanned.

@@ -2,9 +2,9 @@
 // Ordering, first pass: counts the hits in each bucket.
 #define GLINT_BUCKET_WORDS bucketCounts
 #define GLINT_HITS_NUMBERED 0
-#include "hit/bucket_key.glsl"
+#include "order/bucket_key.glsl"
 #include "hit/list.glsl"
-#include "hit/ordering.glsl"
+#include "order/ordering.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 

@@ -3,7 +3,7 @@
 // memory and adds its counts once.
 #extension GL_EXT_control_flow_attributes : require
 
-#include "hit/tile_sort.glsl"
+#include "order/tile_sort.glsl"
 
 layout(local_size_x = kCountGroupSize) in;
 

@@ -3,8 +3,8 @@
 // ordering tile-sort has no such pass: each workgroup of its last pass does the same for itself.
 #define GLINT_SCAN_GROUP_SIZE kScanGroupSize
 #define GLINT_SCAN_SHUFFLES 0
-#include "hit/bucket_scan.glsl"
-#include "hit/scan.glsl"
+#include "order/bucket_scan.glsl"
+#include "order/scan.glsl"
 
 layout(local_size_x = kScanGroupSize) in;
 

@@ -5,30 +5,60 @@
 #include "host/geometry.glsl"
 #include "host/material.glsl"
 #include "host/texture.glsl"
+#if GLINT_MASK_STAGES
+#include "generated/mask_stages.glsl"
+#endif
 
 layout(location = 0) flat in uint primitive;
 layout(location = 3) flat in uint geometryIndex;
-#if GLINT_HAS_MASKED
+#if GLINT_MASK_STAGES
+layout(location = 1) in vec2 barycentrics;
+#elif GLINT_HAS_MASKED
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in float vertexAlpha;
 #endif
 
 layout(location = 0) out uvec2 surface;
 
+#if GLINT_HAS_MASKED
+// Returns the alpha of the base colour texture. All instances of a draw have one material: the indices are uniform.
+float textureAlpha(MaterialRecord material, vec2 uv) {
+    TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
+#if GLINT_TEXTURE_LOD_CONES
+    return hostScreenTexture(record, uv, GLINT_FRAME.sampleLodBias).a;
+#else
+    return hostFinestTexture(record, uv).a;
+#endif
+}
+#endif
+
 void main() {
 #if GLINT_HAS_MASKED
     HostGeometry geometry = hostGeometry(geometryIndex);
     if ((geometry.flags & kGeometryMasked) != 0u) {
         MaterialRecord material = hostMaterials().data[geometry.materialIndex];
-        float alpha = material.baseColorFactor.a * vertexAlpha;
-        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
-            TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
-#if GLINT_TEXTURE_LOD_CONES
-            alpha *= hostScreenTexture(record, texCoord, GLINT_FRAME.sampleLodBias).a;
-#else
-            alpha *= hostFinestTexture(record, texCoord).a;
-#endif
+        float alpha = material.baseColorFactor.a;
+        vec2 uv = vec2(0.0);
+#if GLINT_MASK_STAGES
+        Features features = GLINT_PRIMARY_FEATURES(geometry);
+        SurfacePoint point = surfacePoint(geometry, primitive, barycentrics, features);
+        runMaskCoordinates(point, features);
+        if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
+            uv = pointCoordinates(point, kBaseColorTexture, features);
         }
+        if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
+            alpha *= vertexAlpha(geometry, primitive, barycentrics);
+        }
+#else
+        uv = texCoord;
+        alpha *= vertexAlpha;
+#endif
+        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
+            alpha *= textureAlpha(material, uv);
+        }
+#if GLINT_MASK_STAGES
+        runMaskOpacity(point, features, alpha);
+#endif
         if (alpha < material.alphaCutoff) {
             discard;
         }

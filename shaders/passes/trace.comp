@@ -4,7 +4,7 @@
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
-#include "hit/bucket_key.glsl"
+#include "order/bucket_key.glsl"
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "hit/trace.glsl"

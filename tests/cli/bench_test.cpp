@@ -1,6 +1,7 @@
 // Tests glint bench on the tiny scene: its files, that it repeats itself, and what it refuses.
 #include "cli/render_command.h"
 #include "cli/schemas.h"
+#include "cli/tiny_scene.h"
 
 #include <algorithm>
 #include <string>
@@ -30,6 +31,21 @@ protected:
         return nullptr;
     }
 };
+
+// The shaders of packs are measured as Glint's own are.
+TEST_F(Bench, MeasuresPacks) {
+    addMud(scene_, 0.5);
+    writeMudPack(path("pack"), 0.25);
+    const Outcome outcome = bench({"--only", "strategy", "--max-error", "1000", "--materials", "pack"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Json report = outcome.json();
+    for (const char* const strategy : {"uber", "sorted-uber"}) {
+        const Json* const one = point(report, std::string("strategy ") + strategy);
+        ASSERT_NE(one, nullptr);
+        EXPECT_TRUE(one->at("sameImage").get<bool>()) << strategy;
+        EXPECT_TRUE(has(one->at("command").dump(), "--materials")) << one->at("command");
+    }
+}
 
 TEST_F(Bench, WritesWhatItMeasured) {
     const Outcome outcome = bench({"--only", "spp,strategy,max-roughness,ssr", "--max-error", "1000"});

@@ -174,5 +174,30 @@ TEST_F(Diff, FoldersThatAreNoPackagesAreRefused) {
     EXPECT_TRUE(has(run({"diff", "a", "b"}).err, "manifest.json: error: no such file"));
 }
 
+// A change of a pack's GLSL changes the modules that have it; a change of its values changes keys.
+TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
+    addMud(scene_, 0.5);
+    writeMudPack(path("pack"), 0.25);
+    compile("a", {"--materials", "pack", "--merge", "none"});
+    writeMudPack(path("pack"), 0.5);
+    compile("b", {"--materials", "pack", "--merge", "none"});
+    const Json changed = diff();
+    EXPECT_EQ(changed.at("differ"), true);
+    EXPECT_TRUE(changed.at("shaders").empty()) << changed.at("shaders");
+    std::vector<std::string> names;
+    for (const Json& module : changesOf(changed.at("modules"), "changed")) {
+        names.push_back(module.at("name"));
+    }
+    std::ranges::sort(names);
+    ASSERT_EQ(names.size(), 2U) << changed.at("modules");
+    EXPECT_TRUE(has(names[0], "lighting")) << names[0];
+    EXPECT_TRUE(has(names[1], "Mud")) << names[1];
+    EXPECT_EQ(changed.at("modules").size(), 2U);
+
+    addMud(scene_, 0.0);
+    compile("b", {"--materials", "pack", "--merge", "none"});
+    EXPECT_FALSE(diff().at("shaders").empty());
+}
+
 }  // namespace
 }  // namespace glint::testing

@@ -105,5 +105,26 @@ TEST_F(Explain, HitLobesTellHitsFromPrimarySurfaces) {
     EXPECT_NE(text.out.find("clearcoat: hits do not keep it (--hit-lobes)"), std::string::npos) << text.out;
 }
 
+// The names of packs' lobes are known once the packs are read.
+TEST_F(Explain, KeepsLobesOfPacksForHits) {
+    const std::string packs = GLINT_SOURCE_DIR "/examples/materials";
+    const auto explained = [&](const std::string& lobes) {
+        return run({"explain", packs + "/scene.gltf", "--materials", packs, "--material", "Satin",
+                    "--hit-lobes", lobes, "--json"});
+    };
+    const auto keyOf = [&](const std::string& lobes) {
+        const Outcome outcome = explained(lobes);
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return outcome.json().at("materials").at(0).at("keys").at(0).dump();
+    };
+    EXPECT_TRUE(has(keyOf("all"), "\"fibre\""));
+    EXPECT_TRUE(has(keyOf("base,fibre"), "\"fibre\""));
+    EXPECT_TRUE(has(explained("base,flakes").json().dump(), "hits do not keep it (--hit-lobes)"));
+    const Outcome unknown = explained("base,fibbre");
+    EXPECT_EQ(unknown.exit, 1);
+    EXPECT_TRUE(has(unknown.err, "did you mean fibre?")) << unknown.err;
+    EXPECT_TRUE(has(unknown.err, "[hit-lobe-unknown]")) << unknown.err;
+}
+
 }  // namespace
 }  // namespace glint::testing

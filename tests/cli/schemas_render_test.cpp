@@ -3,6 +3,7 @@
 #include "cli/schemas.h"
 #include "support/hdr_writer.h"
 
+#include <filesystem>
 #include <string>
 
 namespace glint::testing {
@@ -21,6 +22,34 @@ TEST_F(RenderSchemas, HoldRenderAndItsStatistics) {
     EXPECT_FALSE(statistics.contains("diagnostics"));
     statistics["diagnostics"] = Json::array();
     expectFits("render", statistics);
+}
+
+// The folder of packs, the pictures and what is reported of a fault.
+TEST_F(RenderSchemas, HoldTheChecksOfMaterials) {
+    const std::filesystem::path pack = path("pack");
+    std::filesystem::copy(GLINT_SOURCE_DIR "/examples/materials/retroreflection", pack);
+    const std::string file = readText(pack / "retroreflection.glsl");
+    const std::string density = "return l.z > 0.0 ? mirroredPdf(";
+    ASSERT_TRUE(has(file, density));
+    std::string broken = file;
+    broken.replace(broken.find(density), density.size(), "return l.z > 0.0 ? 2.0 * mirroredPdf(");
+    writeText(pack / "retroreflection.glsl", broken);
+    const Outcome outcome =
+        run({"check-materials", "pack", "--json", "--combinations", "4", "--pictures", "pictures"});
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_TRUE(has(outcome.err, "retroreflectionDensity(): integrates to ")) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "[check-density]")) << outcome.err;
+    expectFits("check-materials", outcome.json());
+    EXPECT_EQ(outcome.json().at("features").at(0).at("failed"), true);
+    for (const Json& picture : outcome.json().at("pictures")) {
+        EXPECT_TRUE(std::filesystem::exists(path(picture.get<std::string>()))) << picture;
+    }
+    EXPECT_EQ(outcome.json().at("pictures").size(), 2U);
+
+    writeText(pack / "retroreflection.glsl", file);
+    const Outcome sound = run({"check-materials", "pack", "--combinations", "4"});
+    EXPECT_EQ(sound.exit, 0) << sound.err;
+    expectFitsTerminal(sound.out);
 }
 
 TEST_F(RenderSchemas, HoldPackagesAndStrategiesWithoutOrder) {

@@ -121,15 +121,11 @@ TEST_F(Schemas, HoldLint) {
 }
 
 TEST_F(Schemas, HoldFailures) {
-    const std::vector<std::vector<std::string>> lines{{"compile", "none.gltf", "-o", "x"},
-                                                      {"explain", "none.gltf"},
-                                                      {"inspect", "none"},
-                                                      {"compile-module", "none", "-o", "x"},
-                                                      {"diff", "none", "none"},
-                                                      {"lint", "none.spv"},
-                                                      {"render", "none.gltf", "-o", "a.png"},
-                                                      {"compare", "a.png", "b.png"},
-                                                      {"bench", "none.gltf", "-o", "x"}};
+    const std::vector<std::vector<std::string>> lines{
+        {"compile", "none.gltf", "-o", "x"},    {"explain", "none.gltf"},      {"inspect", "none"},
+        {"compile-module", "none", "-o", "x"},  {"diff", "none", "none"},      {"lint", "none.spv"},
+        {"render", "none.gltf", "-o", "a.png"}, {"compare", "a.png", "b.png"}, {"check-materials", "none"},
+        {"bench", "none.gltf", "-o", "x"}};
     for (const std::vector<std::string>& line : lines) {
         const Json failed = json(line, 1);
         expectFits(line[0], failed);
@@ -182,7 +178,7 @@ TEST(SchemaFiles, DescribeEveryMember) {
         names.insert(name);
     }
     for (const char* command : {"compile", "compile-module", "explain", "explain-plan", "inspect", "diff",
-                                "lint", "render", "bench", "compare"}) {
+                                "lint", "render", "bench", "compare", "check-materials"}) {
         EXPECT_TRUE(names.contains(command)) << command;
     }
 }

@@ -171,4 +171,32 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
     return path;
 }
 
+void writeMudPack(const std::filesystem::path& folder, double shade) {
+    std::filesystem::create_directories(folder);
+    writeText(folder / "mud.json", R"({
+        "name": "mud", "object": "extras", "stage": "surface", "glsl": { "surface": "mud.glsl" },
+        "parameters": [{ "name": "mudAmount", "at": "mud", "type": "float", "default": 0, "range": [0, 1] }],
+        "neutral": [{ "when": "mudAmount == 0", "because": "there is no mud" }]
+    })");
+    writeText(folder / "mud.glsl",
+              "#include \"hit/surface_values.glsl\"\n\n"
+              "void mudSurface(Hit hit, Features features, inout SurfaceValues values) {\n"
+              "    float mud = GLINT_MATERIAL_MUD_AMOUNT(hit);\n"
+              "    values.color.rgb = mix(values.color.rgb, " +
+                  std::to_string(shade) +
+                  " * vec3(1.0, 0.6, 0.3), mud);\n"
+                  "    values.roughness = mix(values.roughness, 1.0, mud);\n"
+                  "}\n");
+}
+
+void addMud(const std::filesystem::path& scene, double amount) {
+    Json gltf = Json::parse(readText(scene));
+    for (Json& material : gltf.at("materials")) {
+        if (material.value("name", "") == "Floor") {
+            material["extras"] = {{"mud", amount}};
+        }
+    }
+    writeText(scene, gltf.dump());
+}
+
 }  // namespace glint::testing

@@ -20,4 +20,9 @@ struct TinyScene {
 // metal floor ("Floor"), an unlit wall ("Wall") and an unused material ("Spare").
 std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options = {});
 
+// Writes a pack with one feature, "mud": the floor becomes as brown as `shade` times the material's
+// extras.mud, and as rough. Gives the floor of the scene so much of it.
+void writeMudPack(const std::filesystem::path& folder, double shade);
+void addMud(const std::filesystem::path& scene, double amount);
+
 }  // namespace glint::testing

@@ -2,7 +2,7 @@
 #include "bsdf/exact.glsl"
 #include "hit/geometry.glsl"
 #include "hit/accumulate.glsl"
-#include "hit/direction_bin.glsl"
+#include "order/direction_bin.glsl"
 #include "hit/lod.glsl"
 #include "hit/punctual.glsl"
 #include "hit/random.glsl"
@@ -71,7 +71,7 @@ PROBE(PlaneError) {
     o[0] = planeError(VEC3(0), TrianglePoint(VEC3(3), VEC3(6), VEC3(9), VEC3(12)), rows, cofactors);
 }
 
-// hit/direction_bin.glsl
+// order/direction_bin.glsl
 
 // The distance to the nearest edge of the direction's bin, in components of the direction or in cells of the
 // map.

@@ -1,10 +1,9 @@
 // Runs a compute shader of the tests over a loaded scene. It may include what the product's passes include.
 #pragma once
 
-#include "context/commands.h"
-#include "context/resources.h"
 #include "interop/frame.h"
 #include "render/harness.h"
+#include "scene/scene_kernel_state.h"
 
 #include <cstdint>
 #include <memory>
@@ -28,17 +27,14 @@ public:
 
     // Returns the first `outputs` words; words that the shader did not write are 0. `constants` may hold
     // further inputs.
-    Result<std::vector<std::uint32_t>> run(gpu::FrameConstants constants,
+    Result<std::vector<std::uint32_t>> run(const gpu::FrameConstants& constants,
                                            std::span<const gpu::RayRecord> rays, std::uint32_t invocations,
                                            std::size_t outputs);
 
 private:
-    explicit HitKernel(GpuScene::State& scene);
-    Status createPipeline(const std::vector<std::uint32_t>& words);
+    explicit HitKernel(std::unique_ptr<SceneKernel> kernel);
 
-    GpuScene::State& scene_;
-    UniquePipelineLayout layout_;
-    UniquePipeline pipeline_;
+    std::unique_ptr<SceneKernel> kernel_;
 };
 
 }  // namespace glint::testing

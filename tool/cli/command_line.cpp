@@ -84,6 +84,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addRender(app, chosen);
     addBench(app, chosen);
     addCompare(app, chosen);
+    addCheckMaterials(app, chosen);
     ReportArguments report;
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
         addReportOptions(*command, report);

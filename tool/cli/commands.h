@@ -16,6 +16,7 @@ void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
 void addBench(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
+void addCheckMaterials(CLI::App& app, Action& chosen);
 // Call this after all other commands are added, because the script is made from their options.
 void addCompletion(CLI::App& app, Action& chosen);
 

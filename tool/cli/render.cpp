@@ -205,7 +205,8 @@ Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movem
 Status render(const Console& console, const RenderArguments& asked, Scene& scene, const SceneList& scenes,
               const PlanOptions& plan, RenderReport& report) {
     RenderArguments arguments = asked;
-    const Result<std::optional<Movement>> movement = chooseMovement(arguments.motion, scene);
+    const Result<std::optional<Movement>> movement =
+        chooseMovement(arguments.motion, scene, !arguments.materials.empty());
     if (!movement) {
         return movement.error();
     }

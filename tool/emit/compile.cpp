@@ -6,6 +6,7 @@
 #include "emit/glsl/readable.h"
 #include "emit/host.h"
 #include "emit/library.h"
+#include "emit/material_code.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
 #include "emit/package/header.h"

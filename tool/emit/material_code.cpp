@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,28 +20,35 @@ namespace mustache = kainjow::mustache;
 
 constexpr std::string_view kTemplates[] = {"layers.glsl", "layers_sky.glsl", "layers_traced.glsl",
                                            "material_stages.glsl"};
+constexpr std::string_view kMaskTemplate = "mask_stages.glsl";
 
 std::string typeName(std::string name) {
     name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
     return name;
 }
 
-std::string hasFeature(const Feature& feature) {
-    return fmt::format("{}(features, {})", feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
+// Which keys the code runs for: those of the module's cases, or any.
+enum class Asked : std::uint8_t { OfModule, OfAnyKey };
+
+std::string hasFeature(const Feature& feature, Asked asked) {
+    const bool isLobe = feature.bit < kFirstInput;
+    const char* const function =
+        asked == Asked::OfModule ? (isLobe ? "hasLobe" : "hasInput") : (isLobe ? "lobeOfKey" : "inputOfKey");
+    return fmt::format("{}(features, {})", function, feature.macro);
 }
 
 // The condition under which code runs; empty if it always runs.
-std::string conditionOf(const MaterialModel& model, const FeatureCode& code) {
+std::string conditionOf(const MaterialModel& model, const FeatureCode& code, Asked asked) {
     const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
-    std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature));
+    std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
     if (code.unless >= 0) {
-        text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(feature(code.unless)));
+        text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(feature(code.unless), asked));
     }
     return text;
 }
 
 mustache::data stageOf(const MaterialModel& model, const std::vector<const FeatureCode*>& code,
-                       std::string FeatureCode::*file) {
+                       std::string FeatureCode::*file, Asked asked = Asked::OfModule) {
     mustache::data list(mustache::data::type::list);
     for (const FeatureCode* const one : code) {
         if ((one->*file).empty()) {
@@ -47,19 +56,21 @@ mustache::data stageOf(const MaterialModel& model, const std::vector<const Featu
         }
         mustache::data entry;
         entry.set("name", one->name);
-        const std::string condition = conditionOf(model, *one);
+        const std::string condition = conditionOf(model, *one, asked);
         entry.set("when", condition.empty() ? mustache::data(false) : mustache::data(condition));
         list.push_back(std::move(entry));
     }
     return list;
 }
 
-mustache::data includesOf(const std::vector<const FeatureCode*>& code) {
+using CodeFile = std::string FeatureCode::*;
+
+mustache::data includesOf(const std::vector<const FeatureCode*>& code, std::span<const CodeFile> stages) {
     std::set<std::string> files;
     for (const FeatureCode* const one : code) {
-        for (const std::string& file : {one->surface, one->bsdf, one->emission}) {
-            if (!file.empty()) {
-                files.insert(file);
+        for (const CodeFile stage : stages) {
+            if (!(one->*stage).empty()) {
+                files.insert(one->*stage);
             }
         }
     }
@@ -111,23 +122,129 @@ void addLayers(mustache::data& context, const MaterialModel& model,
         layers.push_back(std::move(entry));
         lower.push_back(layer);
     }
+    mustache::data diffuse(mustache::data::type::list);
+    for (const FeatureCode* const one : code) {
+        if (!one->diffuse.empty()) {
+            mustache::data entry;
+            entry.set("name", one->name);
+            entry.set("type", typeName(one->name));
+            entry.set("file", one->diffuse);
+            entry.set("when", conditionOf(model, *one, Asked::OfModule));
+            diffuse.push_back(std::move(entry));
+        }
+    }
+    context.set("diffuse", diffuse);
     context.set("layers", layers);
     context.set("mirrors", mirrors);
 }
 
-}  // namespace
-
-Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
-                       SourceSet& generated) {
+std::vector<const FeatureCode*> codeOf(const MaterialModel& model, FeatureMask used) {
     std::vector<const FeatureCode*> code;
     for (const FeatureCode& one : model.code) {
         if (one.feature < 0 || (model.features[static_cast<std::size_t>(one.feature)].mask() & used) != 0) {
             code.push_back(&one);
         }
     }
+    return code;
+}
+
+// Returns the attributes that code of the used features reads, in the order of their values.
+std::vector<const VertexAttribute*> attributesOf(const MaterialModel& model, FeatureMask used) {
+    std::vector<const VertexAttribute*> attributes;
+    for (const VertexAttribute& attribute : model.attributes) {
+        if ((model.features[static_cast<std::size_t>(attribute.feature)].mask() & used) != 0) {
+            attributes.push_back(&attribute);
+        }
+    }
+    return attributes;
+}
+
+// The channels of a value: "{a}" for each, separated by ", ".
+std::string channelsOf(const VertexAttribute& attribute) {
+    std::string text;
+    for (int i = 0; i < attribute.channels; ++i) {
+        const float value = attribute.fallback ? (*attribute.fallback)[static_cast<std::size_t>(i)] : 0.0F;
+        text += fmt::format("{}{:#.9g}", i == 0 ? "" : ", ", value);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used) {
+    const std::vector<const VertexAttribute*> attributes = attributesOf(model, used);
+    if (attributes.empty()) {
+        return "#define GLINT_VERTEX_ATTRIBUTES 0\n";
+    }
+    std::string members;
+    std::string fallbacks;
+    std::string reads;
+    int stride = 0;
+    for (const VertexAttribute* const attribute : attributes) {
+        stride += attribute->channels;
+    }
+    int offset = 0;
+    constexpr const char* kChannels[] = {"x", "y", "z", "w"};
+    for (const VertexAttribute* const attribute : attributes) {
+        members += fmt::format("    {} {};\n", attribute->type, attribute->name);
+        fallbacks += fmt::format("    values.{} = {}({});\n", attribute->name, attribute->type,
+                                 channelsOf(*attribute));
+        reads += fmt::format(
+            "    if ({}) {{\n",
+            hasFeature(model.features[static_cast<std::size_t>(attribute->feature)], Asked::OfAnyKey));
+        for (int i = 0; i < attribute->channels; ++i) {
+            reads += fmt::format("        values.{}{} = vertexAttribute(geometry, corner, weights, {}u);\n",
+                                 attribute->name,
+                                 attribute->channels == 1 ? "" : fmt::format(".{}", kChannels[i]), offset++);
+        }
+        reads += "    }\n";
+    }
+    return fmt::format(
+        "// The attributes of vertices that features of the package read beside those of glTF's core. Each "
+        "vertex has "
+        "the\n// values of all of them, one after the other.\n"
+        "#define GLINT_VERTEX_ATTRIBUTES 1\n"
+        "const uint kVertexAttributeStride = {}u;\n"
+        "struct VertexAttributes {{\n{}}};\n\n"
+        "float vertexAttribute(HostGeometry geometry, uvec3 corner, vec3 weights, uint channel) {{\n"
+        "    return dot(weights, vec3(hostAttribute(geometry, corner.x, channel, kVertexAttributeStride),\n"
+        "                             hostAttribute(geometry, corner.y, channel, kVertexAttributeStride),\n"
+        "                             hostAttribute(geometry, corner.z, channel, kVertexAttributeStride)));\n"
+        "}}\n\n"
+        "VertexAttributes fetchAttributes(HostGeometry geometry, uvec3 corner, vec3 weights, Features "
+        "features) {{\n"
+        "    VertexAttributes values;\n{}{}    return values;\n}}\n",
+        stride, members, fallbacks, reads);
+}
+
+Status addMaskCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
+                   SourceSet& generated) {
+    const std::vector<const FeatureCode*> code = codeOf(model, used);
+    constexpr CodeFile kStages[] = {&FeatureCode::coordinates, &FeatureCode::opacity};
+    mustache::data context;
+    context.set("includes", includesOf(code, kStages));
+    context.set("coordinates", stageOf(model, code, &FeatureCode::coordinates, Asked::OfAnyKey));
+    context.set("opacity", stageOf(model, code, &FeatureCode::opacity, Asked::OfAnyKey));
+    Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", kMaskTemplate), context);
+    if (!text) {
+        return text.error();
+    }
+    generated.add(fmt::format("generated/{}", kMaskTemplate), std::move(*text));
+    return okStatus();
+}
+
+Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
+                       SourceSet& generated) {
+    const std::vector<const FeatureCode*> code = codeOf(model, used);
+    constexpr CodeFile kStages[] = {&FeatureCode::coordinates, &FeatureCode::surface, &FeatureCode::bsdf,
+                                    &FeatureCode::emission};
     mustache::data context;
     addLayers(context, model, code);
-    context.set("includes", includesOf(code));
+    context.set("includes", includesOf(code, kStages));
+    context.set("coordinates", stageOf(model, code, &FeatureCode::coordinates));
+    const bool changesCoordinates =
+        std::ranges::any_of(code, [](const FeatureCode* one) { return !one->coordinates.empty(); });
+    context.set("changesCoordinates", mustache::data(changesCoordinates));
     context.set("surface", stageOf(model, code, &FeatureCode::surface));
     context.set("bsdf", stageOf(model, code, &FeatureCode::bsdf));
     context.set("emission", stageOf(model, code, &FeatureCode::emission));
@@ -139,6 +256,24 @@ Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, Fea
         generated.add(fmt::format("generated/{}", name), std::move(*text));
     }
     return okStatus();
+}
+
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
+    if (error.id != "glsl" || model.sources.empty()) {
+        return error;
+    }
+    for (const FeatureCode& code : model.code) {
+        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
+        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
+            error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
+            error.hint = "correct the file; docs/material_features.md says what each stage may use";
+            return error;
+        }
+    }
+    error.hint =
+        "look whether a pack has all functions of its stages (docs/material_features.md); "
+        "otherwise this is a defect of Glint";
+    return error;
 }
 
 Result<const SourceSet*> MaterialCodeOfCases::find(FeatureMask used) {

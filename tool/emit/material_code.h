@@ -15,6 +15,19 @@ namespace glint {
 Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
                        SourceSet& generated);
 
+// Adds "generated/mask_stages.glsl" in the same way: the code that decides about the opacity of candidates of
+// rays and of rasterised triangles, which may be of any case. `used` must be the features of the whole
+// package.
+Status addMaskCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
+                   SourceSet& generated);
+
+// Returns "generated/attributes.glsl": the attributes of vertices that the features of `used` read beside
+// those of glTF.
+std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used);
+
+// Says what to do about an error in GLSL to which packs may have contributed, and which feature it is of.
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model);
+
 // The material code of modules that know their features: those of a case. Their text then has no code of
 // other features, so that a change of a feature's GLSL leaves the shaders of other cases as they are.
 class MaterialCodeOfCases {

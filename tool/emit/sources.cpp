@@ -29,12 +29,29 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
     define("SOMETIMES", sometimes);
 }
 
+// The features with code that runs where alpha is tested.
+FeatureMask maskCodeFeatures(const MaterialModel& model) {
+    FeatureMask mask = 0;
+    for (const FeatureCode& code : model.code) {
+        mask |= code.coordinates.empty() && code.opacity.empty()
+                    ? 0
+                    : model.features[static_cast<std::size_t>(code.feature)].mask();
+    }
+    return mask;
+}
+
 // The features that decide about the alpha of a hit.
 FeatureMask alphaFeatures(const MaterialModel& model) {
     FeatureMask mask = 0;
     for (const char* const name :
          {"baseColorTexture", "texCoord0", "texCoord1", "textureTransform", "vertexColor"}) {
         mask |= model.mask(name);
+    }
+    mask |= maskCodeFeatures(model);
+    for (const Feature& feature : model.features) {
+        const bool readForCode =
+            feature.lobe >= 0 && (mask & model.features[static_cast<std::size_t>(feature.lobe)].mask()) != 0;
+        mask |= readForCode ? feature.mask() : 0;
     }
     return mask;
 }
@@ -63,8 +80,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += "// What the alpha test of rays needs of the same.\n";
     const FeatureMask alpha =
         settings.plan.keys.alpha == AlphaPolicy::Tested ? alphaFeatures(*plan.model) : 0;
-    text += fmt::format("#define GLINT_ALPHA_ALWAYS {:#x}u\n", (plan.always & alpha) >> 32U);
-    text += fmt::format("#define GLINT_ALPHA_SOMETIMES {:#x}u\n", (plan.sometimes & alpha) >> 32U);
+    defineFeatures(text, "GLINT_ALPHA", plan.always & alpha, plan.sometimes & alpha);
     text += "// Settings\n";
     text +=
         fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(settings.plan.keys.alpha == AlphaPolicy::Tested));
@@ -88,6 +104,8 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += effectDefines(plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
+    const FeatureMask maskCode = maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
+    text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && maskCode != 0));
     return text;
 }
 
@@ -138,6 +156,10 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     if (Status status = addMaterialCode(sources, *plan.model, used, sources); !status) {
         return status.error();
     }
+    if (Status status = addMaskCode(sources, *plan.model, used, sources); !status) {
+        return status.error();
+    }
+    sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     addEffects(context, plan.effects.effects);
     for (const std::string_view name : kGenerated) {

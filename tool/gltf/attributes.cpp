@@ -174,6 +174,40 @@ Status readInfluences(const Reader& reader) {
     return okStatus();
 }
 
+// Reads the attributes that packs declare.
+Status readDeclared(const Reader& reader) {
+    const Document& document = reader.document();
+    for (const VertexAttribute& declared : document.options().materialModel->attributes) {
+        const int accessor = attributeAccessor(reader.source, declared.gltf.c_str());
+        const bool known = std::ranges::find(reader.primitive.attributes, declared.gltf,
+                                             &VertexValues::name) != reader.primitive.attributes.end();
+        if (accessor < 0 || known) {
+            continue;
+        }
+        const std::string pointer = reader.pointer(declared.gltf.c_str());
+        Result<FloatElements> elements =
+            readElements(reader, declared.gltf.c_str(), accessor, Integers::AsValues);
+        if (!elements) {
+            return elements.error();
+        }
+        if (elements->count != reader.primitive.positions.size()) {
+            return document.error("attribute-count", pointer,
+                                  fmt::format("has {} elements, POSITION has {}", elements->count,
+                                              reader.primitive.positions.size()),
+                                  kExportMesh);
+        }
+        if (elements->components != static_cast<std::size_t>(declared.channels)) {
+            return document.error("attribute-type", pointer,
+                                  fmt::format("has {} components; the pack's attribute \"{}\" has {}",
+                                              elements->components, declared.name, declared.channels),
+                                  "export the mesh again, or correct the declaration");
+        }
+        reader.primitive.attributes.push_back(
+            {declared.gltf, static_cast<std::uint32_t>(declared.channels), std::move(elements->values)});
+    }
+    return okStatus();
+}
+
 Status readAttributes(const Reader& reader) {
     Primitive& primitive = reader.primitive;
     constexpr Integers kValues = Integers::AsValues;
@@ -193,6 +227,9 @@ Status readAttributes(const Reader& reader) {
         return s;
     }
     if (Status s = readInfluences(reader); !s) {
+        return s;
+    }
+    if (Status s = readDeclared(reader); !s) {
         return s;
     }
     if (primitive.normals.empty() && attributeAccessor(reader.source, "TANGENT") >= 0) {

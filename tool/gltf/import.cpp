@@ -92,6 +92,23 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
     }
 }
 
+namespace {
+
+// Returns a bit for each of the model's attributes that the primitive has.
+std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
+    const std::vector<VertexAttribute>& known =
+        scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
+                           primitive.attributes.end();
+        bits |= std::uint64_t{given} << i;
+    }
+    return bits;
+}
+
+}  // namespace
+
 std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
     std::vector<PrimitiveInputs> inputs;
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
@@ -106,6 +123,7 @@ std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
             input.hasTexCoords0 = !primitive.texCoords0.empty();
             input.hasTexCoords1 = !primitive.texCoords1.empty();
             input.colors = primitive.colorContent;
+            input.attributes = attributesOf(scene, primitive);
             inputs.push_back(input);
         }
     }

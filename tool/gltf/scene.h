@@ -23,6 +23,13 @@ using Float4 = std::array<float, 4>;
 // Column-major 4 x 4, column vectors: element (row r, column c) is m[4 * c + r], as in glTF.
 using Matrix4 = std::array<double, 16>;
 
+// Values of an attribute of vertices that a pack declares, vertex by vertex.
+struct VertexValues {
+    std::string name;  // in glTF: "_WEAR"
+    std::uint32_t channels = 1;
+    std::vector<float> values;
+};
+
 // A triangle list. Each attribute array is empty or as long as the positions; the indices are always filled.
 struct Primitive {
     std::string pointer;  // JSON pointer, "/meshes/0/primitives/1"
@@ -34,6 +41,8 @@ struct Primitive {
     std::vector<Float2> texCoords1;
     std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
     ColorContent colorContent = ColorContent::None;
+    std::vector<VertexValues>
+        attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
     std::vector<MorphTarget> targets;    // normals and tangents only if the primitive has them
     SkinInfluences influences;

@@ -80,6 +80,7 @@ constexpr struct {
     {"", "movesTextures", Fact::MovesTextures, false},
     {"", "givesTransforms", Fact::GivesTransforms, false},
     {"needed", "tangents", Fact::NeedsTangents, false},
+    {"", "changesOpacity", Fact::ChangesOpacity, false},
 };
 
 // "clearcoatRoughnessTexture" becomes "CLEARCOAT_ROUGHNESS_TEXTURE", and "texCoord0" "TEX_COORD_0".
@@ -137,6 +138,7 @@ public:
                 parameter.scaledBy = model_.parameters[static_cast<std::size_t>(parameter.aliasOf)].scaledBy;
             }
         }
+        keepPlacesOfUnlit();
         std::vector<DeclaredCode> code;
         for (const File& file : files_) {
             const Members members = membersOf(file);
@@ -171,7 +173,8 @@ private:
     static constexpr std::string_view kFileMembers[] = {
         "$schema", "name",     "about",    "extension", "object",     "stage",   "short",    "order",
         "needs",   "lit",      "replaces", "excludes",  "parameters", "derived", "textures", "given",
-        "neutral", "features", "effects",  "gltf",      "cost",       "ofBase",  "glsl"};
+        "neutral", "features", "effects",  "gltf",      "cost",       "ofBase",  "glsl",     "attributes"};
+    static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
     static constexpr std::string_view kFeatureMembers[] = {"name",  "about", "stage", "short",   "order",
                                                            "needs", "gltf",  "given", "neutral", "cost"};
     static constexpr std::string_view kTextureMembers[] = {"name",  "about",   "short",  "order",
@@ -246,12 +249,7 @@ private:
         std::string capital = feature.name;
         capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
         feature.shortName = members.text("short", capital);
-        if (members.has("needs")) {
-            if (members.text("needs") != "tangents") {
-                failAt(members.at("needs"), "the only thing that can be needed is \"tangents\"");
-            }
-            feature.needsTangents = true;
-        }
+        readNeeds(members, feature);
         if (members.has("cost")) {
             const Members cost(members["cost"], members.at("cost"), {"instructions", "fetches"});
             feature.cost = {cost.number("instructions", 0.0), cost.number("fetches", 0.0)};
@@ -259,6 +257,24 @@ private:
         pending_.push_back(
             {std::move(feature), members.number("order", kNoOrder), members.where(), isLit, isOfPack_});
         return static_cast<int>(pending_.size()) - 1;
+    }
+
+    static void readNeeds(const Members& members, Feature& feature) {
+        if (!members.has("needs")) {
+            return;
+        }
+        const std::vector<std::string> needs =
+            members["needs"].is_array() ? members.texts("needs") : std::vector{members.text("needs")};
+        for (const std::string& need : needs) {
+            if (need == "tangents") {
+                feature.needsTangents = true;
+            } else if (need == "texCoord0" || need == "texCoord1") {
+                feature.needsTexCoord = need == "texCoord1" ? 1 : 0;
+            } else {
+                failAt(members.at("needs"),
+                       fmt::format("\"{}\" is none of \"tangents\", \"texCoord0\" and \"texCoord1\"", need));
+            }
+        }
     }
 
     void collect(File& file) {
@@ -294,6 +310,9 @@ private:
             if (!texture.has("is")) {
                 addTexture(file, texture);
             }
+        }
+        for (const auto& [json, where] : members.list("attributes")) {
+            addAttribute(file, Members(*json, where, kAttributeMembers));
         }
         for (const auto& [json, where] : members.list("features")) {
             const Members further(*json, where, kFeatureMembers);
@@ -376,6 +395,47 @@ private:
             failAt(members.at("name"), fmt::format("\"{}\" is declared twice", name));
         }
         model_.parameters.push_back(std::move(parameter));
+    }
+
+    void addAttribute(const File& file, const Members& members) {
+        VertexAttribute attribute;
+        attribute.name = newName(members);
+        attribute.gltf = members.text("at");
+        attribute.about = members.text("about", "");
+        const auto& type = choose(kTypes, members, "type", members.text("type"));
+        attribute.type = type.glsl;
+        attribute.channels = type.channels;
+        attribute.feature = file.mainFeature;
+        if (file.mainFeature < 0) {
+            failAt(members.where(), "needs a feature that reads it: give the declaration \"neutral\"");
+        }
+        // Attributes of an application begin with an underscore: glTF 2.0, section 3.7.2.1.
+        if (attribute.gltf.size() < 2 || attribute.gltf.front() != '_') {
+            failAt(members.at("at"),
+                   fmt::format("\"{}\" must begin with an underscore, as glTF wants it of attributes "
+                               "that are not its own",
+                               attribute.gltf));
+        }
+        if (members.has("default")) {
+            Parameter value;
+            value.channels = attribute.channels;
+            value.low = -kLargestFloat;
+            value.high = kLargestFloat;
+            readDefault(members, value);
+            attribute.fallback = value.fallback;
+        }
+        for (const VertexAttribute& other : model_.attributes) {
+            if (other.gltf == attribute.gltf && other.channels != attribute.channels) {
+                failAt(members.at("type"),
+                       fmt::format("{} has {} channels here and {} for \"{}\"", attribute.gltf,
+                                   attribute.channels, other.channels, other.name));
+            }
+        }
+        if (model_.attributes.size() == kMostVertexAttributes) {
+            failAt(members.where(),
+                   fmt::format("there are more than {} attributes of vertices", kMostVertexAttributes));
+        }
+        model_.attributes.push_back(std::move(attribute));
     }
 
     void addTexture(const File& file, const Members& members) {
@@ -474,6 +534,9 @@ private:
             file.mainFeature =
                 file.mainFeature < 0 ? -1 : indexOf[static_cast<std::size_t>(file.mainFeature)];
         }
+        for (VertexAttribute& attribute : model_.attributes) {
+            attribute.feature = indexOf[static_cast<std::size_t>(attribute.feature)];
+        }
         // Slots have the order of their bits.
         std::ranges::sort(model_.textures, {}, &MaterialTexture::feature);
         for (std::size_t i = 0; i < model_.textures.size(); ++i) {
@@ -520,6 +583,10 @@ private:
         if (function == "readable" && names.size() == 1) {
             const int index = model_.findTexture(names[0]);
             return condition(index, model_.symbolOfTexture(index));
+        }
+        if (function == "attribute" && names.size() == 1) {
+            const int index = model_.findAttribute(names[0]);
+            return condition(index, model_.symbolOfAttribute(index));
         }
         if (function == "same" && names.size() == 2) {
             const std::array<int, 2> pair{model_.findTexture(names[0]), model_.findTexture(names[1])};
@@ -747,6 +814,13 @@ private:
                     needs[i].insert(exclusion.by);
                 }
             }
+            if (asksForOpacity(feature)) {
+                for (const FeatureCode& code : model_.code) {
+                    if (!code.opacity.empty() && code.feature != static_cast<int>(i)) {
+                        needs[i].insert(code.feature);
+                    }
+                }
+            }
             for (std::size_t other = 0; isLate(feature) && other < count; ++other) {
                 if (!isLate(model_.features[other])) {
                     needs[i].insert(static_cast<int>(other));
@@ -769,6 +843,28 @@ private:
             placed[static_cast<std::size_t>(*next)] = true;
             model_.order.push_back(*next);
         }
+    }
+
+    // Unlit surfaces read a texture and have an opacity, so packs may change where and how much.
+    void keepPlacesOfUnlit() {
+        FeatureMask kept = 0;
+        for (const Feature& feature : model_.features) {
+            const Feature& owner = feature.lobe < 0 ? feature : featureAt(feature.lobe);
+            const bool isPlace = owner.stage == Stage::Coordinates || owner.stage == Stage::Opacity;
+            kept |= isPlace ? feature.mask() : 0;
+        }
+        for (Exclusion& exclusion : model_.exclusions) {
+            if ((featureAt(exclusion.by).mask() & model_.unlit) != 0) {
+                exclusion.excluded &= ~kept;
+            }
+        }
+    }
+
+    bool asksForOpacity(const Feature& feature) const {
+        return std::ranges::any_of(feature.neutral, [&](const NeutralReason& reason) {
+            const auto& symbols = reason.when.symbols();
+            return std::ranges::find(symbols, model_.symbolOf(Fact::ChangesOpacity)) != symbols.end();
+        });
     }
 
     const std::vector<int>& indices(std::size_t count) {

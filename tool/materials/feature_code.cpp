@@ -17,7 +17,8 @@ bool isFileName(std::string_view name) {
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "emission", "after", "coversEmission", "traced"});
+                          {"surface", "bsdf", "layer", "diffuse", "emission", "coordinates", "opacity",
+                           "after", "coversEmission", "traced", "reciprocal"});
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -28,8 +29,13 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     struct {
         std::string_view member;
         std::string& file;
-    } const stages[] = {
-        {"surface", code.surface}, {"bsdf", code.bsdf}, {"layer", code.layer}, {"emission", code.emission}};
+    } const stages[] = {{"surface", code.surface},
+                        {"bsdf", code.bsdf},
+                        {"layer", code.layer},
+                        {"emission", code.emission},
+                        {"coordinates", code.coordinates},
+                        {"opacity", code.opacity},
+                        {"diffuse", code.diffuse}};
     for (const auto& [member, place] : stages) {
         if (members.has(member)) {
             const std::string name = members.text(member);
@@ -43,7 +49,8 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     declared.after = members.texts("after");
     code.coversEmission = members.flag("coversEmission", false);
     code.isTraced = members.flag("traced", false);
-    for (const std::string_view ofLayer : {"coversEmission", "traced"}) {
+    code.isReciprocal = members.flag("reciprocal", false);
+    for (const std::string_view ofLayer : {"coversEmission", "traced", "reciprocal"}) {
         if (members.has(ofLayer) && code.layer.empty()) {
             failAt(members.at(ofLayer), "is for layers; there is no \"layer\"");
         }
@@ -54,6 +61,16 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     if (!code.layer.empty() && declaration.text("stage") != "layer") {
         // Only lobes are asked for as layers are.
         failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
+    }
+    for (const std::string_view stage : {"coordinates", "opacity"}) {
+        // This code also runs in traversal, for keys that no case of the module has.
+        if (members.has(stage) && feature < 0) {
+            failAt(members.at(stage), "needs a feature of its own: give the declaration \"neutral\"");
+        }
+    }
+    if (!code.diffuse.empty() && (feature < 0 || code.bsdf.empty() || !code.layer.empty())) {
+        failAt(members.at("diffuse"),
+               "needs a feature of its own, and \"bsdf\", which sets its parameters; it can't be a layer");
     }
     if (!code.layer.empty() && code.bsdf.empty()) {
         failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");

@@ -142,8 +142,12 @@ Certainty MaterialFacts::condition(int symbol) const {
         const Feature& feature = model.features[static_cast<std::size_t>(symbol - model.symbolOfFeature(0))];
         return certain((key_ & feature.mask()) != 0);
     }
-    if (symbol < model.symbolOfPair(0)) {
+    if (symbol < model.symbolOfAttribute(0)) {
         return certain(isReadable(material_, primitive_, symbol - model.symbolOfTexture(0)));
+    }
+    if (symbol < model.symbolOfPair(0)) {
+        const int attribute = symbol - model.symbolOfAttribute(0);
+        return certain((primitive_.attributes >> static_cast<unsigned>(attribute) & 1U) != 0);
     }
     const std::array<int, 2>& pair = model.pairs[static_cast<std::size_t>(symbol - model.symbolOfPair(0))];
     return certain(sameTexture(material_.textures[static_cast<std::size_t>(pair[0])],
@@ -160,6 +164,9 @@ bool MaterialFacts::readsTexCoord(int set) const {
     for (const Feature& feature : model.features) {
         if (!inKey(feature)) {
             continue;
+        }
+        if (feature.needsTexCoord == set) {
+            return true;
         }
         if (feature.texture >= 0) {
             if (!feature.hasOwnCoordinates &&
@@ -221,6 +228,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
             return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
                 return feature.needsTangents && (key_ & feature.mask()) != 0;
             }));
+        case Fact::ChangesOpacity:
+            return certain((key_ & model.opacityFeatures()) != 0);
         case Fact::Color:
         case Fact::Count:
             break;

@@ -141,6 +141,7 @@ struct PrimitiveInputs {
     bool hasTexCoords0 = false;
     bool hasTexCoords1 = false;
     ColorContent colors = ColorContent::None;
+    std::uint64_t attributes = 0;  // one bit for each of MaterialModel::attributes that it has
     double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
 
     bool hasTexCoords(int set) const {

@@ -61,6 +61,20 @@ int MaterialModel::findObject(std::string_view name) const {
     return indexOf(objects, name);
 }
 
+int MaterialModel::findAttribute(std::string_view name) const {
+    return indexOf(attributes, name);
+}
+
+FeatureMask MaterialModel::opacityFeatures() const {
+    FeatureMask mask = 0;
+    for (const FeatureCode& row : code) {
+        mask |= row.opacity.empty() || row.feature < 0
+                    ? 0
+                    : features[static_cast<std::size_t>(row.feature)].mask();
+    }
+    return mask;
+}
+
 FeatureMask MaterialModel::mask(std::string_view feature) const {
     const int index = findFeature(feature);
     return index < 0 ? 0 : features[static_cast<std::size_t>(index)].mask();
@@ -91,6 +105,8 @@ std::string MaterialModel::featureDefines() const {
                             1U << (static_cast<unsigned>(feature.bit) % 32U));
         text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", feature.macro.substr(6),
                             feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
+        text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", feature.macro.substr(6),
+                            feature.bit < kFirstInput ? "lobeOfKey" : "inputOfKey", feature.macro);
     }
     return text;
 }
@@ -107,8 +123,12 @@ int MaterialModel::symbolOfTexture(int texture) const {
     return symbolOfFeature(static_cast<int>(features.size())) + texture;
 }
 
+int MaterialModel::symbolOfAttribute(int attribute) const {
+    return symbolOfTexture(static_cast<int>(textures.size())) + attribute;
+}
+
 int MaterialModel::symbolOfPair(int pair) const {
-    return symbolOfTexture(static_cast<int>(textures.size())) + pair;
+    return symbolOfAttribute(static_cast<int>(attributes.size())) + pair;
 }
 
 }  // namespace glint

@@ -107,6 +107,23 @@ struct MaterialTexture {
     std::vector<Place> places;
 };
 
+// An attribute of vertices that a feature reads beside those of glTF's core: "_WEAR".
+struct VertexAttribute {
+    std::string name;  // unique in the model, and the member of VertexAttributes in GLSL
+    std::string gltf;  // its name in the attributes of a primitive
+    std::string type;  // in GLSL: "float", "vec2", "vec3", "vec4"
+    std::string about{};
+    int channels = 1;
+    // The value on primitives that lack it. Without one, such primitives do not have the feature.
+    std::optional<std::array<float, 4>> fallback{};
+    int feature = -1;  // index into MaterialModel::features
+
+    std::uint64_t mask(int index) const {
+        return std::uint64_t{1} << static_cast<unsigned>(index);
+    }
+};
+inline constexpr std::size_t kMostVertexAttributes = 64;
+
 // A reason why a feature that the file asks for changes nothing.
 struct NeutralReason {
     Expression when;
@@ -143,6 +160,7 @@ struct Feature {
     int texture = -1;  // index into MaterialModel::textures: the feature is that this is read
     int lobe = -1;     // the feature without which the texture is not read, or -1
     bool needsTangents = false;
+    int needsTexCoord = -1;          // the UV set that its GLSL reads by itself, or -1
     bool hasOwnCoordinates = false;  // the texture's GLSL makes its coordinates; it needs no UV set
     bool isOfBase = false;           // Hits keep it with --hit-lobes base.
     FeatureCost cost{};
@@ -161,14 +179,19 @@ struct FeatureCode {
     int feature = -1;         // Keys without this feature do not run the code; -1: all keys run it.
     int unless = -1;          // Keys with this feature do not run it.
     // Names of files as an #include gives them, empty where there is no such function. surface:
-    // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); layer: the struct Clearcoat
-    // and the functions that shaders/bsdf/layer.glsl lists.
+    // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); coordinates:
+    // clearcoatCoordinates(); opacity: clearcoatOpacity(); diffuse: the struct Clearcoat and
+    // clearcoatDiffuse(); layer: the struct Clearcoat and the functions that shaders/bsdf/layer.glsl lists.
     std::string surface{};
     std::string bsdf{};
     std::string layer{};
+    std::string diffuse{};
     std::string emission{};
+    std::string coordinates{};
+    std::string opacity{};
     bool coversEmission = false;  // the layer takes what it reflects from the emission, too
     bool isTraced = false;        // rays may trace the layer's reflection
+    bool isReciprocal = false;    // the layer claims that view and light may change places
     bool isOfPack = false;        // of a user's own
 };
 
@@ -202,6 +225,7 @@ enum class Fact : std::uint8_t {
     MovesTextures,    // a texture that the key reads has a transform
     GivesTransforms,  // some texture has one
     NeedsTangents,    // a feature of the key reads tangents
+    ChangesOpacity,   // a feature of the key has GLSL at the stage opacity
     Count
 };
 
@@ -217,8 +241,9 @@ public:
     std::vector<Parameter> parameters;
     std::vector<DerivedField> derived;
     std::vector<MaterialTexture> textures;
-    std::vector<Feature> features;  // by bit
-    std::vector<int> order;         // indices into `features`, in the order of evaluation
+    std::vector<VertexAttribute> attributes;  // of packs
+    std::vector<Feature> features;            // by bit
+    std::vector<int> order;                   // indices into `features`, in the order of evaluation
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
     std::vector<FeatureCode> code;          // in the order in which it runs
@@ -233,6 +258,7 @@ public:
     int findTexture(std::string_view name) const;
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
+    int findAttribute(std::string_view name) const;
 
     // Returns the feature's bit, or 0 if there is no such feature.
     FeatureMask mask(std::string_view feature) const;
@@ -240,15 +266,20 @@ public:
     std::vector<std::string_view> names(FeatureMask mask) const;
     // Returns the base models, without which no hit can do.
     FeatureMask baseModels() const;
+    // Returns the features that have GLSL at the stage opacity.
+    FeatureMask opacityFeatures() const;
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
-    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it. GLINT_LOBES is the set of lobes.
+    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and
+    // GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where the code runs for keys that are not the module's own.
+    // GLINT_LOBES is the set of lobes.
     std::string featureDefines() const;
 
     // Numbers of symbols. The kinds follow each other.
     int symbolOf(Fact fact) const;
-    int symbolOfFeature(int feature) const;  // has(feature)
-    int symbolOfTexture(int texture) const;  // readable(texture)
-    int symbolOfPair(int pair) const;        // same(texture, texture)
+    int symbolOfFeature(int feature) const;      // has(feature)
+    int symbolOfTexture(int texture) const;      // readable(texture)
+    int symbolOfAttribute(int attribute) const;  // attribute(name)
+    int symbolOfPair(int pair) const;            // same(texture, texture)
 };
 
 // The model of glTF's core and of the extensions that Glint shades. It is read once, from the declarations

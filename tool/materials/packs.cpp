@@ -62,7 +62,8 @@ Status checkCode(const MaterialModel& model) {
         if (!code.isOfPack) {
             continue;
         }
-        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission}) {
+        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission, code.coordinates,
+                                        code.opacity, code.diffuse}) {
             if (!file.empty() && !isThere(file)) {
                 return makeError(
                     "materials-glsl", file,

@@ -1,5 +1,6 @@
 #include "base/files.h"
 #include "base/json.h"
+#include "base/suggest.h"
 #include "base/text.h"
 
 #include <glint/measure/profile.h>
@@ -184,6 +185,27 @@ void chooseAlpha(const Settings& settings, const SceneList& scenes, PlanChoice& 
     }
 }
 
+// Adds the lobes of packs that hits keep. Their bits are known only once the packs are read.
+Status keepPackLobes(const Settings& settings, const SceneList& scenes, KeyOptions& keys) {
+    const MaterialModel& model =
+        scenes.materials().empty() ? builtinMaterialModel() : scenes.materials().front().model();
+    for (const std::string& name : settings.packLobes) {
+        const int feature = model.findFeature(name);
+        if (feature < 0 || !model.features[static_cast<std::size_t>(feature)].isLobe) {
+            std::vector<std::string> names;
+            for (const std::string_view lobe : model.names(model.lobes)) {
+                names.emplace_back(lobe);
+            }
+            return makeError(
+                "hit-lobe-unknown", "",
+                fmt::format("neither Glint nor a pack has a lobe \"{}\"{}", name, suggestion(name, names)),
+                "correct --hit-lobes, or add the pack by --materials");
+        }
+        keys.keptLobes |= model.features[static_cast<std::size_t>(feature)].mask();
+    }
+    return okStatus();
+}
+
 }  // namespace
 
 Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options) {
@@ -242,6 +264,9 @@ Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes)
     choice.options = settings.compile.plan;
     choice.options.keys.alpha = settings.alpha.value_or(AlphaPolicy::Opaque);
     chooseAlpha(settings, scenes, choice);
+    if (Status kept = keepPackLobes(settings, scenes, choice.options.keys); !kept) {
+        return kept.error();
+    }
     if (settings.profile.empty()) {
         return choice;
     }

@@ -32,7 +32,7 @@ Json settingsToJson(const Configuration& configuration) {
 }
 
 // Returns the interval over the rounds of a point.
-Interval intervalOf(const BenchPoint& point, double ImageErrors::*member) {
+Interval errorInterval(const BenchPoint& point, double ImageErrors::*member) {
     std::vector<double> values;
     for (const ImageErrors& errors : point.errors) {
         values.push_back(errors.*member);
@@ -46,12 +46,12 @@ Json errorsToJson(const BenchPoint& point) {
         biases.push_back(errors.bias);
     }
     const MeanInterval bias = measure::meanOf(biases);
-    return {{"relMse", toJson(intervalOf(point, &ImageErrors::relMse))},
-            {"rmse", toJson(intervalOf(point, &ImageErrors::rmse))},
-            {"psnr", toJson(intervalOf(point, &ImageErrors::psnr))},
-            {"p999", toJson(intervalOf(point, &ImageErrors::p999))},
-            {"trimmed", toJson(intervalOf(point, &ImageErrors::trimmed))},
-            {"flip", toJson(intervalOf(point, &ImageErrors::flip))},
+    return {{"relMse", toJson(errorInterval(point, &ImageErrors::relMse))},
+            {"rmse", toJson(errorInterval(point, &ImageErrors::rmse))},
+            {"psnr", toJson(errorInterval(point, &ImageErrors::psnr))},
+            {"p999", toJson(errorInterval(point, &ImageErrors::p999))},
+            {"trimmed", toJson(errorInterval(point, &ImageErrors::trimmed))},
+            {"flip", toJson(errorInterval(point, &ImageErrors::flip))},
             {"bias", {{"mean", bias.mean}, {"low", bias.low}, {"high", bias.high}}}};
 }
 

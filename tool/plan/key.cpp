@@ -100,6 +100,16 @@ private:
                 return reason.because;
             }
         }
+        const auto index = static_cast<int>(&feature - model_.features.data());
+        for (std::size_t i = 0; i < model_.attributes.size(); ++i) {
+            const VertexAttribute& attribute = model_.attributes[i];
+            if (attribute.feature == index && !attribute.fallback && (primitive_.attributes >> i & 1U) == 0) {
+                return fmt::format("the primitive has no {}", attribute.gltf);
+            }
+        }
+        if (feature.needsTexCoord >= 0 && !primitive_.hasTexCoords(feature.needsTexCoord)) {
+            return fmt::format("the primitive has no TEXCOORD_{}", feature.needsTexCoord);
+        }
         if (info == nullptr || feature.hasOwnCoordinates) {
             return std::nullopt;
         }

@@ -44,6 +44,15 @@ std::vector<MorphTargetView> toViews(const std::vector<MorphTarget>& targets) {
     return views;
 }
 
+std::vector<AttributeView> toViews(const std::vector<VertexValues>& attributes) {
+    std::vector<AttributeView> views;
+    views.reserve(attributes.size());
+    for (const VertexValues& attribute : attributes) {
+        views.push_back({attribute.name, attribute.channels, attribute.values});
+    }
+    return views;
+}
+
 PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t index) {
     PrimitiveView view;
     view.mesh = static_cast<std::uint32_t>(mesh);
@@ -157,6 +166,8 @@ SceneViewData makeSceneView(const Scene& scene) {
                 data.primitives.push_back(toView(primitives[index], mesh, index));
                 data.primitives.back().targets =
                     data.targets.emplace_back(toViews(primitives[index].targets));
+                data.primitives.back().attributes =
+                    data.attributes.emplace_back(toViews(primitives[index].attributes));
                 visible[mesh] = true;
             }
         }

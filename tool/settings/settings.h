@@ -59,6 +59,7 @@ struct Settings {
     std::string variant;      // of KHR_materials_variants; empty: none
     bool strictPaths = false;
     std::vector<std::string> materials;  // folders of packs: material features of a user's own
+    std::vector<std::string> packLobes;  // lobes of these that hits keep besides those of compile.plan.keys
     bool validate = false;
 };
 

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -235,6 +236,7 @@ inline std::string hitLobesOf(const Settings& settings) {
     if (hasBase) {
         words.insert(words.begin(), "base");
     }
+    words.insert(words.end(), settings.packLobes.begin(), settings.packLobes.end());
     return fmt::format("{}", fmt::join(words, ","));
 }
 
@@ -242,11 +244,24 @@ inline void setHitLobes(Settings& settings, std::string_view text) {
     const MaterialModel& model = builtinMaterialModel();
     FeatureMask& kept = settings.compile.plan.keys.keptLobes;
     kept = 0;
+    settings.packLobes.clear();
     eachWord(text, [&](std::string_view word) {
+        if (word != kAll && word != "base" && (model.mask(word) & kLobeMask) == 0) {
+            settings.packLobes.emplace_back(word);
+            kept |= model.baseModels();
+            return;
+        }
         kept |= word == kAll     ? kLobeMask
                 : word == "base" ? baseLobes()
                                  : model.baseModels() | model.mask(word);
     });
+}
+
+// Whether a declaration of a pack may have the name.
+inline bool isFeatureName(std::string_view text) {
+    const auto isLetterOrDigit = [](unsigned char c) { return std::isalnum(c) != 0; };
+    return !text.empty() && std::islower(static_cast<unsigned char>(text.front())) != 0 &&
+           std::ranges::all_of(text, isLetterOrDigit);
 }
 
 inline std::vector<SettingWord> hitLobeWords() {
@@ -312,7 +327,9 @@ inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
                                          .text = hitLobesOf,
                                          .set = setHitLobes,
                                          .words = hitLobeWords,
-                                         .type = "all|base|LIST"};
+                                         .type = "all|base|LIST",
+                                         .accepts = isFeatureName,
+                                         .further = "lobes of packs (--materials)"};
 
 inline constexpr SettingValues kMerge{
     .form = ValueForm::Word,

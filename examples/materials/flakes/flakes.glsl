@@ -12,7 +12,9 @@ struct Flakes {
 void flakesPrepare(inout Flakes layer, vec3 view) {}
 
 LayerAlbedo flakesShares(Flakes layer, vec3 view) {
-    float single = 1.0 - ggxLoss(clearcoatViewCosine(layer.facets, view), layer.facets.alpha);
+    // Flakes that turn away from the viewer show nothing.
+    bool isSeen = clearcoatFacesViewer(layer.facets, view);
+    float single = isSeen ? 1.0 - ggxLoss(clearcoatViewCosine(layer.facets, view), layer.facets.alpha) : 0.0;
     return LayerAlbedo(layer.color * single, 1.0 - layer.coverage);
 }
 
@@ -24,7 +26,7 @@ LayerLight flakesEvaluate(Flakes layer, vec3 view, vec3 l) {
     float nDotL = accurateDot(layer.facets.normal, l);
     float nDotV = clearcoatViewCosine(layer.facets, view);
     LayerLight light = LayerLight(vec3(0.0), 1.0 - layer.coverage, nDotL);
-    if (nDotL > 0.0 && (l.z > 0.0 || clearcoatFacesViewer(layer.facets, view))) {
+    if (nDotL > 0.0 && clearcoatFacesViewer(layer.facets, view)) {
         light.reflected =
             layer.color * (nDotL * clearcoatLobe(layer.facets.normal, nDotL, nDotV, view, l, layer.facets.alpha));
     }

@@ -32,6 +32,7 @@ struct EngineGeometryView {
     VkDeviceAddress texCoords0 = 0;
     VkDeviceAddress texCoords1 = 0;
     VkDeviceAddress colors = 0;
+    VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
 };
 
 // A texture of the package's scene (PackageScene::textures) as the host has it.

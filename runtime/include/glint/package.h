@@ -91,6 +91,8 @@ public:
     // These spans are valid as long as the package. Cases are indexed by shader ID.
     std::span<const package::CaseEntry> cases() const;
     std::span<const package::ModuleEntry> modules() const;
+    // The attributes of vertices that shaders read beside those of glTF's core, in the order of their values.
+    std::span<const package::AttributeEntry> attributes() const;
     // Returns the number of scenes, which is at least 1.
     std::uint32_t sceneCount() const;
     // Scenes are in the order in which the compiler got them. `index` must be below sceneCount().

@@ -131,6 +131,7 @@ enum class SectionKind : std::uint32_t {
     Strings = 6,     // bytes, UTF-8
     Cases = 7,       // CaseEntry
     Scenes = 8,      // SceneEntry
+    Attributes = 9,  // AttributeEntry: attributes of vertices that packs declare
 };
 
 struct PackageSection {
@@ -229,6 +230,16 @@ struct TextureEntry {
     std::uint32_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
 };
 
+// An attribute of vertices that shaders read beside those of glTF's core. Each vertex of a primitive has the
+// values of all entries, one after the other, if the primitive's key has one of their features.
+struct AttributeEntry {
+    StringRef name;             // in glTF: "_WEAR"
+    std::uint32_t channels;     // 1 to 4
+    std::uint32_t hasFallback;  // 1: primitives may lack it
+    float fallback[4];
+    std::uint64_t feature;  // the bit of keys whose shaders read it
+};
+
 struct SamplerEntry {
     std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
     std::uint32_t wrapV;
@@ -246,5 +257,6 @@ static_assert(sizeof(SceneEntry) == 40);
 static_assert(sizeof(PrimitiveEntry) == 32);
 static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
+static_assert(sizeof(AttributeEntry) == 40);
 
 }  // namespace glint::package

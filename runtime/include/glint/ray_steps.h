@@ -87,6 +87,7 @@ struct RayBatch {
     const Environment* environment = nullptr;
     float environmentRotation = 0.0F;  // radians, as in FrameOptions
     float environmentIntensity = 1.0F;
+    float time = 0.0F;  // seconds that materials of packs may follow
     Timing timing = Timing::Frame;
 };
 

@@ -116,6 +116,9 @@ struct FrameOptions {
     // render() and renderSamples() use their count of samples, and record() uses 1.
     std::uint32_t averagedSamples = 0;
     std::uint32_t seed = 0;
+    // Seconds that materials of packs may follow, which read them as frameTime(). Floats have a step of
+    // 1/1000 s after some two hours; wrap the time before that.
+    float time = 0.0F;
     Timing timing = Timing::Frame;
 };
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace glint {
 
@@ -16,6 +17,13 @@ struct MorphTargetView {
     std::span<const std::array<float, 3>> positions;
     std::span<const std::array<float, 3>> normals;   // only if the primitive has normals
     std::span<const std::array<float, 3>> tangents;  // only if the primitive has tangents
+};
+
+// An attribute of vertices of an application's own, which materials of packs read.
+struct AttributeView {
+    std::string_view name;          // as in glTF: "_WEAR"
+    std::uint32_t channels = 1;     // 1 to 4
+    std::span<const float> values;  // `channels` for each position
 };
 
 // A triangle list. Attribute spans are empty or as long as `positions`. A missing span must agree with the
@@ -30,6 +38,8 @@ struct PrimitiveView {
     std::span<const std::array<float, 2>> texCoords1;
     std::span<const std::array<float, 4>> colors;  // linear RGBA
     std::span<const std::uint32_t> indices;        // three indices for each triangle
+    // Those that the package does not read (Package::attributes()) are ignored.
+    std::span<const AttributeView> attributes{};
     std::span<const MorphTargetView> targets{};
     // Joints and weights of a primitive that follows a skin, vertex by vertex. Every vertex has the same
     // number of them. Joints are indices into InstanceView::joints. The weights of a vertex are at least 0

@@ -102,6 +102,10 @@ std::span<const package::CaseEntry> Package::cases() const {
     return state_->cases;
 }
 
+std::span<const package::AttributeEntry> Package::attributes() const {
+    return state_->attributes;
+}
+
 std::span<const package::ModuleEntry> Package::modules() const {
     return state_->modules;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <tuple>
 
@@ -268,6 +269,19 @@ Status checkSamplers(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+Status checkAttributes(const Package::State& state, const std::string& where) {
+    for (const package::AttributeEntry& entry : state.attributes) {
+        const bool isBit = entry.feature != 0 && (entry.feature & (entry.feature - 1)) == 0;
+        const bool isFinite =
+            std::ranges::all_of(entry.fallback, [](float value) { return std::isfinite(value); });
+        if (!inStrings(state, entry.name) || entry.channels == 0 || entry.channels > 4 || !isBit ||
+            !isFinite || entry.hasFallback > 1) {
+            return altered(where, "an attribute of vertices is not well formed");
+        }
+    }
+    return okStatus();
+}
+
 }  // namespace
 
 package::PackageShape shapeOf(const Package::State& state) {
@@ -285,7 +299,8 @@ package::PackageShape shapeOf(const Package::State& state) {
 }
 
 Status checkTables(const Package::State& state, const std::string& where) {
-    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkSamplers}) {
+    for (const auto check :
+         {checkHeader, checkCases, checkModules, checkScenes, checkSamplers, checkAttributes}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

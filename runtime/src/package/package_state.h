@@ -32,6 +32,7 @@ struct Package::State {
     std::span<const char> strings;
     std::span<const package::CaseEntry> cases;
     std::span<const package::SceneEntry> scenes;
+    std::span<const package::AttributeEntry> attributes;
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };

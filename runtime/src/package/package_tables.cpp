@@ -121,6 +121,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.cases);
         case package::SectionKind::Scenes:
             return readSection(state, section, where, state.scenes);
+        case package::SectionKind::Attributes:
+            return readSection(state, section, where, state.attributes);
     }
     return makeError(
         "package-altered", where,
@@ -153,7 +155,7 @@ Status readTables(Package::State& state, const std::string& where) {
             return status;
         }
     }
-    constexpr std::size_t kSectionKinds = 8;
+    constexpr std::size_t kSectionKinds = 9;
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
                          "the package has " + std::to_string(seen.size()) + " of " +

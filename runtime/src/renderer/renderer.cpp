@@ -49,6 +49,9 @@ Status checkFrame(const FrameOptions& frame) {
         return makeError("frame-options", "", "maxSampleRadiance is not above 0",
                          "use a luminance, or infinity for no limit");
     }
+    if (!std::isfinite(frame.time)) {
+        return makeError("frame-options", "", "time is not finite", "use seconds");
+    }
     if (!std::isfinite(frame.screenThickness) || frame.screenThickness < 0.0F) {
         return makeError("frame-options", "", "screenThickness is negative or not finite",
                          "use a share of the distance, such as 0.02");
@@ -70,6 +73,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.sampleLodBias = std::log2(coneScale);
     constants.sampleIndex = options.sampleIndex;
     constants.seed = options.seed;
+    constants.time = options.time;
     constants.lightCount = state.scene.lightCount;
     constants.mirrorRoughness = options.mirrorRoughness;
     constants.maxReflectionRoughness = options.maxReflectionRoughness;

@@ -136,7 +136,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
-    // This agrees with hit/bucket_key.glsl.
+    // This agrees with order/bucket_key.glsl.
     size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
     size.environmentMap = package.environmentMap();
     size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&

@@ -21,25 +21,28 @@ struct AttributeUpload {
     VkDeviceSize offset = 0;
 };
 
-std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<const std::uint32_t> indices,
+                                          std::span<const float> attributes) {
     return {{bytesOf(indices), &GpuPrimitive::indices},
             {bytesOf(view.positions), &GpuPrimitive::positions},
             {bytesOf(view.normals), &GpuPrimitive::normals},
             {bytesOf(view.tangents), &GpuPrimitive::tangents},
             {bytesOf(view.texCoords0), &GpuPrimitive::texCoords0},
             {bytesOf(view.texCoords1), &GpuPrimitive::texCoords1},
-            {bytesOf(view.colors), &GpuPrimitive::colors}};
+            {bytesOf(view.colors), &GpuPrimitive::colors},
+            {bytesOf(attributes), &GpuPrimitive::attributes}};
 }
 
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                     const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+                                     const PrimitiveView& view, std::span<const std::uint32_t> indices,
+                                     std::span<const float> declared) {
     GpuPrimitive primitive;
     primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
     primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    std::vector<AttributeUpload> attributes = attributesOf(view, indices);
+    std::vector<AttributeUpload> attributes = attributesOf(view, indices, declared);
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
@@ -86,6 +89,7 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     record.texCoords0 = primitive.texCoords0;
     record.texCoords1 = primitive.texCoords1;
     record.colors = primitive.colors;
+    record.attributes = primitive.attributes;
     return record;
 }
 
@@ -181,8 +185,37 @@ void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, st
 
 }  // namespace
 
+std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
+                                  const PrimitiveView& view) {
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+    const std::span<const package::AttributeEntry> known = package.attributes();
+    if (std::ranges::none_of(known, [&](const auto& row) { return (row.feature & key) != 0; })) {
+        return {};
+    }
+    std::size_t stride = 0;
+    for (const package::AttributeEntry& row : known) {
+        stride += row.channels;
+    }
+    std::vector<float> joined(stride * view.positions.size());
+    std::size_t offset = 0;
+    for (const package::AttributeEntry& row : known) {
+        const auto given = std::ranges::find(view.attributes, package.string(row.name), &AttributeView::name);
+        for (std::size_t vertex = 0; vertex < view.positions.size(); ++vertex) {
+            float* const target = &joined[vertex * stride + offset];
+            if (given == view.attributes.end()) {
+                std::copy_n(row.fallback, row.channels, target);
+            } else {
+                std::copy_n(&given->values[vertex * row.channels], row.channels, target);
+            }
+        }
+        offset += row.channels;
+    }
+    return joined;
+}
+
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
-                                                   Uploader& uploader,
+                                                   Uploader& uploader, const Package& package,
+                                                   const PackageScene& known,
                                                    std::span<const PrimitiveView> primitives,
                                                    std::span<const std::vector<std::uint32_t>> ordered) {
     std::vector<GpuPrimitive> uploaded;
@@ -190,7 +223,9 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const PrimitiveView& view = primitives[i];
         const std::span<const std::uint32_t> indices = ordered.empty() ? view.indices : std::span(ordered[i]);
-        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view, indices);
+        const std::vector<float> attributes =
+            joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
+        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view, indices, attributes);
         if (!primitive) {
             return primitive.error();
         }

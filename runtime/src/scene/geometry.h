@@ -29,14 +29,20 @@ struct GpuPrimitive {
     VkDeviceAddress texCoords0 = 0;
     VkDeviceAddress texCoords1 = 0;
     VkDeviceAddress colors = 0;
+    VkDeviceAddress attributes = 0;  // of packs, as AttributeEntry describes
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
 };
 
+// Returns the values of the package's attributes vertex by vertex; none if the primitive's key reads none.
+std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
+                                  const PrimitiveView& view);
+
 // Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
 // each primitive in another order of its triangles; if it is empty, the primitives' own indices are used.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
-                                                   Uploader& uploader,
+                                                   Uploader& uploader, const Package& package,
+                                                   const PackageScene& known,
                                                    std::span<const PrimitiveView> primitives,
                                                    std::span<const std::vector<std::uint32_t>> ordered = {});
 

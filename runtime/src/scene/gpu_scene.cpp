@@ -51,7 +51,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         state.statistics.orderMs = millisecondsSince(begin);
     }
     Result<std::vector<GpuPrimitive>> primitives =
-        uploadPrimitives(state.context, state.pool, **uploader, scene.primitives, ordered);
+        uploadPrimitives(state.context, state.pool, **uploader, package, known, scene.primitives, ordered);
     if (!primitives) {
         return primitives.error();
     }
@@ -253,7 +253,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
                          "DeviceHandles::shaderFloat16, or compile with --precision 32");
     }
     const PackageScene known = package.scene(scene.packageScene);
-    if (Status s = checkScene(known, scene, contextState.limits.core.maxImageDimension2D); !s) {
+    if (Status s = checkScene(package, known, scene, contextState.limits.core.maxImageDimension2D); !s) {
         return s.error();
     }
     auto state = std::make_unique<State>(contextState);

@@ -54,6 +54,32 @@ Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry&
     return okStatus();
 }
 
+// The attributes of packs that the primitive's key reads.
+Status checkDeclared(const Package& package, const PrimitiveView& view, const package::PrimitiveEntry& entry,
+                     const std::string& where) {
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+    for (const package::AttributeEntry& row : package.attributes()) {
+        const std::string name(package.string(row.name));
+        const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
+        if (given == view.attributes.end()) {
+            if ((row.feature & key) != 0 && row.hasFallback == 0 && !view.positions.empty()) {
+                return makeError("scene-package", where,
+                                 "the package's key reads " + name + ", the primitive has none", kSameScene);
+            }
+            continue;
+        }
+        if (given->channels != row.channels || given->values.size() != view.positions.size() * row.channels) {
+            return makeError("scene-attribute", where,
+                             name + " has " + std::to_string(given->values.size()) + " values in " +
+                                 std::to_string(given->channels) + " channels for " +
+                                 std::to_string(view.positions.size()) + " positions; the package reads " +
+                                 std::to_string(row.channels) + " channels",
+                             "give as many values as the positions have, times the package's channels");
+        }
+    }
+    return okStatus();
+}
+
 Status checkIndices(const PrimitiveView& view, const std::string& where) {
     constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
     if (view.indices.size() % 3 != 0) {
@@ -81,7 +107,8 @@ std::tuple<std::uint32_t, std::uint32_t> keyOf(const PrimitiveView& view) {
     return {view.mesh, view.primitive};
 }
 
-Status checkPrimitives(const PackageScene& known, std::span<const PrimitiveView> primitives) {
+Status checkPrimitives(const Package& package, const PackageScene& known,
+                       std::span<const PrimitiveView> primitives) {
     const PrimitiveView* previous = nullptr;
     for (const PrimitiveView& view : primitives) {
         const std::string where = placeOf(view.mesh, view.primitive);
@@ -95,6 +122,9 @@ Status checkPrimitives(const PackageScene& known, std::span<const PrimitiveView>
             return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
         }
         if (Status status = checkAttributes(view, *entry, where); !status) {
+            return status;
+        }
+        if (Status status = checkDeclared(package, view, *entry, where); !status) {
             return status;
         }
         if (Status status = checkIndices(view, where); !status) {
@@ -188,8 +218,9 @@ Status checkLights(std::span<const LightView> lights) {
     return okStatus();
 }
 
-Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize) {
-    if (Status status = checkPrimitives(known, scene.primitives); !status) {
+Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
+                  std::uint32_t maxImageSize) {
+    if (Status status = checkPrimitives(package, known, scene.primitives); !status) {
         return status;
     }
     if (Status status = checkInstances(known, scene); !status) {

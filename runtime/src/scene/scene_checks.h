@@ -22,7 +22,9 @@ inline constexpr std::uint32_t kInputTangents = 1U << 11;
 // Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
 // scene), "scene-image", "scene-light". Their place is for instance "mesh 3, primitive 1", "image 2" or
 // "light 0".
-Status checkScene(const PackageScene& known, const SceneView& scene, std::uint32_t maxImageSize);
+// `known` is the scene of `package`.
+Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
+                  std::uint32_t maxImageSize);
 
 // The part of checkScene() for joints, weights and morph targets of primitives and instances. Errors:
 // "scene-attribute", "scene-index", "scene-motion".

@@ -90,6 +90,7 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& know
         record.texCoords0 = view.texCoords0;
         record.texCoords1 = view.texCoords1;
         record.colors = view.colors;
+        record.attributes = view.attributes;
         records.push_back(record);
     }
     return records;

@@ -151,6 +151,7 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.height = 1;
     constants.sampleIndex = batch.sampleIndex;
     constants.seed = batch.seed;
+    constants.time = batch.time;
     constants.effects = state.size.effects;
     constants.lightCount = state.scene.lightCount;
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();

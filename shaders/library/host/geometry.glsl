@@ -60,3 +60,7 @@ vec2 hostTexCoord1(HostGeometry geometry, uint vertex) {
 vec4 hostColor(HostGeometry geometry, uint vertex) {
     return glintHostColor(geometry.number, vertex);
 }
+
+float hostAttribute(HostGeometry geometry, uint vertex, uint channel, uint stride) {
+    return glintHostAttribute(geometry.number, vertex, channel);
+}

@@ -3,3 +3,9 @@
 MaterialArray hostMaterials() {
     return MaterialArray(glintHostMaterials());
 }
+
+#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
+
+float frameTime() {
+    return glintHostTime();
+}

@@ -46,11 +46,11 @@ TEST(SceneSource, AlphaHasWhatItReadsAlone) {
     plan.always = bit("texCoord0") | bit("normals") | bit("sheen");
     plan.sometimes = bit("baseColorTexture") | bit("normalTexture");
     CompileSettings settings;
-    EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS", "0x0u"));
+    EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS_INPUTS", "0x0u"));
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     const std::string text = sceneSource(plan, settings);
-    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS", fmt::format("{:#x}u", bit("texCoord0") >> 32U)));
-    EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES", "0x1u"));
+    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS_INPUTS", fmt::format("{:#x}u", bit("texCoord0") >> 32U)));
+    EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES_INPUTS", "0x1u"));
 }
 
 TEST(SceneSource, HoldsTheSettings) {

@@ -3,11 +3,13 @@
 
 #include "base/files.h"
 #include "materials/material.h"
+#include "plan/plan.h"
 #include "support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -111,6 +113,77 @@ TEST_F(MaterialPacks, LayersAreLobes) {
     write("mud.json", R"({"name": "mud", "extension": "EXAMPLE_mud", "stage": "surface",
                           "glsl": {"bsdf": "mud.glsl", "layer": "mud.glsl"}})");
     expectError("declaration", "mud.json#/glsl/layer", "\"stage\" is \"layer\"");
+}
+
+TEST_F(MaterialPacks, AttributesOfVerticesAreAnApplicationsOwn) {
+    const auto withAttributes = [](const std::string& attributes) {
+        std::string mud(kMud);
+        mud.insert(mud.find("\"parameters\""), "\"attributes\": " + attributes + ", ");
+        return mud;
+    };
+    write("mud/mud.glsl", "");
+    write("mud/mud.json",
+          withAttributes(R"([{"name": "wet", "at": "_WET", "type": "vec3", "default": [1, 2, 3]}])"));
+    const Result<const MaterialModel*> model = load();
+    ASSERT_TRUE(model) << toString(model.error());
+    ASSERT_EQ((*model)->attributes.size(), 1U);
+    const VertexAttribute& wet = (*model)->attributes.front();
+    EXPECT_EQ(wet.channels, 3);
+    EXPECT_EQ(wet.fallback, (std::array<float, 4>{1, 2, 3, 0}));
+    EXPECT_EQ((*model)->features[static_cast<std::size_t>(wet.feature)].name, "mud");
+
+    write("mud/mud.json", withAttributes(R"([{"name": "wet", "at": "WET", "type": "float"}])"));
+    expectError("declaration", "mud.json#/attributes/0/at", "underscore");
+    write("mud/mud.json", withAttributes(R"([{"name": "wet", "at": "_WET", "type": "vec2", "default": 1}])"));
+    expectError("declaration", "mud.json#/attributes/0/default", "2 numbers");
+    write("mud/mud.json", withAttributes(R"([{"name": "wet", "at": "_WET", "type": "vec2"},
+                                             {"name": "wetter", "at": "_WET", "type": "float"}])"));
+    expectError("declaration", "mud.json#/attributes/1/type", "has 1 channels here and 2");
+}
+
+TEST_F(MaterialPacks, CodeOfTraversalNeedsAFeature) {
+    write("mud.json",
+          R"({"name": "mud", "object": "extras", "stage": "opacity", "glsl": {"opacity": "mud.glsl"}})");
+    expectError("declaration", "mud.json#/glsl/opacity", "a feature of its own");
+    write("mud.json", R"({"name": "mud", "object": "extras", "stage": "surface", "short": "Mud",
+                          "glsl": {"diffuse": "mud.glsl"}})");
+    expectError("declaration", "mud.json#/glsl/diffuse", "\"bsdf\"");
+}
+
+TEST_F(MaterialPacks, NeedsAreFramesAndCoordinates) {
+    std::string mud(kMud);
+    mud.insert(mud.find("\"parameters\""), R"("needs": ["tangents", "texCoord0"], )");
+    write("mud/mud.json", mud);
+    write("mud/mud.glsl", "");
+    const Result<const MaterialModel*> model = load();
+    ASSERT_TRUE(model) << toString(model.error());
+    Material material(**model);
+    material["mudAmount"] = 0.5F;
+    PrimitiveInputs inputs;
+    EXPECT_EQ(makeKey(material, inputs, {}) & (*model)->mask("mud"), 0U);
+    inputs.hasTexCoords0 = true;
+    EXPECT_EQ(makeKey(material, inputs, {}) & ((*model)->mask("mud") | (*model)->mask("texCoord0")),
+              (*model)->mask("mud") | (*model)->mask("texCoord0"));
+    mud.replace(mud.find("texCoord0"), 9, "texCoord7");
+    write("mud/mud.json", mud);
+    expectError("declaration", "mud.json#/needs", "texCoord7");
+}
+
+// A mask can't be dropped for its numbers if a feature changes alpha.
+TEST_F(MaterialPacks, OpacityKeepsMasks) {
+    write("mud/mud.json", R"({"name": "mud", "object": "extras", "stage": "opacity", "short": "Mud",
+                              "glsl": {"opacity": "mud.glsl"},
+                              "parameters": [{"name": "mudAmount", "at": "mud", "type": "float", "default": 0}],
+                              "neutral": [{"when": "mudAmount == 0", "because": "there is no mud"}]})");
+    write("mud/mud.glsl", "");
+    const Result<const MaterialModel*> model = load();
+    ASSERT_TRUE(model) << toString(model.error());
+    Material material(**model);
+    material.alphaMode = AlphaMode::Mask;
+    const KeyOptions tested{.alpha = AlphaPolicy::Tested};
+    EXPECT_EQ(makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
+    material["mudAmount"] = 1.0F;
+    EXPECT_NE(makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
 }
 
 // A division by an interval with 0 is unknown, so it drops nothing.

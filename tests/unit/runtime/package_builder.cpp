@@ -166,6 +166,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     writer.add(package::SectionKind::Samplers, spec.samplers);
     writer.add(package::SectionKind::Strings, strings);
     writer.add(package::SectionKind::Cases, cases);
+    writer.add(package::SectionKind::Attributes, spec.attributes);
 
     package::PackageHeader header{};
     std::memcpy(header.magic, package::kMagic, sizeof(header.magic));

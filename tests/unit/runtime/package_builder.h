@@ -65,6 +65,7 @@ struct PackageSpec {
     std::vector<package::PrimitiveEntry> primitives;
     std::vector<package::TextureEntry> textures;
     std::vector<package::SamplerEntry> samplers;
+    std::vector<package::AttributeEntry> attributes;
     std::vector<CaseSpec> cases;
     std::vector<SceneSpec> scenes;  // empty: one, named "scene", that has all elements
 };

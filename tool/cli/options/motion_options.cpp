@@ -24,9 +24,13 @@ std::optional<std::int64_t> parseFrame(std::string_view text) {
     return parseWhole(text, 0, kMaxFrame, frame) ? std::optional(frame) : std::nullopt;
 }
 
-Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std::string& wanted) {
+Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std::string& wanted,
+                                                  bool followsTime) {
     std::vector<std::size_t> all(scene.animations.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
+    if (all.empty() && followsTime) {
+        return all;
+    }
     if (all.empty()) {
         return makeError("animation-missing", scene.path, "has no animation to play",
                          "leave out --frames and --time");
@@ -111,11 +115,12 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
     return FrameRange{*first, *last};
 }
 
-Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene) {
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene,
+                                               bool followsTime) {
     if (arguments.frames.empty() && arguments.time.empty()) {
         return std::optional<Movement>();
     }
-    Result<std::vector<std::size_t>> animations = chooseAnimations(scene, arguments.animation);
+    Result<std::vector<std::size_t>> animations = chooseAnimations(scene, arguments.animation, followsTime);
     if (!animations) {
         return animations.error();
     }

@@ -47,8 +47,10 @@ struct Movement {
     MotionView::Builds builds = MotionView::Builds::ByRule;
 };
 
-// Returns nothing if the scene is rendered at rest. Errors: "animation-missing", "animation-unknown".
-Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene);
+// Returns nothing if the scene is rendered at rest. With `followsTime` its materials may move, so that a
+// scene without animations has moments, too. Errors: "animation-missing", "animation-unknown".
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene,
+                                               bool followsTime);
 
 // Returns "out.0007.png" for "out.png" and 7.
 std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame);

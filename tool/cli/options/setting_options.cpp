@@ -112,6 +112,12 @@ void settleSettings(const CLI::App& command, const Settings& settings) {
             }
         }
     }
+    if (!settings.packLobes.empty() && settings.materials.empty()) {
+        Descriptor row = *sweptSetting("hit-lobes");
+        row.values.accepts = nullptr;
+        row.values.further = {};
+        throw CLI::ValidationError("--hit-lobes", complaintAbout(row, settings.packLobes.front()));
+    }
     if (settings.frame.occlusionFalloff &&
         settings.frame.occlusionRadius == std::numeric_limits<float>::infinity()) {
         throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");

@@ -94,9 +94,11 @@ public:
         return okStatus();
     }
 
+    // `frame.seconds` is the time that materials follow.
     Result<LinearImage> render(FrameReport& frame) {
         FrameOptions options = measure::frameOptions(setup_.arguments, camera_, sky_, setup_.environment);
         options.timing = Timing::Passes;
+        options.time = static_cast<float>(frame.seconds);
         // Counting takes time that would be added to that of the passes, so it is on only if the counts are
         // asked for.
         options.countsLight = !setup_.arguments.stats.empty();

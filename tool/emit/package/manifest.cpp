@@ -240,6 +240,33 @@ bool staysInside(const std::filesystem::path& name) {
 
 }  // namespace
 
+namespace {
+
+// The attributes of packs that shaders read, in the order of their values.
+ManifestJson vertexAttributes(const Plan& plan) {
+    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    ManifestJson list = ManifestJson::array();
+    for (const VertexAttribute& attribute : plan.model->attributes) {
+        const Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
+        if ((feature.mask() & used) == 0) {
+            continue;
+        }
+        ManifestJson fallback = nullptr;
+        if (attribute.fallback) {
+            fallback = std::vector<float>(attribute.fallback->begin(),
+                                          attribute.fallback->begin() + attribute.channels);
+        }
+        list.push_back(ManifestJson{{"name", attribute.name},
+                                    {"gltf", attribute.gltf},
+                                    {"feature", feature.name},
+                                    {"channels", attribute.channels},
+                                    {"default", fallback}});
+    }
+    return list;
+}
+
+}  // namespace
+
 std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings) {
     ManifestJson manifest;
@@ -260,6 +287,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["buckets"] = 1 + package.plan.cases.size();
     manifest["effects"] = effectsToJson(package.plan.effects);
     manifest["features"] = features(*package.plan.model);
+    manifest["vertexAttributes"] = vertexAttributes(package.plan);
     manifest["shaders"] = shaders(scenes, package);
     manifest["passes"] = passes(package);
     manifest["keys"] = keys(scenes, package);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <interop/scene.h>
@@ -114,6 +115,25 @@ std::vector<PrimitiveEntry> makePrimitives(const SceneList& scenes, SceneList::R
     return entries;
 }
 
+std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& strings) {
+    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    std::vector<AttributeEntry> entries;
+    for (const VertexAttribute& attribute : plan.model->attributes) {
+        const FeatureMask feature = plan.model->features[static_cast<std::size_t>(attribute.feature)].mask();
+        if ((feature & used) == 0) {
+            continue;
+        }
+        AttributeEntry entry{};
+        entry.name = strings.add(attribute.gltf);
+        entry.channels = static_cast<std::uint32_t>(attribute.channels);
+        entry.hasFallback = attribute.fallback ? 1 : 0;
+        std::ranges::copy(attribute.fallback.value_or(std::array<float, 4>{}), entry.fallback);
+        entry.feature = feature;
+        entries.push_back(entry);
+    }
+    return entries;
+}
+
 std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
     std::vector<SamplerEntry> entries;
     for (const Sampler& sampler : scene.samplers) {
@@ -211,6 +231,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
         tables.scenes.push_back(entry);
     }
 
+    const std::vector<AttributeEntry> attributes = makeAttributes(plan, strings);
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
     writer.add(SectionKind::Materials, layout.bytes, tables.materials);
@@ -220,6 +241,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     writer.add(SectionKind::Scenes, tables.scenes);
     writer.add(SectionKind::Strings, strings.bytes());
     writer.add(SectionKind::Cases, cases);
+    writer.add(SectionKind::Attributes, attributes);
 
     PackageHeader header{};
     std::memcpy(header.magic, kMagic, sizeof header.magic);

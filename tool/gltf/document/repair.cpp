@@ -151,6 +151,22 @@ void replaceNonFinite(Document& document, const Primitive& primitive,
     }
 }
 
+// Values of packs' attributes, one by one.
+void repairDeclared(Document& document, Primitive& primitive) {
+    for (VertexValues& attribute : primitive.attributes) {
+        std::size_t count = 0;
+        for (float& value : attribute.values) {
+            count += std::isfinite(value) ? 0 : 1;
+            value = std::isfinite(value) ? value : 0.0F;
+        }
+        if (count > 0) {
+            document.warn("attribute-not-finite",
+                          fmt::format("{}/attributes/{}", primitive.pointer, attribute.name),
+                          fmt::format("{} values are not finite; 0 is used", count), kRepairHint);
+        }
+    }
+}
+
 }  // namespace
 
 void repairPrimitive(Document& document, Primitive& primitive) {
@@ -160,6 +176,7 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
+    repairDeclared(document, primitive);
     for (MorphTarget& target : primitive.targets) {
         replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
         replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");

@@ -50,13 +50,11 @@ constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materi
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
 constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
-constexpr std::array kPrimitive{object("attributes", kAttributeRules, true),
-                                index("indices", "/accessors"),
-                                index("material", "/materials"),
-                                integer("mode", 0.0, kMaxInt),
-                                objects("targets", kTargetRules),
+// The rules of the attributes come before these, because packs add to them.
+constexpr std::array kPrimitive{index("indices", "/accessors"), index("material", "/materials"),
+                                integer("mode", 0.0, kMaxInt), objects("targets", kTargetRules),
                                 object("extensions", kPrimitiveExtensions)};
-constexpr std::array kMesh{text("name"), objects("primitives", kPrimitive), numbers("weights", 0)};
+constexpr std::array kMesh{text("name"), numbers("weights", 0)};
 
 // These are the rules of animations and skins. Samplers are checked where the animation is read, because
 // their index is into an array of the animation itself.
@@ -119,12 +117,15 @@ class RootRules {
 public:
     explicit RootRules(const MaterialModel& model)
         : material_(model),
+          attributes_(attributeRules(model)),
+          primitive_(with(kPrimitive, object("attributes", attributes_, true))),
+          mesh_(with(kMesh, objects("primitives", primitive_))),
           root_{
               object("extensions", kRootExtensions),
               objects("buffers", kBuffer),
               objects("bufferViews", kBufferView),
               objects("accessors", {}),
-              objects("meshes", kMesh),
+              objects("meshes", mesh_),
               objects("materials", material_.rules()),
               objects("textures", kTexture),
               objects("samplers", kSampler),
@@ -142,7 +143,24 @@ public:
     }
 
 private:
+    static std::vector<Rule> with(std::span<const Rule> rules, Rule further) {
+        std::vector<Rule> all(rules.begin(), rules.end());
+        all.push_back(further);
+        return all;
+    }
+    static std::vector<Rule> attributeRules(const MaterialModel& model) {
+        std::vector<Rule> rules(kAttributeRules.begin(), kAttributeRules.end());
+        for (const VertexAttribute& attribute : model.attributes) {
+            rules.push_back(index(attribute.gltf, "/accessors"));
+        }
+        return rules;
+    }
+
     MaterialRules material_;
+    // Rule::rules point into these.
+    std::vector<Rule> attributes_;
+    std::vector<Rule> primitive_;
+    std::vector<Rule> mesh_;
     std::vector<Rule> root_;
 };
 
@@ -157,11 +175,14 @@ void useAccessor(const Json& object, const char* name, bool isIndices, const Use
 
 // Calls `use` in the same way for every accessor that the importer reads.
 template <typename Use>
-void forEachAccessor(const Json& root, const Use& use) {
+void forEachAccessor(const Json& root, const MaterialModel& model, const Use& use) {
     for (const Json& mesh : arrayMember(root, "meshes")) {
         for (const Json& primitive : arrayMember(mesh, "primitives")) {
             for (const char* name : kAttributes) {
                 useAccessor(primitive["attributes"], name, false, use);
+            }
+            for (const VertexAttribute& attribute : model.attributes) {
+                useAccessor(primitive["attributes"], attribute.gltf.c_str(), false, use);
             }
             for (const Json& target : arrayMember(primitive, "targets")) {
                 for (const char* name : kTargetAttributes) {
@@ -284,7 +305,7 @@ std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model)
     }
     std::optional<SchemaError> error;
     std::vector<bool> seen(arraySize(root, "/accessors"));
-    forEachAccessor(root, [&](std::size_t accessor, bool) {
+    forEachAccessor(root, model, [&](std::size_t accessor, bool) {
         if (!error && !seen[accessor]) {
             seen[accessor] = true;
             error = checkAccessor(root, root["accessors"][accessor], fmt::format("/accessors/{}", accessor));
@@ -303,7 +324,7 @@ Json projectDocument(const Json& root, const MaterialModel& model) {
     projection["accessors"] = Json(std::vector<Json>(arraySize(root, "/accessors"), standIn));
     projection["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
     std::vector<bool> isIndices(arraySize(root, "/accessors"));
-    forEachAccessor(root, [&](std::size_t accessor, bool indexing) {
+    forEachAccessor(root, model, [&](std::size_t accessor, bool indexing) {
         isIndices[accessor] = isIndices[accessor] || indexing;
         Json& copy = projection["accessors"][accessor];
         copy = project(root["accessors"][accessor], kAccessor);

@@ -39,6 +39,7 @@ struct SceneViewData {
     // The data to which the spans of primitives, instances and materials point.
     MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
     std::vector<std::vector<std::uint8_t>> materialRecords;
+    std::vector<std::vector<AttributeView>> attributes;
     std::vector<std::vector<MorphTargetView>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;

@@ -1,7 +1,7 @@
 // Adds the hits of a workgroup to their buckets, by the module's ordering (GLINT_ORDERING is package::Ordering). Before
 // it includes this file, the module defines GLINT_BUCKET_WORDS, the words of FrameConstants to add to, and
 // GLINT_HITS_NUMBERED, which says whether it needs each hit's number in its bucket. The ordering tile-sort is separate:
-// hit/tile_sort.glsl.
+// order/tile_sort.glsl.
 //
 // Threads beyond the list take part with kNoBucket, so no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch

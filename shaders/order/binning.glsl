@@ -6,7 +6,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 #include "hit/bindings.glsl"
-#include "hit/direction_bin.glsl"
+#include "order/direction_bin.glsl"
 
 shared uint binCounts[kMaxDirectionBins];
 shared uint binBegins[kMaxDirectionBins];  // begin of a bin's rays among those of the workgroup

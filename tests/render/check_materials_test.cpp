@@ -1,0 +1,190 @@
+// The checks of material features: packs with one planted fault each, and the example packs, which have none.
+#include "base/files.h"
+#include "support/temporary_folder.h"
+
+#include <glint/measure/check_materials.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using measure::CheckState;
+using measure::FeatureChecks;
+using measure::MaterialCheck;
+namespace fs = std::filesystem;
+
+// A layer of wax. Every function may be replaced.
+struct Wax {
+    std::string name;
+    std::string share = "layer.factor";                         // reflected of a white sky
+    std::string reflected = "layer.factor * cosineDensity(l)";  // of the light from l
+    std::string passed = "1.0 - layer.factor";
+    std::string sample = "sampleCosine(u)";
+    std::string density = "cosineDensity(l)";
+};
+
+void writeWax(const fs::path& folder, const Wax& wax) {
+    const std::string& name = wax.name;
+    std::string capital = name;
+    capital[0] = static_cast<char>(capital[0] - 'a' + 'A');
+    std::string macro = name;
+    std::ranges::transform(macro, macro.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
+    fs::create_directories(folder / name);
+    ASSERT_TRUE(writeFile(folder / name / (name + ".json"), fmt::format(R"({{
+    "name": "{0}", "stage": "layer", "extension": "TEST_{0}",
+    "glsl": {{ "bsdf": "{0}_bsdf.glsl", "layer": "{0}.glsl", "reciprocal": true }},
+    "parameters": [{{ "name": "{0}Factor", "type": "float", "default": 0, "range": [0, 1] }}],
+    "neutral": [{{ "when": "{0}Factor == 0", "because": "{0}Factor is 0" }}]
+}})",
+                                                                        name)));
+    ASSERT_TRUE(
+        writeFile(folder / name / (name + ".glsl"),
+                  fmt::format(R"(#include "bsdf/layer.glsl"
+struct {1} {{ float factor; }};
+void {0}Prepare(inout {1} layer, vec3 view) {{}}
+LayerAlbedo {0}Shares({1} layer, vec3 view) {{ return LayerAlbedo(vec3({2}), {4}); }}
+LayerLight {0}Evaluate({1} layer, vec3 view, vec3 l) {{ return LayerLight(vec3({3}), {4}, l.z); }}
+vec3 {0}Sample({1} layer, vec3 view, vec2 u) {{ return {5}; }}
+float {0}Density({1} layer, vec3 view, vec3 l) {{ return {6}; }}
+)",
+                              name, capital, wax.share, wax.reflected, wax.passed, wax.sample, wax.density)));
+    ASSERT_TRUE(
+        writeFile(folder / name / (name + "_bsdf.glsl"), fmt::format(R"(#include "hit/surface_values.glsl"
+void {0}Bsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {{
+    surface.bsdf.layers.{0} = {1}(GLINT_MATERIAL_{2}_FACTOR(hit));
+}}
+)",
+                                                                     name, capital, macro)));
+}
+
+class Silent final : public measure::Observer {
+public:
+    using Observer::report;
+    void report(const Diagnostic& diagnostic) const override {
+        ADD_FAILURE() << toString(diagnostic);
+    }
+    void progress(std::string_view /*text*/) const override {}
+    void detail(std::string_view /*text*/) const override {}
+};
+
+Result<measure::MaterialChecksReport> check(const fs::path& folder, bool pictures = false) {
+    measure::CheckMaterialsOptions options;
+    options.packs = {folder.string()};
+    options.combinations = 6;
+    options.validate = true;
+    options.pictures = pictures;
+    return measure::checkMaterials(options, Silent());
+}
+
+CheckState stateOf(const FeatureChecks& feature, MaterialCheck check) {
+    return std::ranges::find(feature.outcomes, check, &measure::CheckOutcome::check)->state;
+}
+
+struct Planted {
+    Wax wax;
+    MaterialCheck fails;
+    std::string id;
+    std::string says;
+};
+
+std::vector<Planted> plantedFaults() {
+    std::vector<Planted> faults;
+    Wax range{"notnumber"};
+    // The direction of a vector without length.
+    range.reflected = "layer.factor * cosineDensity(l) * dot(normalize(l.xy), normalize(l.xy))";
+    faults.push_back({range, MaterialCheck::Range, "check-range", "NaN or infinite"});
+    Wax density{"density"};
+    density.density = "1.5 * cosineDensity(l)";
+    faults.push_back({density, MaterialCheck::Density, "check-density", "integrates to 1.5"});
+    Wax samples{"samples"};
+    // Uniform over the hemisphere.
+    samples.sample =
+        "vec3(sqrt(1.0 - u.x * u.x) * cos(2.0 * kPi * u.y), sqrt(1.0 - u.x * u.x) * sin(2.0 * kPi * u.y), "
+        "u.x)";
+    faults.push_back({samples, MaterialCheck::Samples, "check-samples", "by chance"});
+    Wax reciprocity{"oneway"};
+    reciprocity.share = "layer.factor * view.z";
+    reciprocity.reflected = "layer.factor * view.z * cosineDensity(l)";
+    faults.push_back({reciprocity, MaterialCheck::Reciprocity, "check-reciprocity", "in each other's place"});
+    Wax energy{"energy"};
+    energy.passed = "1.0";
+    faults.push_back({energy, MaterialCheck::Energy, "check-energy", "of a white furnace leaves"});
+    Wax albedo{"albedo"};
+    albedo.share = "0.25 * layer.factor";
+    faults.push_back({albedo, MaterialCheck::Albedo, "check-albedo", "of a white sky, and says"});
+    return faults;
+}
+
+TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
+    const test::TemporaryFolder folder;
+    writeWax(folder.path(), {"sound"});
+    const std::vector<Planted> faults = plantedFaults();
+    for (const Planted& planted : faults) {
+        writeWax(folder.path(), planted.wax);
+    }
+    const Result<measure::MaterialChecksReport> report = check(folder.path());
+    ASSERT_TRUE(report) << toString(report.error());
+    ASSERT_EQ(report->features.size(), faults.size() + 1);
+    for (const FeatureChecks& feature : report->features) {
+        const auto planted = std::ranges::find(
+            faults, feature.feature, [](const Planted& one) -> const std::string& { return one.wax.name; });
+        const std::vector<Diagnostic> failures = failuresOf(feature);
+        if (planted == faults.end()) {
+            EXPECT_TRUE(failures.empty()) << toString(failures.front());
+            continue;
+        }
+        ASSERT_EQ(failures.size(), 1U) << feature.feature << ": " << toString(failures.back());
+        EXPECT_EQ(failures[0].id, planted->id);
+        EXPECT_TRUE(failures[0].where.ends_with(feature.feature + ".json")) << failures[0].where;
+        EXPECT_NE(failures[0].message.find(planted->says), std::string::npos) << failures[0].message;
+        EXPECT_NE(failures[0].message.find(feature.feature + "Factor "), std::string::npos)
+            << failures[0].message;
+        EXPECT_FALSE(failures[0].hint.empty());
+        EXPECT_EQ(stateOf(feature, planted->fails), CheckState::Failed);
+        // What samples should follow is not known if the density is wrong.
+        EXPECT_EQ(stateOf(feature, MaterialCheck::Samples),
+                  planted->fails == MaterialCheck::Density   ? CheckState::Unsure
+                  : planted->fails == MaterialCheck::Samples ? CheckState::Failed
+                                                             : CheckState::Passed)
+            << feature.feature;
+    }
+}
+
+TEST(CheckMaterials, TheExamplePacksPass) {
+    const Result<measure::MaterialChecksReport> report = check(GLINT_SOURCE_DIR "/examples/materials", true);
+    ASSERT_TRUE(report) << toString(report.error());
+    EXPECT_GE(report->features.size(), 12U);
+    for (const FeatureChecks& feature : report->features) {
+        for (const Diagnostic& failure : failuresOf(feature)) {
+            ADD_FAILURE() << toString(failure);
+        }
+        EXPECT_EQ(stateOf(feature, MaterialCheck::Range), CheckState::Passed) << feature.feature;
+        EXPECT_EQ(stateOf(feature, MaterialCheck::Energy), CheckState::Passed) << feature.feature;
+        EXPECT_EQ(stateOf(feature, MaterialCheck::Density),
+                  feature.isLayer ? CheckState::Passed : CheckState::Absent)
+            << feature.feature;
+    }
+    EXPECT_EQ(report->pictures.size(), 2 * report->features.size());
+}
+
+TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(writeFile(folder.path() / "mud.json", R"({
+        "name": "mud", "stage": "surface", "extension": "TEST_mud", "glsl": { "surface": "mud.glsl" },
+        "parameters": [{ "name": "mudAmount", "type": "float", "default": 0, "range": [0, 1] }],
+        "neutral": [{ "when": "mudAmount < 2", "because": "there is no mud" }]
+    })"));
+    ASSERT_TRUE(writeFile(folder.path() / "mud.glsl", "// mud\n"));
+    const Result<measure::MaterialChecksReport> report = check(folder.path());
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().id, "check-unreachable");
+}
+
+}  // namespace

@@ -1,0 +1,199 @@
+// glint check-materials: checks what the code of packs computes.
+#include "base/json.h"
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/table.h"
+#include "image/image_file.h"
+
+#include <glint/measure/check_materials.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+namespace glint {
+
+namespace {
+
+using measure::CheckOutcome;
+using measure::CheckState;
+
+struct CheckArguments {
+    measure::CheckMaterialsOptions options;
+    std::int64_t samples = 4096;
+    std::int64_t combinations = 12;
+    std::string pictures;
+};
+
+constexpr const char* kPictureSuffix = ".png";
+
+std::string cellOf(const CheckOutcome& outcome) {
+    switch (outcome.state) {
+        case CheckState::Passed:
+            return fmt::format("{:.2g}", outcome.worst);
+        case CheckState::Failed:
+            return fmt::format("FAILED {:.2g}", outcome.worst);
+        case CheckState::Unasked:
+            return "not claimed";
+        case CheckState::Unsure:
+            return "unsure";
+        case CheckState::Absent:
+            break;
+    }
+    return "-";
+}
+
+std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
+    std::vector<std::vector<std::string>> rows{{"feature", "tried"}};
+    std::vector<std::string> limits{"limit", "-"};
+    for (const measure::MaterialCheck check : measure::kMaterialChecks) {
+        rows.front().emplace_back(nameOf(check));
+    }
+    for (const measure::FeatureChecks& feature : report.features) {
+        std::vector<std::string> row{feature.feature, fmt::format("{}", feature.combinations)};
+        for (const CheckOutcome& outcome : feature.outcomes) {
+            row.push_back(cellOf(outcome));
+        }
+        rows.push_back(std::move(row));
+    }
+    if (!report.features.empty()) {
+        for (const CheckOutcome& outcome : report.features.front().outcomes) {
+            limits.push_back(fmt::format("{:.2g}", outcome.limit));
+        }
+        rows.push_back(std::move(limits));
+    }
+    return fmt::format("{}, {} samples for each combination and view\n\n{}", report.device, report.samples,
+                       formatTable(rows, detail));
+}
+
+// JSON has no infinity, which is what NaN is as far as a range is concerned.
+Json finiteOrNull(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json toJson(const measure::CheckPlace& place) {
+    Json parameters = Json::object();
+    for (const auto& [name, values] : place.parameters) {
+        parameters[name] = values;
+    }
+    return {{"base", place.base},
+            {"parameters", parameters},
+            {"view", place.view},
+            {"light", place.light ? Json(*place.light) : Json(nullptr)}};
+}
+
+Json toJson(const CheckOutcome& outcome) {
+    return {{"check", nameOf(outcome.check)},
+            {"state", nameOf(outcome.state)},
+            {"quantity", quantityOf(outcome.check)},
+            {"worst", finiteOrNull(outcome.worst)},
+            {"limit", outcome.limit},
+            {"evaluations", outcome.evaluations},
+            {"message", textOrNull(outcome.message)},
+            {"place", outcome.place ? toJson(*outcome.place) : Json(nullptr)}};
+}
+
+Json toJson(const measure::MaterialChecksReport& report, const std::vector<std::string>& pictures) {
+    Json features = Json::array();
+    for (const measure::FeatureChecks& feature : report.features) {
+        Json checks = Json::array();
+        for (const CheckOutcome& outcome : feature.outcomes) {
+            checks.push_back(toJson(outcome));
+        }
+        features.push_back(Json{{"feature", feature.feature},
+                                {"declaration", feature.declaration},
+                                {"layer", feature.isLayer},
+                                {"combinations", feature.combinations},
+                                {"failed", feature.failed()},
+                                {"checks", checks}});
+    }
+    return {{"device", report.device},
+            {"samples", report.samples},
+            {"features", features},
+            {"pictures", pictures}};
+}
+
+// Writes the pictures, and returns their files.
+Result<std::vector<std::string>> writePictures(const std::string& folder,
+                                               const std::vector<measure::FeaturePicture>& pictures) {
+    std::vector<std::string> files;
+    if (folder.empty()) {
+        return files;
+    }
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        return makeError("output-folder", folder, fmt::format("can't be made: {}", error.message()),
+                         "name a folder that may be written");
+    }
+    for (const measure::FeaturePicture& picture : pictures) {
+        const std::filesystem::path file = std::filesystem::path(folder) / (picture.name + kPictureSuffix);
+        if (Status written = writeImage(file, picture.image, 0.0); !written) {
+            return written.error();
+        }
+        files.push_back(file.generic_string());
+    }
+    return files;
+}
+
+int checkMaterialFeatures(const Console& console, const CheckArguments& arguments) {
+    measure::CheckMaterialsOptions options = arguments.options;
+    options.samples = static_cast<std::uint32_t>(arguments.samples);
+    options.combinations = static_cast<std::uint32_t>(arguments.combinations);
+    options.pictures = !arguments.pictures.empty();
+    const Result<measure::MaterialChecksReport> report = measure::checkMaterials(options, console);
+    if (!report) {
+        return fail(console, report.error());
+    }
+    const Result<std::vector<std::string>> pictures = writePictures(arguments.pictures, report->pictures);
+    if (!pictures) {
+        return fail(console, pictures.error());
+    }
+    if (console.isJson()) {
+        console.result(toJson(*report, *pictures));
+    } else {
+        console.print(toText(*report, console.isVerbose() ? Detail::Whole : Detail::Short));
+    }
+    bool failed = false;
+    for (const measure::FeatureChecks& feature : report->features) {
+        for (const Diagnostic& failure : failuresOf(feature)) {
+            console.report(failure);
+            failed = true;
+        }
+    }
+    return failed ? kExitFailed : kExitDone;
+}
+
+}  // namespace
+
+void addCheckMaterials(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<CheckArguments>();
+    CLI::App& command =
+        addCommand(app, "check-materials", "Check on the device what the GLSL of material features computes",
+                   "glint check-materials materials --pictures checked");
+    addTexts(command, "DIR", arguments->options.packs, "DIR",
+             "folders of material features (docs/material_features.md)")
+        .required();
+    addText(command, "--pictures", arguments->pictures, "DIR",
+            "write PNG files: each feature's lobe over all directions for\n"
+            "three views, and a sphere in a white furnace, which is\n"
+            "brighter than the background, or red, where it makes light");
+    addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
+               "sampled directions for each combination and view; more\nfind smaller errors of densities");
+    addInteger(command, "--combinations", arguments->combinations, 1, 4096,
+               "the most combinations of parameters for each feature; the\n"
+               "first are the usual values and each range's ends");
+    addText(command, "--device", arguments->options.device, "NAME",
+            "part of the GPU's name (default: the first that will do)");
+    addFlag(command, "--validate", arguments->options.validate,
+            "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error");
+    command.callback([arguments, &chosen] {
+        chosen = [arguments](const Console& console) { return checkMaterialFeatures(console, *arguments); };
+    });
+}
+
+}  // namespace glint

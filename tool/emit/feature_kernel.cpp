@@ -1,0 +1,74 @@
+#include "emit/feature_kernel.h"
+
+#include "emit/context.h"
+#include "emit/glsl/flatten.h"
+#include "emit/glsl/prune.h"
+#include "emit/material_code.h"
+#include "emit/sources.h"
+#include "spirv/compiler.h"
+
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr const char* kTemplate = "check_features.comp.mustache";
+constexpr const char* kName = "check_features.comp";
+
+static_assert(sizeof(FeatureKernelInput) == 14 * sizeof(std::uint32_t));
+static_assert(sizeof(FeatureKernelOutput) == 28 * sizeof(float));
+
+std::vector<const FeatureCode*> layersOf(const Plan& plan) {
+    const FeatureMask used = plan.primaryAlways | plan.primarySometimes;
+    std::vector<const FeatureCode*> layers;
+    for (const FeatureCode& code : plan.model->code) {
+        if (!code.layer.empty() &&
+            (plan.model->features[static_cast<std::size_t>(code.feature)].mask() & used) != 0) {
+            layers.push_back(&code);
+        }
+    }
+    return layers;
+}
+
+}  // namespace
+
+Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
+                                           const CompileSettings& settings) {
+    const SceneList scenes({&scene, 1});
+    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
+    if (!sources) {
+        return sources.error();
+    }
+    FeatureKernel kernel;
+    kainjow::mustache::data layers(kainjow::mustache::data::type::list);
+    for (const FeatureCode* const layer : layersOf(plan)) {
+        kernel.layers.push_back(layer->name);
+        kainjow::mustache::data entry;
+        entry.set("name", layer->name);
+        entry.set("macro", plan.model->features[static_cast<std::size_t>(layer->feature)].macro);
+        entry.set("lobe", std::to_string(kernel.layers.size()));
+        layers.push_back(std::move(entry));
+    }
+    kainjow::mustache::data context;
+    context.set("layers", layers);
+    context.set("wordsIn", std::to_string(sizeof(FeatureKernelInput) / sizeof(std::uint32_t)));
+    context.set("wordsOut", std::to_string(sizeof(FeatureKernelOutput) / sizeof(float)));
+    const Result<std::string> text = renderTemplate(*sources, kTemplate, context);
+    if (!text) {
+        return text.error();
+    }
+    const Result<std::string> glsl = flatten(kName, *text, sources->lookup(), FlattenSide::Glsl);
+    if (!glsl) {
+        return glsl.error();
+    }
+    Result<std::vector<std::uint32_t>> words =
+        compileShader({kName, ShaderStage::Compute, dropUnused(*glsl), {}}, {});
+    if (!words) {
+        return explainGlslError(words.error(), *plan.model);
+    }
+    kernel.spirv = std::move(*words);
+    return kernel;
+}
+
+}  // namespace glint

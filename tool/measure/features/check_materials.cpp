@@ -1,0 +1,171 @@
+#include "materials/packs.h"
+#include "measure/features/checks.h"
+
+#include <glint/measure/check_materials.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+// What is known of a check besides its result.
+struct CheckInfo {
+    MaterialCheck check;
+    const char* name;
+    const char* quantity;
+    const char* id;        // of the diagnostic
+    const char* function;  // of the layer "wax": {}Density(); those of other features have none
+    const char* meaning;   // for a picture
+};
+constexpr CheckInfo kCheckInfos[] = {
+    {MaterialCheck::Range, "range", "distance from the range", "check-range", "",
+     "pixels would be black or wrong, and the light of all samples with them"},
+    {MaterialCheck::Density, "density",
+     "distance of the integral and the lost samples from one, beyond noise", "check-density", "{}Density()",
+     "light that is sampled would be too bright or too dark by this factor"},
+    {MaterialCheck::Samples, "samples", "probability of a difference like this by chance", "check-samples",
+     "{}Sample()", "pictures would not converge to what the layer evaluates"},
+    {MaterialCheck::Reciprocity, "reciprocity", "difference as a share of the lobe", "check-reciprocity",
+     "{}Evaluate()",
+     "the declaration claims that it is reciprocal; light paths and camera paths would differ"},
+    {MaterialCheck::Energy, "energy",
+     "light that is made, as a share of what comes in, beyond errors of quadrature", "check-energy", "",
+     "light that bounces between such surfaces would grow"},
+    {MaterialCheck::Albedo, "albedo", "difference of shares of a white sky, beyond errors of quadrature",
+     "check-albedo", "{}Shares()", "the sky's light on it would differ from that of rays"},
+};
+
+const CheckInfo& infoOf(MaterialCheck check) {
+    return *std::ranges::find(kCheckInfos, check, &CheckInfo::check);
+}
+
+Result<FeatureChecks> checkFeature(const FeatureOnDevice& on) {
+    const FeatureCode& code = *on.feature.code;
+    FeatureChecks checks;
+    checks.feature = code.name;
+    checks.declaration = code.declaration;
+    checks.isLayer = on.lobe != 0;
+    checks.combinations = static_cast<std::uint32_t>(on.feature.materials.size());
+    Result<CheckOutcome> ranges = checkRanges(on);
+    if (!ranges) {
+        return ranges.error();
+    }
+    Result<IntegralOutcomes> integrals = checkIntegrals(on);
+    if (!integrals) {
+        return integrals.error();
+    }
+    Result<CheckOutcome> reciprocity = checkReciprocity(on);
+    if (!reciprocity) {
+        return reciprocity.error();
+    }
+    checks.outcomes = {std::move(*ranges),      std::move(integrals->density), std::move(integrals->samples),
+                       std::move(*reciprocity), std::move(integrals->energy),  std::move(integrals->albedo)};
+    return checks;
+}
+
+std::string textOfDirection(const Direction& direction) {
+    const double angle = std::acos(std::clamp(direction[2], -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    return fmt::format("({:.4g}, {:.4g}, {:.4g}), {:.4g}° from the normal", direction[0], direction[1],
+                       direction[2], angle);
+}
+
+std::string textOfPlace(const CheckPlace& place) {
+    std::vector<std::string> values;
+    for (const auto& [name, numbers] : place.parameters) {
+        values.push_back(name == "textures" ? "its textures"
+                                            : fmt::format("{} {:.6g}", name, fmt::join(numbers, ", ")));
+    }
+    std::string text = fmt::format("over a {}", place.base);
+    text += values.empty() ? "" : fmt::format(" with {}", fmt::join(values, ", "));
+    text += fmt::format(", seen from {}", textOfDirection(place.view));
+    text += place.light ? fmt::format(", lit from {}", textOfDirection(*place.light)) : "";
+    return text;
+}
+
+}  // namespace
+
+std::string_view nameOf(MaterialCheck check) {
+    return infoOf(check).name;
+}
+
+std::string_view quantityOf(MaterialCheck check) {
+    return infoOf(check).quantity;
+}
+
+std::string_view nameOf(CheckState state) {
+    constexpr std::string_view kNames[] = {"passed", "failed", "absent", "unasked", "unsure"};
+    return kNames[static_cast<std::size_t>(state)];
+}
+
+bool FeatureChecks::failed() const {
+    return std::ranges::find(outcomes, CheckState::Failed, &CheckOutcome::state) != outcomes.end();
+}
+
+Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options, const Observer& observer) {
+    const Result<const MaterialModel*> model = loadMaterialModel(options.packs);
+    if (!model) {
+        return model.error();
+    }
+    const Result<CheckedScene> scene = makeCheckedScene(**model, options.combinations);
+    if (!scene) {
+        return scene.error();
+    }
+    Result<std::unique_ptr<FeatureEvaluator>> evaluator =
+        FeatureEvaluator::create(scene->scene, options, observer);
+    if (!evaluator) {
+        return evaluator.error();
+    }
+    MaterialChecksReport report;
+    report.device = (*evaluator)->deviceName();
+    report.samples = options.samples;
+    for (const CheckedFeature& feature : scene->features) {
+        observer.progress(fmt::format("checking {}", feature.code->name));
+        const std::string layer = feature.code->layer.empty() ? std::string() : feature.code->name;
+        const FeatureOnDevice on{**evaluator, *scene, feature, (*evaluator)->lobeOf(layer), options.samples};
+        Result<FeatureChecks> checks = checkFeature(on);
+        if (!checks) {
+            return checks.error();
+        }
+        report.features.push_back(std::move(*checks));
+        if (options.pictures) {
+            Result<std::vector<FeaturePicture>> pictures = paintFeature(on);
+            if (!pictures) {
+                return pictures.error();
+            }
+            std::ranges::move(*pictures, std::back_inserter(report.pictures));
+        }
+    }
+    observer.progress("");
+    if (Status status = (*evaluator)->validate(observer); !status) {
+        return status.error();
+    }
+    return report;
+}
+
+std::vector<Diagnostic> failuresOf(const FeatureChecks& feature) {
+    std::vector<Diagnostic> failures;
+    for (const CheckOutcome& outcome : feature.outcomes) {
+        if (outcome.state != CheckState::Failed) {
+            continue;
+        }
+        const CheckInfo& info = infoOf(outcome.check);
+        const std::string function = feature.isLayer && *info.function != '\0'
+                                         ? fmt::format(fmt::runtime(info.function), feature.feature)
+                                         : feature.feature;
+        failures.push_back(makeError(info.id, feature.declaration,
+                                     fmt::format("{}: {}, {}", function, outcome.message,
+                                                 outcome.place ? textOfPlace(*outcome.place) : ""),
+                                     info.meaning));
+    }
+    return failures;
+}
+
+}  // namespace glint::measure

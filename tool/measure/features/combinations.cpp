@@ -1,0 +1,267 @@
+#include "measure/features/combinations.h"
+
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+// Where a declaration gives no limit, a value this many times the usual one stands for a large one.
+constexpr double kFarFactor = 1000.0;
+
+// Indices into checkedValues() for each parameter.
+using Choice = std::vector<std::size_t>;
+
+// A stream of bits that is the same on every machine.
+std::uint32_t scrambled(std::uint32_t number) {
+    number = (number ^ number >> 16U) * 0x7feb352dU;
+    number = (number ^ number >> 15U) * 0x846ca68bU;
+    return number ^ number >> 16U;
+}
+
+// The usual values, then each parameter at its ends, then corners of all ranges.
+std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std::uint32_t most) {
+    const std::size_t count = values.size();
+    std::vector<Choice> choices{Choice(count, 0)};
+    for (std::size_t parameter = 0; parameter < count; ++parameter) {
+        for (std::size_t value = 1; value < values[parameter].size(); ++value) {
+            Choice choice(count, 0);
+            choice[parameter] = value;
+            choices.push_back(std::move(choice));
+        }
+    }
+    for (std::uint32_t corner = 0; corner < most; ++corner) {
+        // All at their greatest, all at their least, then others.
+        const std::uint32_t bits = corner == 0 ? ~0U : corner == 1 ? 0U : scrambled(corner);
+        Choice choice;
+        for (std::size_t parameter = 0; parameter < count; ++parameter) {
+            const std::size_t ends = values[parameter].size() - 1;
+            choice.push_back(ends == 0 ? 0 : 1 + (bits >> parameter % 32 & 1U) % ends);
+        }
+        choices.push_back(std::move(choice));
+    }
+    return choices;
+}
+
+// What one feature's combinations are made of.
+struct Ingredients {
+    std::vector<const Parameter*> parameters;
+    std::vector<std::vector<float>> values;
+    std::vector<const MaterialTexture*> textures;
+};
+
+Ingredients ingredientsOf(const MaterialModel& model, const FeatureCode& code) {
+    Ingredients found;
+    for (const Parameter& parameter : model.parameters) {
+        if (parameter.feature == code.feature && code.feature >= 0 && parameter.aliasOf < 0) {
+            found.parameters.push_back(&parameter);
+            found.values.push_back(checkedValues(parameter));
+        }
+    }
+    for (const MaterialTexture& texture : model.textures) {
+        if (model.features[static_cast<std::size_t>(texture.feature)].lobe == code.feature) {
+            found.textures.push_back(&texture);
+        }
+    }
+    return found;
+}
+
+Material baseMaterial(const MaterialModel& model, int number) {
+    const CheckedBase& base = kCheckedBases[number];
+    Material material(model);
+    material["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
+    material["metallicFactor"] = base.metallic;
+    material["roughnessFactor"] = base.roughness;
+    return material;
+}
+
+// One texture whose texels are at the ends of the range and between, as they come from files.
+void addCheckedTexture(Scene& scene) {
+    constexpr int kSide = 8;
+    Image image;
+    image.name = "checked";
+    image.width = kSide;
+    image.height = kSide;
+    for (std::uint32_t i = 0; i < 4U * kSide * kSide; ++i) {
+        const std::uint32_t bits = scrambled(i + 1);
+        image.pixels.push_back(static_cast<std::uint8_t>(bits % 4 == 0   ? 0
+                                                         : bits % 4 == 1 ? 255
+                                                                         : bits >> 24U));
+    }
+    scene.images.push_back(std::move(image));
+    Sampler sampler;
+    sampler.mipmapped = false;
+    scene.samplers.push_back(sampler);
+    scene.textures.push_back({0, 0});
+}
+
+// A square of two metres in the plane z = 0, whose front faces +Z.
+Primitive squareOf(int material, const MaterialModel& model) {
+    Primitive square;
+    for (const VertexAttribute& attribute : model.attributes) {
+        if (std::ranges::find(square.attributes, attribute.gltf, &VertexValues::name) !=
+            square.attributes.end()) {
+            continue;
+        }
+        VertexValues& given = square.attributes.emplace_back();
+        given.name = attribute.gltf;
+        given.channels = static_cast<std::uint32_t>(attribute.channels);
+        for (std::uint32_t i = 0; i < 4 * given.channels; ++i) {
+            given.values.push_back(static_cast<float>(scrambled(i + 1) % 5) / 4.0F);
+        }
+    }
+    square.pointer = fmt::format("/meshes/{}/primitives/0", material);
+    square.material = material;
+    square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    square.normals.assign(4, {0, 0, 1});
+    square.tangents.assign(4, {1, 0, 0, 1});
+    square.texCoords0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    return square;
+}
+
+std::uint32_t addSquare(Scene& scene, const Material& material) {
+    const auto number = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(material);
+    scene.meshes.push_back({{}, {squareOf(number, material.model())}});
+    Node node;
+    node.mesh = number;
+    for (const std::size_t diagonal : {0U, 5U, 10U, 15U}) {
+        node.world[diagonal] = 1.0;
+    }
+    scene.nodes.push_back(std::move(node));
+    return static_cast<std::uint32_t>(number);
+}
+
+// Whether the square's key has the feature.
+bool hasFeature(const Material& material, int feature) {
+    PrimitiveInputs inputs;
+    inputs.hasNormals = true;
+    inputs.hasTangents = true;
+    inputs.hasTexCoords0 = true;
+    inputs.attributes = ~std::uint64_t{0};
+    return feature < 0 || (makeKey(material, inputs, {}) &
+                           material.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
+}
+
+// One combination, before it is known whether its key has the feature.
+struct Combined {
+    Material material;
+    CheckPlace place;
+};
+
+Combined combine(const MaterialModel& model, const FeatureCode& code, const Ingredients& ingredients,
+                 const Choice& choice, int base, bool textured) {
+    Combined made{baseMaterial(model, base), {}};
+    made.material.alphaMode = code.opacity.empty() ? AlphaMode::Opaque : AlphaMode::Mask;
+    made.place.base = kCheckedBases[base].name;
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+        const Parameter& parameter = *ingredients.parameters[i];
+        const float value = ingredients.values[i][choice[i]];
+        made.material[parameter.name] = value;
+        made.place.parameters.emplace_back(
+            parameter.name, std::vector<float>(static_cast<std::size_t>(parameter.channels), value));
+    }
+    const int object = code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].object;
+    if (object >= 0) {
+        made.material.give(model.objects[static_cast<std::size_t>(object)].name);
+    }
+    if (textured) {
+        for (const MaterialTexture* const texture : ingredients.textures) {
+            made.material.texture(texture->name).texture = 0;
+        }
+        made.place.parameters.emplace_back("textures", std::vector<float>{1.0F});
+    }
+    return made;
+}
+
+std::vector<CheckedMaterial> addCombinations(const MaterialModel& model, const FeatureCode& code,
+                                             std::uint32_t most, Scene& scene) {
+    const Ingredients ingredients = ingredientsOf(model, code);
+    std::vector<CheckedMaterial> made;
+    std::set<Choice> known;
+    for (const Choice& choice : choicesOf(ingredients.values, most)) {
+        if (made.size() == most) {
+            break;
+        }
+        if (!known.insert(choice).second) {
+            continue;
+        }
+        // Bases take turns. Textures are there in every second pair. Where the feature would change nothing,
+        // the others are tried.
+        const int bases = static_cast<int>(std::size(kCheckedBases));
+        const int firstBase = static_cast<int>(made.size()) % bases;
+        const bool firstTextured = !ingredients.textures.empty() && made.size() / 2 % 2 == 1;
+        bool found = false;
+        for (int attempt = 0; attempt < 2 * bases && !found; ++attempt) {
+            const int base = (firstBase + attempt) % bases;
+            const bool textured = firstTextured != (attempt >= bases && !ingredients.textures.empty());
+            Combined combined = combine(model, code, ingredients, choice, base, textured);
+            found = hasFeature(combined.material, code.feature);
+            if (found) {
+                made.push_back({addSquare(scene, combined.material), base, std::move(combined.place)});
+            }
+        }
+    }
+    return made;
+}
+
+}  // namespace
+
+std::vector<float> checkedValues(const Parameter& parameter) {
+    const double fallback = static_cast<double>(parameter.fallback[0]);
+    const bool hasLow = std::isfinite(parameter.low) && parameter.low > -1e30;
+    const bool hasHigh = std::isfinite(parameter.high) && parameter.high < 1e30;
+    if (parameter.isAngle && !hasLow && !hasHigh) {
+        return {0.4F, 0.0F, 2.5F};
+    }
+    double usual = fallback;
+    if (hasLow && hasHigh && (fallback <= parameter.low || fallback >= parameter.high)) {
+        usual = 0.5 * (parameter.low + parameter.high);
+    } else if (!std::isfinite(fallback) || (fallback == 0.0 && !(hasLow && hasHigh))) {
+        usual = hasLow ? parameter.low + 1.0 : hasHigh ? parameter.high - 1.0 : 1.0;
+    }
+    const double least = hasLow ? parameter.low : -kFarFactor * std::max(std::abs(usual), 1.0);
+    const double greatest = hasHigh ? parameter.high : kFarFactor * std::max(std::abs(usual), 1.0);
+    std::vector<float> values{static_cast<float>(usual)};
+    for (const double end : {least, greatest}) {
+        if (std::ranges::find(values, static_cast<float>(end)) == values.end()) {
+            values.push_back(static_cast<float>(end));
+        }
+    }
+    return values;
+}
+
+Result<CheckedScene> makeCheckedScene(const MaterialModel& model, std::uint32_t combinations) {
+    CheckedScene made;
+    made.scene.path = "check-materials";
+    addCheckedTexture(made.scene);
+    for (int base = 0; base < static_cast<int>(std::size(kCheckedBases)); ++base) {
+        made.bases.push_back(addSquare(made.scene, baseMaterial(model, base)));
+    }
+    for (const FeatureCode& code : model.code) {
+        if (!code.isOfPack) {
+            continue;
+        }
+        CheckedFeature feature{&code, addCombinations(model, code, combinations, made.scene)};
+        if (feature.materials.empty()) {
+            return makeError(
+                "check-unreachable", code.declaration,
+                fmt::format("{} changes nothing for any combination of its parameters' values that was tried",
+                            code.name),
+                "look at its \"neutral\" and the ranges of its parameters");
+        }
+        made.features.push_back(std::move(feature));
+    }
+    return made;
+}
+
+}  // namespace glint::measure

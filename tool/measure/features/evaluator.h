@@ -1,0 +1,48 @@
+// Evaluates the lobes of a scene's materials on the device.
+#pragma once
+
+#include "emit/feature_kernel.h"
+
+#include <glint/context.h>
+#include <glint/measure/check_materials.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/scene_kernel.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::measure {
+
+class FeatureEvaluator {
+public:
+    // Compiles the scene as pictures of it would be, and the kernel. Reports what the device is. Has the
+    // errors of compilePackage(), Context::createHeadless() and GpuScene::upload().
+    static Result<std::unique_ptr<FeatureEvaluator>> create(const Scene& scene,
+                                                            const CheckMaterialsOptions& options,
+                                                            const Observer& observer);
+
+    // Returns the number of a layer for FeatureKernelInput::lobe; 0, the whole BSDF, if there is no such
+    // layer.
+    std::uint32_t lobeOf(const std::string& layer) const;
+    // Has the errors of SceneKernel::run().
+    Result<std::vector<FeatureKernelOutput>> run(std::span<const FeatureKernelInput> inputs) const;
+    std::string deviceName() const;
+    // Has the errors of checkValidation().
+    Status validate(const Observer& observer) const;
+
+private:
+    FeatureEvaluator() = default;
+
+    std::unique_ptr<Context> context_;
+    std::unique_ptr<Package> package_;
+    std::unique_ptr<GpuScene> scene_;
+    std::unique_ptr<SceneKernel> kernel_;
+    std::vector<std::string> layers_;
+};
+
+}  // namespace glint::measure

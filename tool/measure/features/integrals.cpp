@@ -1,0 +1,251 @@
+#include "measure/features/integrals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+// Cells start at this level, which has 32 squares on the sphere.
+constexpr std::uint32_t kFirstLevel = 2;
+// A square is split until that changes its integral by less than this.
+constexpr double kSplitChange = 1e-5;
+// The most directions at which one lobe is evaluated, unless its first squares already need more.
+constexpr std::uint64_t kMostEvaluations = 100000;
+// The least number of samples that a bin of the comparison should expect.
+constexpr double kSamplesOfBin = 12.0;
+
+// Gauss and Legendre's three points on [0, 1]: exact for polynomials up to the fifth degree.
+constexpr double kNodes[] = {0.112701665379258, 0.5, 0.887298334620742};
+constexpr double kWeights[] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+constexpr std::size_t kNodesOfCell = 9;
+
+void addTo(LobeValues& sum, const LobeValues& values, double weight) {
+    sum.density += weight * values.density;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        sum.reflected[channel] += weight * values.reflected[channel];
+        sum.whole[channel] += weight * values.whole[channel];
+    }
+}
+
+double largestDifference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+// A square that waits to be split.
+struct Waiting {
+    std::size_t lobe = 0;
+    HemisphereCell cell;
+    LobeValues integral;
+    std::vector<HemisphereCell> samples;  // those that fell into it
+};
+
+// A square that is not split further.
+struct Bin {
+    std::uint64_t place = 0;
+    double share = 0.0;  // integral of the density
+    std::size_t samples = 0;
+};
+
+class Integration {
+public:
+    Integration(std::span<const std::vector<Direction>> samples, const LobeFunction& function)
+        : samples_(samples), function_(function), results_(samples.size()), bins_(samples.size()) {}
+
+    Result<std::vector<LobeIntegrals>> run() {
+        if (Status status = start(); !status) {
+            return status.error();
+        }
+        while (!waiting_.empty()) {
+            if (Status status = split(); !status) {
+                return status.error();
+            }
+        }
+        for (std::size_t lobe = 0; lobe < samples_.size(); ++lobe) {
+            compareSamples(lobe);
+        }
+        return std::move(results_);
+    }
+
+private:
+    // Returns the integral over each of the squares.
+    Result<std::vector<LobeValues>> integrate(
+        const std::vector<std::pair<std::size_t, HemisphereCell>>& cells) {
+        std::vector<LobeQuery> queries;
+        queries.reserve(cells.size() * kNodesOfCell);
+        for (const auto& [lobe, cell] : cells) {
+            for (const double v : kNodes) {
+                for (const double u : kNodes) {
+                    queries.push_back({lobe, cell.at(u, v)});
+                }
+            }
+            results_[lobe].evaluations += kNodesOfCell;
+        }
+        const Result<std::vector<LobeValues>> values = function_(queries);
+        if (!values) {
+            return values.error();
+        }
+        std::vector<LobeValues> integrals(cells.size());
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            for (std::size_t node = 0; node < kNodesOfCell; ++node) {
+                addTo(integrals[i], (*values)[i * kNodesOfCell + node],
+                      kWeights[node / 3] * kWeights[node % 3] * cells[i].second.solidAngle());
+            }
+        }
+        return integrals;
+    }
+
+    Status start() {
+        std::vector<std::pair<std::size_t, HemisphereCell>> cells;
+        constexpr std::uint32_t kSide = 1U << kFirstLevel;
+        for (std::size_t lobe = 0; lobe < samples_.size(); ++lobe) {
+            std::vector<HemisphereCell> places;
+            for (const Direction& direction : samples_[lobe]) {
+                if (direction == Direction{}) {
+                    results_[lobe].lost += 1.0 / static_cast<double>(samples_[lobe].size());
+                } else {
+                    places.push_back(cellOf(direction));
+                }
+            }
+            for (std::uint32_t i = 0; i < 2 * kSide * kSide; ++i) {
+                const HemisphereCell cell{i >= kSide * kSide, kFirstLevel, i % kSide, i / kSide % kSide};
+                cells.emplace_back(lobe, cell);
+                waiting_.push_back({lobe, cell, {}, within(places, cell)});
+            }
+        }
+        const Result<std::vector<LobeValues>> integrals = integrate(cells);
+        if (!integrals) {
+            return integrals.error();
+        }
+        for (std::size_t i = 0; i < waiting_.size(); ++i) {
+            waiting_[i].integral = (*integrals)[i];
+        }
+        return okStatus();
+    }
+
+    static std::vector<HemisphereCell> within(const std::vector<HemisphereCell>& places,
+                                              const HemisphereCell& outer) {
+        std::vector<HemisphereCell> found;
+        std::ranges::copy_if(places, std::back_inserter(found),
+                             [&](const HemisphereCell& cell) { return liesWithin(cell, outer); });
+        return found;
+    }
+
+    // Splits every square that waits, and keeps the quarters of those that it changed.
+    Status split() {
+        std::vector<std::pair<std::size_t, HemisphereCell>> cells;
+        for (const Waiting& square : waiting_) {
+            for (std::uint32_t number = 0; number < 4; ++number) {
+                cells.emplace_back(square.lobe, square.cell.child(number));
+            }
+        }
+        const Result<std::vector<LobeValues>> integrals = integrate(cells);
+        if (!integrals) {
+            return integrals.error();
+        }
+        std::vector<std::size_t> kept(samples_.size());
+        std::vector<Waiting> next;
+        for (std::size_t i = 0; i < waiting_.size(); ++i) {
+            Waiting& square = waiting_[i];
+            const std::span<const LobeValues> quarters(integrals->data() + 4 * i, 4);
+            if (!refines(square, quarters, kept[square.lobe])) {
+                continue;
+            }
+            for (std::uint32_t number = 0; number < 4; ++number) {
+                const HemisphereCell cell = square.cell.child(number);
+                next.push_back({square.lobe, cell, quarters[number], within(square.samples, cell)});
+            }
+            kept[square.lobe] += 4;  // they have four quarters each
+        }
+        waiting_ = std::move(next);
+        return okStatus();
+    }
+
+    // Adds the square to the result unless its quarters should be split in turn.
+    bool refines(const Waiting& square, std::span<const LobeValues> quarters, std::size_t kept) {
+        LobeValues sum;
+        for (const LobeValues& quarter : quarters) {
+            addTo(sum, quarter, 1.0);
+        }
+        const double density = std::abs(sum.density - square.integral.density);
+        const double whole = std::max(largestDifference(sum.whole, square.integral.whole),
+                                      largestDifference(sum.reflected, square.integral.reflected));
+        // Nodes may have missed a lobe that samples know.
+        const auto samples = static_cast<double>(square.samples.size());
+        const double expected = sum.density * static_cast<double>(samples_[square.lobe].size());
+        const bool missed = samples > 8.0 && samples > 3.0 * expected;
+        const bool splits = std::max(density, whole) > kSplitChange || missed;
+        if (splits && square.cell.level + 2 <= kDeepestLevel &&
+            results_[square.lobe].evaluations + kept * kNodesOfCell * 4 <= kMostEvaluations) {
+            return true;
+        }
+        LobeIntegrals& result = results_[square.lobe];
+        result.density += sum.density;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            result.reflected[channel] += sum.reflected[channel];
+            result.whole[channel] += sum.whole[channel];
+        }
+        result.densityError += density;
+        result.wholeError += whole;
+        bins_[square.lobe].push_back({square.cell.place(), sum.density, square.samples.size()});
+        return false;
+    }
+
+    // Compares how many samples fell into squares that lie together with how many the density expects.
+    void compareSamples(std::size_t lobe) {
+        const auto count = static_cast<double>(samples_[lobe].size());
+        if (count == 0.0) {
+            return;
+        }
+        std::vector<Bin>& bins = bins_[lobe];
+        std::ranges::sort(bins, {}, &Bin::place);
+        // The last bin has the samples without a direction.
+        LobeIntegrals& result = results_[lobe];
+        bins.push_back({~0ULL, std::max(1.0 - result.density, 0.0),
+                        static_cast<std::size_t>(std::llround(result.lost * count))});
+        double statistic = 0.0;
+        double freedom = -1.0;
+        double expected = 0.0;
+        double found = 0.0;
+        double remaining = 0.0;
+        for (const Bin& bin : bins) {
+            remaining += count * bin.share;
+        }
+        for (const Bin& bin : bins) {
+            expected += count * bin.share;
+            found += static_cast<double>(bin.samples);
+            remaining -= count * bin.share;
+            const bool isLast = &bin == &bins.back();
+            if ((expected >= kSamplesOfBin && remaining >= kSamplesOfBin) || isLast) {
+                statistic += (found - expected) * (found - expected) / std::max(expected, 1e-3);
+                freedom += 1.0;
+                expected = 0.0;
+                found = 0.0;
+            }
+        }
+        result.significance = freedom < 1.0 ? 1.0 : chiSquareTail(statistic, freedom);
+    }
+
+    std::span<const std::vector<Direction>> samples_;
+    const LobeFunction& function_;
+    std::vector<LobeIntegrals> results_;
+    std::vector<std::vector<Bin>> bins_;
+    std::vector<Waiting> waiting_;
+};
+
+}  // namespace
+
+Result<std::vector<LobeIntegrals>> integrateLobes(std::span<const std::vector<Direction>> samples,
+                                                  const LobeFunction& function) {
+    return Integration(samples, function).run();
+}
+
+double chiSquareTail(double statistic, double freedom) {
+    // Wilson and Hilferty 1931: the cube root of chi-square over its degrees of freedom is nearly normal.
+    const double spread = 2.0 / (9.0 * freedom);
+    return 0.5 * std::erfc((std::cbrt(statistic / freedom) - (1.0 - spread)) / std::sqrt(2.0 * spread));
+}
+
+}  // namespace glint::measure

@@ -1,0 +1,53 @@
+// Integrates lobes over all directions by squares that are split where a lobe is sharp, and compares samples
+// with the squares' shares. It knows nothing of a lobe but its values and its samples.
+#pragma once
+
+#include "measure/features/hemispheres.h"
+
+#include <glint/result.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace glint::measure {
+
+// The values of one lobe for one direction.
+struct LobeValues {
+    double density = 0.0;
+    std::array<double, 3> reflected{};  // of the lobe, times the cosine
+    std::array<double, 3> whole{};      // of the whole BSDF, times the cosine
+};
+
+// One direction at which one of the lobes is wanted.
+struct LobeQuery {
+    std::size_t lobe = 0;
+    Direction direction{};
+};
+using LobeFunction = std::function<Result<std::vector<LobeValues>>(std::span<const LobeQuery>)>;
+
+struct LobeIntegrals {
+    double density = 0.0;
+    std::array<double, 3> reflected{};
+    std::array<double, 3> whole{};
+    // What the last splits changed, summed: an upper estimate of the errors.
+    double densityError = 0.0;
+    double wholeError = 0.0;
+    double lost = 0.0;  // share of the samples that have no direction
+    // The probability that samples which follow the density are at least as far from it as these are.
+    double significance = 1.0;
+    std::uint64_t evaluations = 0;
+};
+
+// `samples` has the sampled directions of each lobe, (0, 0, 0) where there is none. Lobes without samples are
+// integrated all the same. Has the errors of `function`.
+Result<std::vector<LobeIntegrals>> integrateLobes(std::span<const std::vector<Direction>> samples,
+                                                  const LobeFunction& function);
+
+// The probability that chi-square with so many degrees of freedom is at least `statistic`.
+double chiSquareTail(double statistic, double freedom);
+
+}  // namespace glint::measure
