@@ -44,7 +44,8 @@ uvec2 glintHostMaterials() {
 
 vec4 glintHostTexture(const uint textureIndex, const uint samplerIndex, const vec2 uv, const vec2 gradientX,
                       const vec2 gradientY) {
-    return textureGrad(sampler2D(sceneTextures[nonuniformEXT(textureIndex)], sceneSamplers[nonuniformEXT(samplerIndex)]),
+    return textureGrad(sampler2D(sceneTextures[nonuniformEXT(textureIndex)],
+                                 sceneSamplers[nonuniformEXT(samplerIndex)]),
                        uv, gradientX, gradientY);
 }
 
