@@ -6,9 +6,6 @@ MaterialArray hostMaterials() {
     return GLINT_FRAME.materials;
 }
 
-// The record of the material of a Hit or a SurfacePoint.
-#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
-
 // The seconds that materials may follow.
 float frameTime() {
     return GLINT_FRAME.time;
