@@ -39,7 +39,7 @@ struct FrameData {
     Vec3 skyZenith;
     std::uint32_t tlas;
     Vec3 skyHorizon;
-    float maxAnisotropy;
+    std::uint32_t pad;
     Vec3 skyGround;
     std::uint32_t compact;
     VkDeviceAddress geometries, transforms, suns, rays, rayCount, answers, weights, colors, textureSizes,
@@ -251,8 +251,6 @@ void Engine::State::loadTextures() {
         info.magFilter = info.minFilter = VK_FILTER_LINEAR;
         info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
         info.maxLod = VK_LOD_CLAMP_NONE;
-        info.anisotropyEnable = gpu.maxAnisotropy > 1.0F ? VK_TRUE : VK_FALSE;
-        info.maxAnisotropy = gpu.maxAnisotropy;
         samplers.emplace_back();
         check(vkCreateSampler(gpu.device, &info, nullptr, &samplers.back()), "vkCreateSampler");
         gpu.later([this, sampler = samplers.back(), device = gpu.device] {
@@ -518,7 +516,6 @@ void Engine::State::startGlint() {
     handles.device = gpu.device;
     handles.queue = gpu.queue;
     handles.queueFamily = gpu.family;
-    handles.samplerAnisotropy = gpu.maxAnisotropy > 1.0F;
     handles.tracers = glint::deviceTracers(gpu.physical);
     context = expect(glint::Context::adopt(handles));
     const glint::PackageScene known = package.scene(0);
@@ -527,9 +524,9 @@ void Engine::State::startGlint() {
         const Texture& texture = world.textures[known.textures[i].image];
         images.push_back({i, texture.width, texture.height});
     }
-    std::vector<std::uint32_t> filters;
+    std::vector<glint::EngineSamplerView> filters;
     for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
-        filters.push_back(i);
+        filters.push_back({i});
     }
     std::vector<std::array<float, 12>> stored;
     for (const Instance& instance : world.instances) {
@@ -581,7 +578,6 @@ void Engine::State::writeSlot(std::uint32_t number, const std::vector<std::array
     data.skyHorizon = sky.horizon;
     data.skyGround = sky.ground;
     data.tlas = number;
-    data.maxAnisotropy = gpu.maxAnisotropy;
     data.compact = world.format == Format::Compact ? 1 : 0;
     data.geometries = geometryData.address;
     data.transforms = slot.transforms.address;

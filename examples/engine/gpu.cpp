@@ -127,16 +127,9 @@ void Gpu::createDevice() {
     queueInfo.queueFamilyIndex = family;
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    VkPhysicalDeviceFeatures supported{};
-    vkGetPhysicalDeviceFeatures(physical, &supported);
-    VkPhysicalDeviceProperties properties{};
-    vkGetPhysicalDeviceProperties(physical, &properties);
-    maxAnisotropy = supported.samplerAnisotropy != 0 ? properties.limits.maxSamplerAnisotropy : 1.0F;
-    VkPhysicalDeviceFeatures2 enabled = requirements.features;
-    enabled.features.samplerAnisotropy = supported.samplerAnisotropy;
     VkDeviceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    info.pNext = &enabled;
+    info.pNext = &requirements.features;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queueInfo;
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());

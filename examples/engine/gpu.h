@@ -72,7 +72,6 @@ public:
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t family = 0;
     VkCommandPool pool = VK_NULL_HANDLE;
-    float maxAnisotropy = 1.0F;
 
     // Runs `destroy` when the Gpu is destroyed, the last one first.
     void later(std::function<void()> destroy) {

@@ -337,7 +337,7 @@ TEST(EngineScene, NamesWhatIsWrong) {
     const PackageScene known = loaded.package().scene(0);
     const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
     const std::vector<EngineTextureView> textures(known.textures.size(), {0, 4, 4});
-    const std::vector<std::uint32_t> samplers(known.samplers.size());
+    const std::vector<EngineSamplerView> samplers(known.samplers.size());
     const auto create = [&](const EngineGeometryView& geometry, std::span<const EngineTextureView> images,
                             std::span<const std::uint32_t> firstRecords) {
         EngineSceneView view;

@@ -50,7 +50,7 @@ struct EngineFrame {
     vec3 skyZenith;
     uint tlas;
     vec3 skyHorizon;
-    float maxAnisotropy;
+    uint pad;
     vec3 skyGround;
     uint compact;
     Geometries geometries;

@@ -3,8 +3,9 @@
 // Stores which triangle a pixel shows.
 #include "engine.glsl"
 
+layout(location = 0) flat in uint triangle;
 layout(location = 0) out uvec2 seen;
 
 void main() {
-    seen = uvec2(pushed.geometry, uint(gl_PrimitiveID));
+    seen = uvec2(pushed.geometry, triangle);
 }

@@ -3,7 +3,10 @@
 // Pulls the vertices of one geometry.
 #include "engine.glsl"
 
+layout(location = 0) flat out uint triangle;
+
 void main() {
+    triangle = uint(gl_VertexIndex) / 3u;
     EngineGeometry geometry = FRAME.geometries.data[pushed.geometry];
     uint vertex = storedIndex(geometry.indices, FRAME.compact, uint(gl_VertexIndex));
     vec4 position = vec4(storedPosition(geometry.vertices, FRAME.compact, vertex), 1.0);

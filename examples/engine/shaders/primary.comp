@@ -58,9 +58,9 @@ vec4 glintHostTexture(const uint image, const uint filtering, const vec2 uv, con
                        gradientY);
 }
 
-// The engine's samplers are all alike.
+// The engine's samplers have no anisotropy.
 vec3 glintHostTextureFilter(const uint image, const uint filtering) {
-    return vec3(vec2(FRAME.textureSizes.data[image]), FRAME.maxAnisotropy);
+    return vec3(vec2(FRAME.textureSizes.data[image]), 1.0);
 }
 
 uint glintHostLightCount(const vec3 position) {

@@ -33,8 +33,8 @@ struct EngineGeometryView {
     VkDeviceAddress texCoords1 = 0;
     VkDeviceAddress colors = 0;
     VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
-    // Bits for functions of a host's own (`glint compile --host`), such as the format of its vertices. They are
-    // the upper half of GeometryRecord::flags.
+    // Bits for functions of a host's own (`glint compile --host`), such as the format of its vertices. They
+    // are the upper half of GeometryRecord::flags.
     std::uint16_t hostFlags = 0;
 };
 
@@ -43,6 +43,12 @@ struct EngineTextureView {
     std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
     std::uint32_t width = 0;  // texels of mip 0
     std::uint32_t height = 0;
+};
+
+// A sampler of the package's scene (PackageScene::samplers) as the host has it.
+struct EngineSamplerView {
+    std::uint32_t index = 0;     // in the host's array of samplers, Bindings::samplers
+    float maxAnisotropy = 1.0F;  // of its filter; 1 without
 };
 
 // How a hit leads to a geometry. The number of a geometry's place in EngineSceneView::geometries is the
@@ -58,8 +64,7 @@ struct EngineSceneView {
     std::span<const EngineGeometryView> geometries;
     std::span<const std::array<float, 12>> instances;  // objectToWorld, three rows of four
     std::span<const EngineTextureView> textures;       // one for each of PackageScene::textures
-    std::span<const std::uint32_t>
-        samplers;  // for each of PackageScene::samplers, its index in the host's array
+    std::span<const EngineSamplerView> samplers;       // one for each of PackageScene::samplers
     std::span<const LightView> lights;
     RecordsBy recordsBy = RecordsBy::CustomIndex;
     std::span<const std::uint32_t> firstRecords{};
@@ -78,8 +83,9 @@ public:
     // needs is missing, or a transform is not finite), "scene-light", and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
-    // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene yet.
-    // The GpuScene must outlive it, and update() is GpuScene's. The host binds GpuScene::descriptorSet().
+    // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
+    // yet. The GpuScene must outlive it, and update() is GpuScene's. The host binds
+    // GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
@@ -92,8 +98,8 @@ public:
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
                   std::span<const LightView> lights);
 
-    // The address of the material records, with the host's numbers of textures and samplers: glintHostMaterials()
-    // of the library.
+    // The address of the material records, with the host's numbers of textures and samplers:
+    // glintHostMaterials() of the library.
     VkDeviceAddress materials() const;
     std::uint64_t bytes() const;  // on the device
 

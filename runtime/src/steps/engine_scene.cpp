@@ -153,7 +153,8 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
                 record.textureIndex = scene.textures[record.textureIndex].index;
             }
             if (record.samplerIndex < scene.samplers.size()) {
-                record.samplerIndex = scene.samplers[record.samplerIndex];
+                record.anisotropy = scene.samplers[record.samplerIndex].maxAnisotropy;
+                record.samplerIndex = scene.samplers[record.samplerIndex].index;
             }
             std::memcpy(place, &record, sizeof record);
         }
@@ -263,9 +264,8 @@ Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const
     if (Status status = (*uploader)->finish(); !status) {
         return status.error();
     }
-    state->addresses = {state->geometries.address,        state->instances.address,
-                        state->previousInstances.address, state->materials.address,
-                        state->lights.address,            state->firstRecords.address};
+    state->addresses = {state->geometries.address, state->instances.address, state->previousInstances.address,
+                        state->materials.address,  state->lights.address,    state->firstRecords.address};
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
 
