@@ -1,4 +1,4 @@
-// Where the records of materials are.
+// Where the records of materials are, and what these may follow.
 #include "host/resources.glsl"
 
 // Returns the address of the records. That of a geometry's material is at its materialIndex.
@@ -6,10 +6,7 @@ MaterialArray hostMaterials() {
     return GLINT_FRAME.materials;
 }
 
-// The record of the material of a Hit or a SurfacePoint.
-#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
-
 // The seconds that materials may follow.
-float frameTime() {
+float hostTime() {
     return GLINT_FRAME.time;
 }

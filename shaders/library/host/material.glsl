@@ -4,8 +4,6 @@ MaterialArray hostMaterials() {
     return MaterialArray(glintHostMaterials());
 }
 
-#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]
-
-float frameTime() {
+float hostTime() {
     return glintHostTime();
 }
