@@ -1,7 +1,7 @@
 // A place on a surface as the stages "coordinates" and "opacity" know it. They also run for candidates of rays and for
 // rasterised triangles, so they know neither a normal nor a footprint.
 #include "host/geometry.glsl"
-#include "host/material.glsl"
+#include "hit/material_record.glsl"
 #include "host/texture.glsl"
 #include "bsdf/features.glsl"
 #include "generated/attributes.glsl"
@@ -57,7 +57,7 @@ float vertexAlpha(HostGeometry geometry, uint primitive, vec2 barycentrics) {
 
 // Returns the coordinates at which a texture slot is read.
 vec2 pointCoordinates(SurfacePoint point, uint slot, Features features) {
-    TextureRecord record = GLINT_TEXTURE(hostMaterials().data[point.material], slot);
+    TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(point), slot);
     bool second = inputOfKey(features, GLINT_TEX_COORD_1) &&
                   (!inputOfKey(features, GLINT_TEX_COORD_0) || record.texCoord != 0u);
     vec2 uv = second ? point.texCoords[1] : point.texCoords[0];
@@ -68,6 +68,6 @@ vec2 pointCoordinates(SurfacePoint point, uint slot, Features features) {
 
 // Returns the value of a texture slot. It is that of mip 0, because traversal knows no footprint.
 vec4 samplePoint(SurfacePoint point, uint slot, Features features) {
-    TextureRecord record = GLINT_TEXTURE(hostMaterials().data[point.material], slot);
+    TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(point), slot);
     return hostFinestTexture(record, pointCoordinates(point, slot, features));
 }

@@ -1,4 +1,4 @@
-// Where the records of materials are.
+// Where the records of materials are, and what these may follow.
 #include "host/resources.glsl"
 
 // Returns the address of the records. That of a geometry's material is at its materialIndex.
@@ -7,6 +7,6 @@ MaterialArray hostMaterials() {
 }
 
 // The seconds that materials may follow.
-float frameTime() {
+float hostTime() {
     return GLINT_FRAME.time;
 }

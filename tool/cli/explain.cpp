@@ -351,6 +351,7 @@ void addExplain(CLI::App& app, Action& chosen) {
     addProfileInput(command, arguments->settings);
     addLockInput(command, arguments->lock);
     command.callback([arguments, &command, &chosen] {
+        settleSettings(command, arguments->settings);
         checkProfile(command, arguments->settings);
         chosen = [arguments](const Console& console) { return explain(console, *arguments); };
     });

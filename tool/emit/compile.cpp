@@ -4,7 +4,6 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
-#include "emit/host.h"
 #include "emit/library.h"
 #include "emit/material_code.h"
 #include "emit/module_files.h"
@@ -127,32 +126,6 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
         return modules.error();
     }
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
-}
-
-// Says what to do about an error in GLSL to which packs or a host may have contributed.
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host) {
-    if (error.id != "glsl" || (model.sources.empty() && host.empty())) {
-        return error;
-    }
-    if (!host.empty() && isHostPlace(error.where, host)) {
-        error.message += "; it is GLSL of --host";
-        error.hint = "correct the file; docs/host.md says which functions it must have";
-        return error;
-    }
-    for (const FeatureCode& code : model.code) {
-        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
-        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
-            error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
-            error.hint = "correct the file; docs/material_features.md says what each stage may use";
-            return error;
-        }
-    }
-    error.hint = host.empty()
-                     ? "look whether a pack has all functions of its stages (docs/material_features.md); "
-                       "otherwise this is a defect of Glint"
-                     : "look whether the files of --host have all functions of those that they replace "
-                       "(docs/host.md), and packs those of their stages; otherwise this is a defect of Glint";
-    return error;
 }
 
 Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,

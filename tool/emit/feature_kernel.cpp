@@ -65,7 +65,7 @@ Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
     Result<std::vector<std::uint32_t>> words =
         compileShader({kName, ShaderStage::Compute, dropUnused(*glsl), {}}, {});
     if (!words) {
-        return explainGlslError(words.error(), *plan.model);
+        return explainGlslError(words.error(), *plan.model, settings.host);
     }
     kernel.spirv = std::move(*words);
     return kernel;

@@ -1,6 +1,7 @@
 #include "emit/material_code.h"
 
 #include "emit/context.h"
+#include "emit/host.h"
 
 #include <fmt/format.h>
 
@@ -258,8 +259,13 @@ Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, Fea
     return okStatus();
 }
 
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
-    if (error.id != "glsl" || model.sources.empty()) {
+Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host) {
+    if (error.id != "glsl" || (model.sources.empty() && host.empty())) {
+        return error;
+    }
+    if (!host.empty() && isHostPlace(error.where, host)) {
+        error.message += "; it is GLSL of --host";
+        error.hint = "correct the file; docs/host.md says which functions it must have";
         return error;
     }
     for (const FeatureCode& code : model.code) {
@@ -270,9 +276,11 @@ Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model) {
             return error;
         }
     }
-    error.hint =
-        "look whether a pack has all functions of its stages (docs/material_features.md); "
-        "otherwise this is a defect of Glint";
+    error.hint = host.empty()
+                     ? "look whether a pack has all functions of its stages (docs/material_features.md); "
+                       "otherwise this is a defect of Glint"
+                     : "look whether the files of --host have all functions of those that they replace "
+                       "(docs/host.md), and packs those of their stages; otherwise this is a defect of Glint";
     return error;
 }
 

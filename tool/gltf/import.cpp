@@ -96,6 +96,9 @@ namespace {
 
 // Returns a bit for each of the model's attributes that the primitive has.
 std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
+    if (primitive.attributes.empty()) {
+        return 0;
+    }
     const std::vector<VertexAttribute>& known =
         scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
     std::uint64_t bits = 0;

@@ -23,6 +23,7 @@ constexpr MemberLayout kGeometryRecord[] = {
     GLINT_MEMBER(GeometryRecord, normals),       GLINT_MEMBER(GeometryRecord, tangents),
     GLINT_MEMBER(GeometryRecord, texCoords0),    GLINT_MEMBER(GeometryRecord, texCoords1),
     GLINT_MEMBER(GeometryRecord, colors),
+    GLINT_MEMBER(GeometryRecord, attributes),
 };
 
 constexpr MemberLayout kInstanceRecord[] = {
@@ -103,6 +104,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, sampleLodBias),
     GLINT_MEMBER(FrameConstants, sampleIndex),
     GLINT_MEMBER(FrameConstants, seed),
+    GLINT_MEMBER(FrameConstants, time),
     GLINT_MEMBER(FrameConstants, effects),
     GLINT_MEMBER(FrameConstants, countsLight),
     GLINT_MEMBER(FrameConstants, lightCount),
@@ -147,6 +149,11 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, shadows),
     GLINT_MEMBER(FrameConstants, shadowDispatch),
     GLINT_MEMBER(FrameConstants, counters),
+    GLINT_MEMBER(FrameConstants, surfaces),
+    GLINT_MEMBER(FrameConstants, previousInstances),
+    GLINT_MEMBER(FrameConstants, firstRecords),
+    GLINT_MEMBER(FrameConstants, recordsBy),
+    GLINT_MEMBER(FrameConstants, rayMask),
 };
 
 constexpr MemberLayout kPushConstants[] = {
