@@ -3,7 +3,6 @@
 #include "hit/material_record.glsl"
 #include "host/texture.glsl"
 
-
 // Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
     return hasInput(features, GLINT_TEX_COORD_1) &&

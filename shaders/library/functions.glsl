@@ -202,8 +202,8 @@ float glintDensity(const GlintSurface surface, const vec3 wo, const vec3 wi);
 GlintRadiance glintRadiance(const GlintSurface surface);
 
 // Returns the mirror's ray of a surface, with which a host brings reflections of the scene instead of the sky's:
-// glintRadiance() - sky + weight times what the ray finds. It stands for a rough lobe, too, if only roughly; glintSample()
-// is exact. Coats and sheen keep their sky.
+// glintRadiance() - sky + weight times what the ray finds. It stands for a rough lobe, too, if only roughly;
+// glintSample() is exact. Coats and sheen keep their sky.
 GlintMirror glintMirror(const GlintSurface surface);
 
 // Returns where a ray in a direction must start, so that it does not meet the surface that it leaves.

@@ -78,6 +78,19 @@ std::string textAt(const std::string& path) {
     return bytes ? std::string(bytes->begin(), bytes->end()) : std::string();
 }
 
+// The functions of each case. If they are inlined, compiling takes several times as long.
+std::vector<std::string> functionsOfCases(const Plan& plan) {
+    std::vector<std::string> names;
+    for (const Case& shaderCase : plan.cases) {
+        names.push_back("shade" + shaderCase.name);
+        for (const char* const function :
+             {"surface", "evaluate", "sample", "density", "radiance", "mirror"}) {
+            names.push_back(fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
+        }
+    }
+    return names;
+}
+
 // A scene with its library, and the values that kernels read from both.
 class Library : public ::testing::Test {
 protected:
@@ -112,18 +125,6 @@ protected:
         return static_cast<std::uint32_t>(geometries) * kTilts;
     }
 
-    // Otherwise compiling would take ten times as long.
-    void keepCasesApart(ShaderSource& source) const {
-        for (const Case& shaderCase : loaded_.compiled().plan.cases) {
-            source.functionsApart.push_back("shade" + shaderCase.name);
-            for (const char* const function :
-                 {"surface", "evaluate", "sample", "density", "radiance", "mirror"}) {
-                source.functionsApart.push_back(
-                    fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
-            }
-        }
-    }
-
     // The kernel's source with a text in the place of the library.
     ShaderSource kernel(const std::string& library, bool product) const {
         ShaderSource source{"library_values.comp", ShaderStage::Compute, {}, {}};
@@ -139,7 +140,7 @@ protected:
         const Result<std::string> glsl = flatten(source.name, text, sources->lookup(), FlattenSide::Glsl);
         EXPECT_TRUE(glsl) << toString(glsl.error());
         source.glsl = glsl ? *glsl : "";
-        keepCasesApart(source);
+        source.functionsApart = functionsOfCases(loaded_.compiled().plan);
         return source;
     }
 
@@ -292,47 +293,63 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
 
 #endif
 
-// A shader of a user's own has nothing of Glint's but the library.
-TEST_F(Library, CompilesInAShaderOfAUser) {
-    int cases = 0;
-    for (const PackageFile& file : files_) {
-        const std::string text(file.bytes.begin(), file.bytes.end());
-        if (!file.name.ends_with(".glsl") || file.name.ends_with("glint_host.glsl")) {
-            continue;
+std::string textOf(const PackageFile& file) {
+    return {file.bytes.begin(), file.bytes.end()};
+}
+
+// Bodies for the functions that glint_host.glsl declares. What they return does not matter.
+std::string hostBodies(const std::string& host) {
+    std::string bodies;
+    for (std::size_t place = host.find(" glintHost"); place != std::string::npos;
+         place = host.find(" glintHost", place + 1)) {
+        const std::size_t begin = host.rfind('\n', place) + 1;
+        const std::string type = host.substr(begin, place - begin);
+        if (type.find(' ') == std::string::npos) {
+            const std::string head = host.substr(begin, host.find(';', place) - begin);
+            bodies += fmt::format("{} {{\n    {} none;\n    return none;\n}}\n", head, type);
         }
-        EXPECT_EQ(text.find("void main"), std::string::npos);
-        EXPECT_EQ(text.find("binding"), std::string::npos);
-        EXPECT_EQ(text.find("push_constant"), std::string::npos);
-        EXPECT_EQ(text.find("#include"), std::string::npos);
-        std::string shader = "#version 460\n" + fileText("library/glint_host.glsl") + text;
-        // The bodies of the host's functions do not matter here.
-        const std::string host = fileText("library/glint_host.glsl");
-        for (std::size_t place = host.find(" glintHost"); place != std::string::npos;
-             place = host.find(" glintHost", place + 1)) {
-            const std::size_t begin = host.rfind('\n', place) + 1;
-            const std::string type = host.substr(begin, place - begin);
-            if (type.find(' ') == std::string::npos) {
-                const std::string head = host.substr(begin, host.find(';', place) - begin);
-                shader += fmt::format("{} {{\n    {} none;\n    return none;\n}}\n", head, type);
-            }
-        }
-        // Names that a user may have, too.
-        shader +=
-            "struct Hit { float kPi; };\nfloat luminance(vec3 v) { return v.x; }\n"
-            "layout(binding = 0) buffer Output { vec3 sum; };\nlayout(local_size_x = 1) in;\n"
-            "void main() {\n"
-            "    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), sum, 0.0, 0u));\n"
-            "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance + "
-            "glintMirror(surface).weight +\n"
-            "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
-            "          glintRayOrigin(surface, sum);\n}\n";
-        ShaderSource source{file.name, ShaderStage::Compute, shader};
-        keepCasesApart(source);
-        const Result<std::vector<std::uint32_t>> words = compileShader(source, {});
-        EXPECT_TRUE(words) << toString(words.error());
-        ++cases;
     }
-    EXPECT_EQ(cases, 1 + static_cast<int>(loaded_.compiled().plan.cases.size()));
+    return bodies;
+}
+
+// A shader of a user's own has nothing of Glint's but the library.
+TEST(LibraryFiles, CompileInAShaderOfAUser) {
+    const Result<Scene> scene = importScene(GLINT_GALLERY_SCENE);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    const SceneList list({&*scene, 1});
+    CompileSettings settings = librarySettings();
+    settings.plan.merge = MergePolicy::Family;
+    settings.emitLibrary = true;
+    const Plan plan = makePlan(list.materials(), list.primitives(), settings.plan);
+    const Result<std::vector<PackageFile>> files = makeLibrary(list, plan, settings);
+    ASSERT_TRUE(files) << toString(files.error());
+    ASSERT_EQ(files->size(), 2 + plan.cases.size());
+    EXPECT_GE(plan.cases.size(), 10U);
+    const std::string host = textOf(files->front());
+    ASSERT_NE(hostBodies(host).find("glintHostTexture("), std::string::npos);
+    // Names that a user may have, too.
+    const std::string user =
+        "struct Hit { float kPi; };\nfloat luminance(vec3 v) { return v.x; }\n"
+        "layout(binding = 0) buffer Output { vec3 sum; };\nlayout(local_size_x = 1) in;\n"
+        "void main() {\n";
+    const std::string calls =
+        "    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), sum, 0.0, 0u));\n"
+        "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
+        "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
+        "          glintMirror(surface).weight + glintRayOrigin(surface, sum);\n";
+    for (std::size_t i = 1; i < files->size(); ++i) {
+        // Every text is compiled. Only the switch and one case are called, too, which takes most of the time.
+        const std::string text = textOf((*files)[i]);
+        for (const char* const foreign : {"void main", "binding", "push_constant", "#include", "#line"}) {
+            EXPECT_EQ(text.find(foreign), std::string::npos) << (*files)[i].name << ": " << foreign;
+        }
+        const Result<std::vector<std::uint32_t>> words = compileShader(
+            {(*files)[i].name, ShaderStage::Compute,
+             "#version 460\n" + host + text + hostBodies(host) + user + (i <= 2 ? calls : "") + "}\n",
+             functionsOfCases(plan)},
+            {});
+        EXPECT_TRUE(words) << toString(words.error());
+    }
 }
 
 TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {

@@ -157,7 +157,7 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
         package.files.push_back({package::kHeaderFile, toBytes(*header)});
     }
     if (settings.emitLibrary || settings.emitLinkable) {
-        Result<std::vector<PackageFile>> library = makeLibrary(scenes, package.plan, settings);
+        Result<std::vector<PackageFile>> library = makeLibrary(scenes, package.plan, settings, cache);
         if (!library) {
             return library.error();
         }

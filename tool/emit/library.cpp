@@ -1,5 +1,6 @@
 #include "emit/library.h"
 
+#include "cache/module_cache.h"
 #include "emit/builtin.h"
 #include "emit/context.h"
 #include "emit/glsl/flatten.h"
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
 #include <regex>
 #include <string>
 #include <utility>
@@ -144,9 +146,9 @@ std::vector<HostFunction> hostFunctions(const std::string& host) {
     return functions;
 }
 
-// Compiles the library of all cases for linkers.
-Result<PackageFile> makeLinkableFile(const std::string& library, const std::string& host, const Plan& plan,
-                                     bool debugInfo) {
+// Returns the library of all cases as a shader whose main() calls it, and the names for linkers.
+std::pair<ShaderSource, LinkNames> linkableSource(const std::string& library, const std::string& host,
+                                                  const Plan& plan) {
     ShaderSource source{"glint_library.spv", ShaderStage::Compute, "#version 460\n" + library, {}};
     LinkNames names{{std::begin(kExported), std::end(kExported)}, {}};
     for (const HostFunction& function : hostFunctions(host)) {
@@ -163,13 +165,29 @@ Result<PackageFile> makeLinkableFile(const std::string& library, const std::stri
             source.functionsApart.push_back(fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
         }
     }
-    const Result<std::vector<std::uint32_t>> words = compileLinkable(source, names, {debugInfo});
-    if (!words) {
-        return words.error();
+    return {std::move(source), std::move(names)};
+}
+
+// Compiles that, or takes it from the cache, which may be null.
+Result<PackageFile> makeLinkableFile(const std::string& library, const std::string& host, const Plan& plan,
+                                     bool debugInfo, const ModuleCache* cache) {
+    const auto [source, names] = linkableSource(library, host, plan);
+    const std::string text = fmt::format("// glint linkable 1\n// names {}\n{}", debugInfo,
+                                         debugInfo ? source.glsl : essentialText(source.glsl));
+    std::optional<CachedModule> module = cache != nullptr ? cache->find(text) : std::nullopt;
+    if (!module) {
+        Result<std::vector<std::uint32_t>> words = compileLinkable(source, names, {debugInfo});
+        if (!words) {
+            return words.error();
+        }
+        module = CachedModule{std::move(*words), {}};
+        if (cache != nullptr) {
+            cache->put(text, *module);
+        }
     }
-    const auto* const first = reinterpret_cast<const std::uint8_t*>(words->data());
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(module->spirv.data());
     return PackageFile{std::string(kLibraryFolder) + source.name,
-                       {first, first + words->size() * sizeof(std::uint32_t)}};
+                       {first, first + module->spirv.size() * sizeof(std::uint32_t)}};
 }
 
 PackageFile fileOf(const std::string& name, std::string_view text) {
@@ -179,7 +197,7 @@ PackageFile fileOf(const std::string& name, std::string_view text) {
 }  // namespace
 
 Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan& plan,
-                                             const CompileSettings& settings) {
+                                             const CompileSettings& settings, const ModuleCache* cache) {
     const Result<SourceSet> sources = librarySources(scenes, plan, settings);
     if (!sources) {
         return sources.error();
@@ -212,7 +230,8 @@ Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan
     }
     if (settings.emitLinkable) {
         const std::string text(files.back().bytes.begin(), files.back().bytes.end());
-        Result<PackageFile> linkable = makeLinkableFile(text, hostText(*sources), plan, settings.debugInfo);
+        Result<PackageFile> linkable =
+            makeLinkableFile(text, hostText(*sources), plan, settings.debugInfo, cache);
         if (!linkable) {
             return linkable.error();
         }

@@ -16,8 +16,10 @@ inline constexpr std::string_view kLibraryFolder = "library/";
 // Returns the library's files: glint_host.glsl, which declares what a shader that includes the library has to
 // have; glint_library.glsl, which has all cases; with settings.emitLibrary a file for each case; and with
 // settings.emitLinkable glint_library.spv, the same as glint_library.glsl for linkers. The settings' host,
-// precision and answer do not matter. Has the errors of makeSourceSet(), flatten() and compileLinkable().
+// precision and answer do not matter. `cache`, which may be null, keeps compiled SPIR-V. Has the errors of
+// makeSourceSet(), flatten() and compileLinkable().
 Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan& plan,
-                                             const CompileSettings& settings);
+                                             const CompileSettings& settings,
+                                             const ModuleCache* cache = nullptr);
 
 }  // namespace glint

@@ -33,6 +33,9 @@ struct EngineGeometryView {
     VkDeviceAddress texCoords1 = 0;
     VkDeviceAddress colors = 0;
     VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
+    // Bits for functions of a host's own (`glint compile --host`), such as the format of its vertices. They are
+    // the upper half of GeometryRecord::flags.
+    std::uint16_t hostFlags = 0;
 };
 
 // A texture of the package's scene (PackageScene::textures) as the host has it.
@@ -89,6 +92,9 @@ public:
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
                   std::span<const LightView> lights);
 
+    // The address of the material records, with the host's numbers of textures and samplers: glintHostMaterials()
+    // of the library.
+    VkDeviceAddress materials() const;
     std::uint64_t bytes() const;  // on the device
 
     struct State;  // for the runtime's own sources

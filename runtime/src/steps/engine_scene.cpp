@@ -82,7 +82,7 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& know
         record.featureLobes = entry->featureLobes;
         record.featureInputs = entry->featureInputs;
         record.instanceIndex = view.instance;
-        record.flags = entry->geometryFlags;
+        record.flags = entry->geometryFlags | std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
         record.indices = view.indices;
         record.positions = view.positions;
         record.normals = view.normals;
@@ -317,6 +317,10 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     recordDependency(context, commands, kAllToAll);
     state_->lightCount = static_cast<std::uint32_t>(lightRecords->size());
     return okStatus();
+}
+
+VkDeviceAddress EngineScene::materials() const {
+    return state_->addresses.materials;
 }
 
 std::uint64_t EngineScene::bytes() const {

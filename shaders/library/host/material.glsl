@@ -4,6 +4,6 @@ MaterialArray hostMaterials() {
     return MaterialArray(glintHostMaterials());
 }
 
-float hostTime() {
+float frameTime() {
     return glintHostTime();
 }

@@ -51,6 +51,10 @@ vec2 hostTexCoord1(HostGeometry geometry, uint vertex) {
     return floatsAt(uvec2(GLINT_FRAME.geometries.data[geometry.number].texCoords1), 2u * vertex).xy;
 }
 
+float hostAttribute(HostGeometry geometry, uint vertex, uint channel, uint stride) {
+    return floatsAt(uvec2(GLINT_FRAME.geometries.data[geometry.number].attributes), stride * vertex + channel).x;
+}
+
 vec4 hostColor(HostGeometry geometry, uint vertex) {
     return floatsAt(uvec2(GLINT_FRAME.geometries.data[geometry.number].colors), 4u * vertex);
 }

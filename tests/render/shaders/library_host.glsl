@@ -38,13 +38,23 @@ vec4 glintHostColor(const uint geometry, const uint vertex) {
     return GLINT_FRAME.geometries.data[geometry].colors.data[vertex];
 }
 
+// The tests' scene has no such attributes.
+float glintHostAttribute(const uint geometry, const uint vertex, const uint channel) {
+    return 0.0;
+}
+
+float glintHostTime() {
+    return GLINT_FRAME.time;
+}
+
 uvec2 glintHostMaterials() {
     return uvec2(GLINT_FRAME.materials);
 }
 
 vec4 glintHostTexture(const uint textureIndex, const uint samplerIndex, const vec2 uv, const vec2 gradientX,
                       const vec2 gradientY) {
-    return textureGrad(sampler2D(sceneTextures[nonuniformEXT(textureIndex)], sceneSamplers[nonuniformEXT(samplerIndex)]),
+    return textureGrad(sampler2D(sceneTextures[nonuniformEXT(textureIndex)],
+                                 sceneSamplers[nonuniformEXT(samplerIndex)]),
                        uv, gradientX, gradientY);
 }
 

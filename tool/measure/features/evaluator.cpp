@@ -94,7 +94,7 @@ Result<std::vector<FeatureKernelOutput>> FeatureEvaluator::run(
         if (!found) {
             return found.error();
         }
-        std::memcpy(outputs.data() + first, found->data(), count * sizeof(FeatureKernelOutput));
+        std::memcpy(static_cast<void*>(outputs.data() + first), found->data(), count * sizeof(FeatureKernelOutput));
     }
     return outputs;
 }
