@@ -4,6 +4,6 @@ MaterialArray hostMaterials() {
     return MaterialArray(glintHostMaterials());
 }
 
-float frameTime() {
+float hostTime() {
     return glintHostTime();
 }
