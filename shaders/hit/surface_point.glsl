@@ -1,7 +1,7 @@
 // A place on a surface as the stages "coordinates" and "opacity" know it. They also run for candidates of rays and for
 // rasterised triangles, so they know neither a normal nor a footprint.
 #include "host/geometry.glsl"
-#include "hit/material_record.glsl"
+#include "hit/frame_time.glsl"
 #include "host/texture.glsl"
 #include "bsdf/features.glsl"
 #include "generated/attributes.glsl"

@@ -1,6 +1,6 @@
 // The material's textures at a hit.
 #include "hit/hit.glsl"
-#include "hit/material_record.glsl"
+#include "hit/frame_time.glsl"
 #include "host/texture.glsl"
 
 // Returns whether a slot reads the second UV set.
