@@ -6,6 +6,7 @@
 #include "emit/package/json.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
+#include "settings/values.h"
 
 #include <fmt/format.h>
 
@@ -187,6 +188,9 @@ Json toJson(const inspect::InspectedPackage& inspected) {
               {"precision", package::bitsOf(package.precision())},
               {"shadows", std::string(package::nameOf(package.shape().shadows))},
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+              {"passes", std::string(package::nameOf(package.passes()))},
+              {"answer", std::string(package::nameOf(package.answer()))},
+              {"bindings", values::textOf(package.bindings())},
               {"positionFetch", package.positionFetch()},
               {"sky", skyOf(package)}}},
             {"counts",
@@ -210,6 +214,9 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"tracers", join(tracerNames(package.shape().tracers))},
          {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
          {"hit record", std::string(package::nameOf(package.hitRecord()))},
+         {"passes", std::string(package::nameOf(package.passes()))},
+         {"answer", std::string(package::nameOf(package.answer()))},
+         {"bindings", values::textOf(package.bindings())},
          {"position fetch", package.positionFetch() ? "yes" : "no"},
          {"sky", skyOf(package)},
          {"merge", manifest.merge},

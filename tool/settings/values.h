@@ -274,10 +274,11 @@ inline std::vector<SettingWord> hitLobeWords() {
     return words;
 }
 
-inline std::string bindingsOf(const Settings& settings) {
+// Returns "scene-set=0,tlas=0,…".
+inline std::string textOf(const package::Bindings& bindings) {
     std::vector<std::string> words;
     for (const package::NamedBinding& one : package::kBindingNames) {
-        words.push_back(fmt::format("{}={}", one.name, settings.compile.bindings.*one.member));
+        words.push_back(fmt::format("{}={}", one.name, bindings.*one.member));
     }
     return fmt::format("{}", fmt::join(words, ","));
 }
@@ -303,7 +304,7 @@ inline bool parseBindings(std::string_view text, package::Bindings& bindings) {
 
 inline constexpr SettingValues kBindings{
     .form = ValueForm::Text,
-    .text = bindingsOf,
+    .text = [](const Settings& settings) { return textOf(settings.compile.bindings); },
     .set = [](Settings& settings, std::string_view text) { parseBindings(text, settings.compile.bindings); },
     .type = "NAME=N,...",
     .accepts =
