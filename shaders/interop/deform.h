@@ -5,7 +5,6 @@
 #include "interop/scene.h"
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FloatArray { float data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer DeformedVec3Array { vec3 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer DeformedVec4Array { vec4 data[]; };
 #endif

@@ -86,6 +86,12 @@ Json scenesToJson(const inspect::InspectedPackage& inspected) {
     return list;
 }
 
+std::string bindingsOf(const Package& package) {
+    Settings settings;
+    settings.compile.bindings = package.bindings();
+    return values::kBindings.text(settings);
+}
+
 std::string skyOf(const Package& package) {
     return package.environmentMap() ? "map" : "gradient";
 }
@@ -190,7 +196,7 @@ Json toJson(const inspect::InspectedPackage& inspected) {
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
               {"passes", std::string(package::nameOf(package.passes()))},
               {"answer", std::string(package::nameOf(package.answer()))},
-              {"bindings", values::textOf(package.bindings())},
+              {"bindings", bindingsOf(package)},
               {"positionFetch", package.positionFetch()},
               {"sky", skyOf(package)}}},
             {"counts",
@@ -216,7 +222,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"hit record", std::string(package::nameOf(package.hitRecord()))},
          {"passes", std::string(package::nameOf(package.passes()))},
          {"answer", std::string(package::nameOf(package.answer()))},
-         {"bindings", values::textOf(package.bindings())},
+         {"bindings", bindingsOf(package)},
          {"position fetch", package.positionFetch() ? "yes" : "no"},
          {"sky", skyOf(package)},
          {"merge", manifest.merge},

@@ -302,10 +302,26 @@ inline bool parseBindings(std::string_view text, package::Bindings& bindings) {
     return valid;
 }
 
+inline constexpr std::string_view kDefaultBindings = "default";
+
 inline constexpr SettingValues kBindings{
     .form = ValueForm::Text,
-    .text = [](const Settings& settings) { return textOf(settings.compile.bindings); },
-    .set = [](Settings& settings, std::string_view text) { parseBindings(text, settings.compile.bindings); },
+    .text =
+        [](const Settings& settings) {
+            const package::Bindings& bindings = settings.compile.bindings;
+            return bindings == package::Bindings() ? std::string(kDefaultBindings) : textOf(bindings);
+        },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            settings.compile.bindings = {};
+            if (text != kDefaultBindings) {
+                parseBindings(text, settings.compile.bindings);
+            }
+        },
+    .words =
+        [] {
+            return std::vector<SettingWord>{{std::string(kDefaultBindings), "those of Glint's renderer"}};
+        },
     .type = "NAME=N,...",
     .accepts =
         [](std::string_view text) {
