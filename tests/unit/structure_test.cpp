@@ -133,7 +133,8 @@ TEST(Structure, TheCompilerKnowsNoVulkan) {
 }
 
 TEST(Structure, TheRuntimeIncludesNothingOfTheTool) {
-    const std::vector<std::string> folders{"context", "package", "scene", "motion", "renderer", "sky", "steps"};
+    const std::vector<std::string> folders{"context",  "package", "scene", "motion",
+                                           "renderer", "sky",     "steps"};
     int includes = 0;
     visitSources("runtime", [&](const fs::path& source) {
         visitIncludes(source, [&](const std::string& included) {

@@ -111,7 +111,7 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
 
 constexpr const char* kExported[] = {"glintSurface",  "glintEvaluate", "glintSample",   "glintDensity",
                                      "glintRadiance", "glintMirror",   "glintRayOrigin"};
-// Of each case.
+// The functions that each case has.
 constexpr const char* kOfCase[] = {"surface", "evaluate", "sample", "density", "radiance", "mirror"};
 
 // Calls every function, so that none is dropped.

@@ -25,8 +25,8 @@ Status addMaskCode(const SourceSet& sources, const MaterialModel& model, Feature
 // those of glTF.
 std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used);
 
-// Says what to do about an error in GLSL to which packs or a host may have contributed, and which feature it is of. `host`
-// is the folder of --host.
+// Says what to do about an error in GLSL to which packs or a host may have contributed, and which feature it
+// is of. `host` is the folder of --host.
 Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host);
 
 // The material code of modules that know their features: those of a case. Their text then has no code of

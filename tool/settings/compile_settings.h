@@ -36,8 +36,8 @@ struct CompileSettings {
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     package::Passes passes = package::Passes::Frame;
     package::HitAnswer answer = package::HitAnswer::Radiance;
-    package::Bindings bindings{}; // Passes::Steps alone may have other than the default's
-    bool environmentMap = false;  // Rays that leave the scene read an environment map instead of a gradient.
+    package::Bindings bindings{};  // Passes::Steps alone may have other than the default's
+    bool environmentMap = false;   // Rays that leave the scene read an environment map instead of a gradient.
     // With this, the strategies uber with ray queries and hit-shaders read the positions of hit triangles
     // from the acceleration structure instead of the vertex buffer.
     bool positionFetch = false;

@@ -30,7 +30,7 @@ struct RaySteps::State : PassState {
     EngineScene::State& scene;
     std::uint32_t maxRays = 0;
     package::HitAnswer answer{};
-    // Of the batch that begin() started.
+    // These belong to the batch that begin() started.
     Timing timing = Timing::Frame;
     std::uint32_t whole = 0;  // the timer's stretch of it
     std::shared_ptr<const Environment::State> environment;

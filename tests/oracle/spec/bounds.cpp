@@ -8,7 +8,7 @@
 namespace glint::spec {
 namespace {
 
-// Of the fit of an anisotropic lobe's albedo, and of all others.
+// The bounds of furnaces differ: an anisotropic lobe's albedo is a fit.
 constexpr double kAnisotropicFurnaceBound = 0.012;
 constexpr double kFurnaceBound = 0.01;
 

@@ -22,8 +22,7 @@ constexpr MemberLayout kGeometryRecord[] = {
     GLINT_MEMBER(GeometryRecord, indices),       GLINT_MEMBER(GeometryRecord, positions),
     GLINT_MEMBER(GeometryRecord, normals),       GLINT_MEMBER(GeometryRecord, tangents),
     GLINT_MEMBER(GeometryRecord, texCoords0),    GLINT_MEMBER(GeometryRecord, texCoords1),
-    GLINT_MEMBER(GeometryRecord, colors),
-    GLINT_MEMBER(GeometryRecord, attributes),
+    GLINT_MEMBER(GeometryRecord, colors),        GLINT_MEMBER(GeometryRecord, attributes),
 };
 
 constexpr MemberLayout kInstanceRecord[] = {

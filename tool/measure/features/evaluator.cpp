@@ -94,7 +94,8 @@ Result<std::vector<FeatureKernelOutput>> FeatureEvaluator::run(
         if (!found) {
             return found.error();
         }
-        std::memcpy(static_cast<void*>(outputs.data() + first), found->data(), count * sizeof(FeatureKernelOutput));
+        std::memcpy(static_cast<void*>(outputs.data() + first), found->data(),
+                    count * sizeof(FeatureKernelOutput));
     }
     return outputs;
 }
