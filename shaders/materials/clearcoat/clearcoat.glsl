@@ -1,6 +1,7 @@
 // Clearcoat (KHR_materials_clearcoat): a layer with an isotropic GGX lobe of index 1.5 about its own normal. Vectors
 // are in the frame of the base, where the coat's normal need not be z. Products that nearly cancel therefore keep their
 // rounding errors.
+#include "bsdf/albedo.glsl"
 #include "bsdf/fresnel.glsl"
 #include "bsdf/ggx.glsl"
 #include "bsdf/layer.glsl"
@@ -44,6 +45,12 @@ float clearcoatLobe(vec3 n, float nDotL, float nDotV, vec3 v, vec3 l, float alph
            (nDotL * clearcoatProjection(nDotV, alpha) + nDotV * clearcoatProjection(nDotL, alpha));
 }
 
+// The factor of the lobe by which the coat reflects its Fresnel reflectance, and no less where it is rough: what its
+// facets scatter more than once leaves in proportion to the rest (Turquin 2019). 1 without energy compensation.
+float clearcoatGain(float alpha, float nDotV) {
+    return GLINT_ENERGY_COMPENSATION != 0 ? 1.0 / (1.0 - ggxLoss(nDotV, alpha)) : 1.0;
+}
+
 void clearcoatPrepare(inout Clearcoat layer, vec3 view) {}
 
 // The cosine between the view and the coat's normal.
@@ -72,7 +79,7 @@ LayerLight clearcoatEvaluate(Clearcoat layer, vec3 view, vec3 l) {
     float nDotV = clearcoatViewCosine(layer, view);
     LayerLight light = LayerLight(vec3(0.0), clearcoatPassed(layer.factor, nDotV), nDotL);
     if (nDotL > 0.0 && (l.z > 0.0 || clearcoatFacesViewer(layer, view))) {
-        light.reflected = vec3(clearcoatFresnel(layer.factor, nDotV) * nDotL *
+        light.reflected = vec3(clearcoatFresnel(layer.factor, nDotV) * clearcoatGain(layer.alpha, nDotV) * nDotL *
                                clearcoatLobe(layer.normal, nDotL, nDotV, view, l, layer.alpha));
     }
     return light;

@@ -25,6 +25,7 @@ Bsdf::Bsdf(const Material& material, const Choices& choices, Albedos& albedos, c
     alpha_ = glm::max(material.alpha(), Vec2(kLeastAlpha));
     coatAlpha_ = std::max(squared(material.clearcoatRoughness), kLeastAlpha);
     microfacets_ = &albedos.microfacets(alpha_, choices.masking);
+    coatMicrofacets_ = &albedos.microfacets(Vec2(coatAlpha_), choices.masking);
     if (m_.specularGlossiness) {
         dielectric_.f0 = m_.specularColor;
     } else {
@@ -261,7 +262,9 @@ Vec3 Bsdf::coat(const Vec3& l) const {
     const Vec3 v = toCoat * view_;
     const Vec3 light = toCoat * l;
     const Vec2 alpha(coatAlpha_);
-    return Vec3(coatWeight() * distribution(glm::normalize(v + light), alpha) *
+    // What its microfacets scatter more than once grows the lobe.
+    const double gain = choices_.compensation ? 1.0 / coatMicrofacets_->at(v).whole() : 1.0;
+    return Vec3(coatWeight() * gain * distribution(glm::normalize(v + light), alpha) *
                 visibility(light, v, alpha, choices_.masking) * lightCosine);
 }
 

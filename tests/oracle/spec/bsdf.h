@@ -115,6 +115,7 @@ private:
     Base dielectric_;
     Base metal_;
     const MicrofacetAlbedo* microfacets_ = nullptr;
+    const MicrofacetAlbedo* coatMicrofacets_ = nullptr;
     const SheenAlbedo* sheenAlbedo_ = nullptr;
 };
 

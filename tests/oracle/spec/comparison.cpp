@@ -207,7 +207,7 @@ Choices Comparer::statedChoices() const {
 bool Comparer::losesByDesign(const Row& row, Transport transport) const {
     const Material m = readMaterial(row.material, rows_.texels);
     const bool glass = m.transmission > 0.0 && m.roughness > 0.05 && !options_.device.compensation;
-    const bool coat = m.clearcoat > 0.0 && m.clearcoatRoughness > 0.05;
+    const bool coat = m.clearcoat > 0.0 && m.clearcoatRoughness > 0.05 && !options_.device.compensation;
     return transport == Transport::Traced && (glass || coat);
 }
 
