@@ -252,7 +252,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
     }
     for (const char* const name :
          {"Geometry", "ObjectToWorld", "Vertex", "Position", "Normal", "Tangent", "TexCoord", "Color",
-          "Materials", "Texture", "TextureFilter", "LightCount", "Light", "Random"}) {
+          "Materials", "Texture", "TextureFilter", "LightCount", "Light", "Random", "Attribute", "Time"}) {
         names.exported.push_back(std::string("glintHost") + name);
     }
     ShaderSource source = kernel(declared, false);
@@ -261,7 +261,8 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
         "    store(glintHostNormal(0u, 0u) + glintHostTangent(0u, 0u).xyz + glintHostColor(0u, 0u).xyz);\n"
         "    store(glintHostTexCoord(0u, 0u, 0u).x + float(glintHostMaterials().x + "
         "glintHostLightCount(vec3(0.0))) +\n"
-        "          float(glintHostGeometry(0u).shaderId) + glintHostRandom(0u, 0u));\n"
+        "          float(glintHostGeometry(0u).shaderId) + glintHostRandom(0u, 0u) +\n"
+        "          glintHostAttribute(0u, 0u, 0u) + glintHostTime());\n"
         "    store(glintHostTexture(0u, 0u, vec2(0.0), vec2(0.0), vec2(0.0)).x + glintHostTextureFilter(0u, "
         "0u).x +\n"
         "          glintHostLight(0u, vec3(0.0), vec3(0.0)).distance);\n";
