@@ -561,7 +561,8 @@ void Engine::State::writeSlot(std::uint32_t number, const std::vector<std::array
     for (std::uint32_t i = 0; i < stored.size(); ++i) {
         VkAccelerationStructureInstanceKHR instance{};
         std::memcpy(&instance.transform, stored[i].data(), sizeof instance.transform);
-        instance.instanceCustomIndex = (0xABC000U + i) & 0xFFFFFFU;  // the engine's own; Glint looks at the place alone
+        instance.instanceCustomIndex =
+            (0xABC000U + i) & 0xFFFFFFU;  // the engine's own; Glint looks at the place alone
         instance.mask = 0xFF;
         // The hit record of hit-shaders: one for each geometry.
         instance.instanceShaderBindingTableRecordOffset = firstRecords[i] & 0xFFFFFFU;

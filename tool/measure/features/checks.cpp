@@ -21,7 +21,7 @@ constexpr double kUnitTolerance = 1e-3;
 // Differences between f(v, l) and f(l, v), as a share of the larger. Near the peak of the sharpest lobes,
 // alpha 1e-4, a unit vector of single precision decides about the value to 1e-3.
 constexpr double kReciprocityLimit = 1e-2;
-// What of a lobe counts as nothing when both are compared.
+// The part of a lobe that counts as nothing when both are compared.
 constexpr double kReciprocityFloor = 1e-4;
 constexpr double kDensityLimit = 3e-3;
 constexpr double kSignificanceLimit = 1e-6;
