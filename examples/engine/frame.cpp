@@ -82,6 +82,15 @@ Vec3 scaled(const Vec3& v, float factor) {
     return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
+// Returns the transform of each instance from stored positions, as the file has it.
+std::vector<std::array<float, 12>> restTransforms(const World& world) {
+    std::vector<std::array<float, 12>> stored;
+    for (const Instance& instance : world.instances) {
+        stored.push_back(storedToWorld(world, instance));
+    }
+    return stored;
+}
+
 // Perspective with reversed depth (1 near, 0 infinitely far) and y down.
 void setCamera(const Camera& camera, FrameData& frame) {
     const Vec3 right = cross(camera.forward, camera.up);
@@ -152,7 +161,8 @@ struct Engine::State {
     void makeSlots();
     void startGlint();
     void writeSlot(std::uint32_t slot, const std::vector<std::array<float, 12>>& stored);
-    void recordStructure(Slot& slot);
+    void recordStructure(VkCommandBuffer commands, Slot& slot);
+    std::vector<glint::LightView> lights() const;
     void record(std::uint32_t slot, const std::vector<std::array<float, 12>>& stored);
     void draw(VkCommandBuffer commands, const Slot& slot);
     VkPipeline computePipeline(const std::string& name);
@@ -314,18 +324,8 @@ void Engine::State::makeSlots() {
         slot.transforms = gpu.buffer(world.instances.size() * 48, true);
         slot.instances = gpu.buffer(world.instances.size() * sizeof(VkAccelerationStructureInstanceKHR), true,
                                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR);
-        std::vector<std::array<float, 12>> stored;
-        for (const Instance& instance : world.instances) {
-            stored.push_back(storedToWorld(world, instance));
-        }
-        writeSlot(static_cast<std::uint32_t>(&slot - slots.data()), stored);
-        gpu.once([&](VkCommandBuffer commands) {
-            slot.commands = slot.commands == VK_NULL_HANDLE ? commands : slot.commands;
-            const VkCommandBuffer own = slot.commands;
-            slot.commands = commands;
-            recordStructure(slot);
-            slot.commands = own;
-        });
+        writeSlot(static_cast<std::uint32_t>(&slot - slots.data()), restTransforms(world));
+        gpu.once([&](VkCommandBuffer commands) { recordStructure(commands, slot); });
     }
 }
 
@@ -508,6 +508,14 @@ void Engine::State::makePipelines() {
     gpu.later([device = gpu.device, made = gbuffer] { vkDestroyPipeline(device, made, nullptr); });
 }
 
+std::vector<glint::LightView> Engine::State::lights() const {
+    std::vector<glint::LightView> result;
+    for (const Sun& sun : world.suns) {
+        result.push_back({glint::LightView::Type::Directional, sun.lux, {}, sun.direction});
+    }
+    return result;
+}
+
 // Everything that Glint needs of the engine.
 void Engine::State::startGlint() {
     glint::DeviceHandles handles;
@@ -528,20 +536,14 @@ void Engine::State::startGlint() {
     for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
         filters.push_back({i});
     }
-    std::vector<std::array<float, 12>> stored;
-    for (const Instance& instance : world.instances) {
-        stored.push_back(storedToWorld(world, instance));
-    }
-    std::vector<glint::LightView> lights;
-    for (const Sun& sun : world.suns) {
-        lights.push_back({glint::LightView::Type::Directional, sun.lux, {}, sun.direction});
-    }
+    const std::vector<std::array<float, 12>> stored = restTransforms(world);
     glint::EngineSceneView view;
     view.geometries = records;
     view.instances = stored;
     view.textures = images;
     view.samplers = filters;
-    view.lights = lights;
+    const std::vector<glint::LightView> shining = lights();
+    view.lights = shining;
     view.recordsBy = glint::RecordsBy::InstanceTable;
     view.firstRecords = firstRecords;
     scene = expect(glint::EngineScene::create(*context, package, view));
@@ -593,14 +595,14 @@ void Engine::State::writeSlot(std::uint32_t number, const std::vector<std::array
     std::memcpy(slot.frame.mapped, &data, sizeof data);
 }
 
-void Engine::State::recordStructure(Slot& slot) {
+void Engine::State::recordStructure(VkCommandBuffer commands, Slot& slot) {
     VkAccelerationStructureGeometryKHR described{};
     described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
     described.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
     described.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
     described.geometry.instances.data.deviceAddress = slot.instances.address;
     const auto count = static_cast<std::uint32_t>(world.instances.size());
-    gpu.build(slot.commands, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, {&described, 1}, {&count, 1},
+    gpu.build(commands, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, {&described, 1}, {&count, 1},
               slot.tlas);
 }
 
@@ -643,12 +645,8 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
     gpu.barrier(commands);  // the frame before has used the same lists
-    recordStructure(slot);
-    std::vector<glint::LightView> lights;
-    for (const Sun& sun : world.suns) {
-        lights.push_back({glint::LightView::Type::Directional, sun.lux, {}, sun.direction});
-    }
-    expect(scene->update(commands, stored, lights));
+    recordStructure(commands, slot);
+    expect(scene->update(commands, stored, lights()));
     vkCmdFillBuffer(commands, rayCount.handle, 0, VK_WHOLE_SIZE, 0);
     gpu.barrier(commands);
     draw(commands, slot);

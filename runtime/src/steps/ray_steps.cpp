@@ -1,3 +1,4 @@
+#include "context/readback.h"
 #include "renderer/frame_constants.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_choice.h"
@@ -29,7 +30,6 @@ struct RaySteps::State : PassState {
 
     EngineScene::State& scene;
     std::uint32_t maxRays = 0;
-    package::HitAnswer answer{};
     // These belong to the batch that begin() started.
     Timing timing = Timing::Frame;
     std::uint32_t whole = 0;  // the timer's stretch of it
@@ -97,7 +97,6 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     state->choice = *choice;
     state->size = size;
     state->maxRays = options.maxRays;
-    state->answer = package.answer();
     state->pushOffset = package.bindings().pushOffset;
     for (const package::CaseEntry& entry : package.cases()) {
         state->caseNames.emplace_back(package.string(entry.name));
@@ -248,7 +247,7 @@ Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) {
 
 Result<RayStepsCounters> RaySteps::counters() {
     if (!state_->recorded) {
-        return makeError("frame-not-recorded", "", "no batch was recorded", "call record() first");
+        return frameNotRecorded();
     }
     const std::uint8_t* const read = state_->frame.readback.mapped;
     const auto counter = [&](std::uint32_t index) {
