@@ -105,19 +105,20 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (glint::Status status = sources.addGenerated(); !status) {
         return status;
     }
-    const glint::Result<std::string> glsl = glint::flatten(
+    const glint::Result<glint::GlslUnit> unit = glint::flatten(
         "probes", kRoot, [&](std::string_view name) { return sources.find(name); }, glint::FlattenSide::Glsl);
-    if (!glsl) {
-        return glsl.error();
+    if (!unit) {
+        return unit.error();
     }
-    const glint::Result<std::string> cpp = glint::numerics::translateToCpp(*glsl);
+    const std::string glsl = unit->withPlaces();
+    const glint::Result<std::string> cpp = glint::numerics::translateToCpp(glsl);
     if (!cpp) {
         return cpp.error();
     }
-    const std::map<std::string, std::string> files{{"probes.glsl", *glsl},
+    const std::map<std::string, std::string> files{{"probes.glsl", glsl},
                                                    {"probes.inc", *cpp},
-                                                   {"probes_text.inc", "R\"glsl(" + *glsl + ")glsl\"\n"},
-                                                   {"probe_list.inc", listProbes(*glsl)}};
+                                                   {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
+                                                   {"probe_list.inc", listProbes(glsl)}};
     for (const auto& [name, text] : files) {
         if (glint::Status status = glint::writeFile(output / name, text); !status) {
             return status;

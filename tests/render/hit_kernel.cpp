@@ -22,12 +22,12 @@ Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const Loade
     if (!sources) {
         return sources.error();
     }
-    const Result<std::string> glsl =
+    const Result<GlslUnit> glsl =
         flatten(shader, std::string(text->begin(), text->end()), sources->lookup(), FlattenSide::Glsl);
     if (!glsl) {
         return glsl.error();
     }
-    return compileShader({shader, ShaderStage::Compute, *glsl}, {});
+    return compileShader({shader, ShaderStage::Compute, glsl->withPlaces()}, {});
 }
 
 }  // namespace

@@ -137,9 +137,9 @@ protected:
         text.insert(text.find('\n') + 1,
                     fmt::format("#define PRODUCT {}\nconst uint kTestMaterials = {}u;\n{}", product ? 1 : 0,
                                 libraryScene().materials.size(), product ? kProduct : ""));
-        const Result<std::string> glsl = flatten(source.name, text, sources->lookup(), FlattenSide::Glsl);
+        const Result<GlslUnit> glsl = flatten(source.name, text, sources->lookup(), FlattenSide::Glsl);
         EXPECT_TRUE(glsl) << toString(glsl.error());
-        source.glsl = glsl ? *glsl : "";
+        source.glsl = glsl ? glsl->withPlaces() : "";
         source.functionsApart = functionsOfCases(loaded_.compiled().plan);
         return source;
     }

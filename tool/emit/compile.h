@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/files.h"
+#include "emit/glsl/unit.h"
 #include "gltf/scene.h"
 #include "plan/plan.h"
 #include "settings/compile_settings.h"
@@ -32,7 +33,7 @@ struct CompiledModule {
     std::string name;  // "uber.comp", "shade_2_BaseTex.comp"; the GLSL file has the same name
     std::string file;  // name within the package: "uber.spv"
     std::vector<std::uint32_t> spirv;
-    std::string glsl;  // flattened
+    GlslUnit glsl;
     SpirvStatistics statistics;
     std::uint64_t hash = 0;
     bool compiled = true;  // in this run; false if it was cached or has the text of another module

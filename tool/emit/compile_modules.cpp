@@ -33,8 +33,8 @@ Result<CompiledText> compileText(const ModuleSource& source, const std::string& 
             return CompiledText{std::move(*found), false};
         }
     }
-    Result<CachedModule> module =
-        compileMeasured({source.name, source.stage, source.glsl, source.functionsApart}, {debugInfo});
+    Result<CachedModule> module = compileMeasured(
+        {source.name, source.stage, source.glsl.withPlaces(), source.functionsApart}, {debugInfo});
     if (!module) {
         return module.error();
     }

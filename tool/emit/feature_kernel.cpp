@@ -58,12 +58,12 @@ Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
     if (!text) {
         return text.error();
     }
-    const Result<std::string> glsl = flatten(kName, *text, sources->lookup(), FlattenSide::Glsl);
+    const Result<GlslUnit> glsl = flatten(kName, *text, sources->lookup(), FlattenSide::Glsl);
     if (!glsl) {
         return glsl.error();
     }
     Result<std::vector<std::uint32_t>> words =
-        compileShader({kName, ShaderStage::Compute, dropUnused(*glsl), {}}, {});
+        compileShader({kName, ShaderStage::Compute, dropUnused(*glsl).withPlaces(), {}}, {});
     if (!words) {
         return explainGlslError(words.error(), *plan.model, settings.host);
     }

@@ -102,9 +102,9 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
         const std::optional<std::string_view> found = own.find(file);
         return found ? found : sources.find(file);
     };
-    const Result<std::string> flattened = flatten(name, *rendered, lookup, FlattenSide::Glsl);
+    const Result<GlslUnit> flattened = flatten(name, *rendered, lookup, FlattenSide::Glsl);
     if (!flattened) {
-        return flattened;
+        return flattened.error();
     }
     return withHost(makeReadable(dropUnused(*flattened), ""), hostText(sources));
 }

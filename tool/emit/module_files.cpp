@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kModuleMagic = "glint compiled module 1\n";
-constexpr std::uint64_t kMaxFileBytes = 1ULL << 30;
+constexpr std::uint64_t kMaxModuleFileBytes = 1ULL << 30;
 constexpr const char* kBuildAgain =
     "run Ninja on the file that `glint compile --plan-only` wrote, with the scenes and the glint of now";
 
@@ -54,7 +54,7 @@ std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bo
 }
 
 Status compileModuleFile(const fs::path& input, const fs::path& output) {
-    const Result<Bytes> bytes = readFile(input, kMaxFileBytes);
+    const Result<Bytes> bytes = readFile(input, kMaxModuleFileBytes);
     if (!bytes) {
         return bytes.error();
     }
@@ -74,7 +74,7 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
         return makeError("module-missing", file.string(), fmt::format("there is no compiled {}", name),
                          kBuildAgain);
     }
-    const Result<Bytes> bytes = readFile(file, kMaxFileBytes);
+    const Result<Bytes> bytes = readFile(file, kMaxModuleFileBytes);
     if (!bytes) {
         return bytes.error();
     }

@@ -66,7 +66,7 @@ std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
     }
     text += kLastLine;
     text += '\n';
-    return text + (debugInfo ? source.glsl : essentialText(source.glsl));
+    return text + (debugInfo ? source.glsl.withPlaces() : essentialText(source.glsl.text()));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {

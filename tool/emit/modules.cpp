@@ -178,7 +178,7 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
         const std::optional<std::string_view> found = own.find(name);
         return found ? found : sources.find(name);
     };
-    Result<std::string> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
+    const Result<GlslUnit> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
     if (!flattened) {
         return flattened.error();
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "emit/glsl/unit.h"
 #include "emit/sources.h"
 #include "spirv/compiler.h"
 
@@ -15,7 +16,7 @@ struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
     std::string name;                           // "uber.comp"
-    std::string glsl;                           // flattened, without unused functions, constants and macros
+    GlslUnit glsl;                              // without unused functions, constants and macros
     std::vector<std::string> functionsApart{};  // as in ShaderSource
 };
 

@@ -179,7 +179,8 @@ Result<std::string> interopDeclarations() {
             root += fmt::format("#include \"{}\"\n", file.name);
         }
     }
-    return flatten("interop", root, findEmbedded, FlattenSide::Cpp);
+    const Result<GlslUnit> declarations = flatten("interop", root, findEmbedded, FlattenSide::Cpp);
+    return declarations ? Result<std::string>(declarations->text()) : declarations.error();
 }
 
 std::uint64_t interopSourceHash() {

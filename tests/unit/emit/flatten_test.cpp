@@ -16,7 +16,8 @@ Result<std::string> flattenRoot(const Files& files, const std::string& text,
         const auto place = files.find(name);
         return place == files.end() ? std::nullopt : std::optional<std::string_view>(place->second);
     };
-    return flatten("root.comp", text, lookup, side);
+    const Result<GlslUnit> unit = flatten("root.comp", text, lookup, side);
+    return unit ? Result<std::string>(unit->withPlaces()) : unit.error();
 }
 
 TEST(Flatten, InlinesEachFileOnceAndMarksLines) {
@@ -67,6 +68,24 @@ TEST(Flatten, KeepsTheCppSideAndItsGuard) {
     EXPECT_EQ(
         *text,
         "#ifndef GUARD_H\n#define GUARD_H\n#include <cstdint>\nint cpp;\n#if X\nint x;\n#endif\n#endif\n");
+}
+
+TEST(Flatten, TakesTheNumbersThatALineGives) {
+    const auto text = flattenRoot({}, "#version 460\n#define A 1\n#line 2\nint a;\n\n\nint b;\n");
+    ASSERT_TRUE(text) << toString(text.error());
+    EXPECT_EQ(*text,
+              "#version 460\n"
+              "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+              "#line 2 \"root.comp\"\n"
+              "#define A 1\n"
+              "#line 2 \"root.comp\"\n"
+              "int a;\n"
+              "\n"
+              "#line 5 \"root.comp\"\n"
+              "int b;\n");
+    const auto bad = flattenRoot({}, "#version 460\n#define A 1\n#line 2\n#endif\n");
+    ASSERT_FALSE(bad);
+    EXPECT_EQ(bad.error().where, "root.comp:2");
 }
 
 TEST(Flatten, TakesCarriageReturnsAndAMissingLastNewline) {

@@ -2,6 +2,7 @@
 
 #include "emit/compile.h"
 #include "unit/emit/sample_scene.h"
+#include "unit/emit/tiny_module.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,11 @@
 namespace glint {
 namespace {
 
-const std::string kStart = "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+const std::string kStart = "#version 460\n";
+
+std::string dropUnused(const std::string& text) {
+    return glint::dropUnused(testing::makeUnit(text, "a.glsl")).text();
+}
 
 bool has(const std::string& text, std::string_view part) {
     return text.find(part) != std::string::npos;
@@ -18,7 +23,6 @@ bool has(const std::string& text, std::string_view part) {
 
 TEST(DropUnused, DropsWhatNothingReaches) {
     const std::string text = dropUnused(kStart +
-                                        "#line 1 \"a.glsl\"\n"
                                         "#define USED 1\n"
                                         "#define UNUSED 2\n"
                                         "#define VIA UNUSED\n"
@@ -36,22 +40,42 @@ TEST(DropUnused, DropsWhatNothingReaches) {
                                         "}\n"
                                         "void main() { kept(float(kUsed)); }\n");
     EXPECT_EQ(text, kStart +
-                        "#line 1 \"a.glsl\"\n"
                         "#define USED 1\n"
-                        "#line 4 \"a.glsl\"\n"
                         "const uint kUsed = 3u;\n"
                         "\n"
-                        "#line 13 \"a.glsl\"\n"
                         "float kept(float x) {\n"
                         "    return x * USED;\n"
                         "}\n"
                         "void main() { kept(float(kUsed)); }\n");
 }
 
+TEST(DropUnused, KeepsThePlacesOfLines) {
+    GlslUnit unit;
+    unit.add("#version 460", "main.comp", 1);
+    unit.add("int unused() { return 1; }", "a.glsl", 7);
+    unit.add("int used() {", "a.glsl", 8);
+    unit.add("    return 2; }", "a.glsl", 9);
+    unit.add("", "a.glsl", 10);
+    unit.add("", "a.glsl", 11);
+    unit.add("int last = used();", "a.glsl", 12);
+    unit.add("void main() {}", "main.comp", 3);
+    EXPECT_EQ(glint::dropUnused(unit).withPlaces(),
+              "#version 460\n"
+              "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+              "#line 8 \"a.glsl\"\n"
+              "int used() {\n"
+              "    return 2; }\n"
+              "\n"
+              "#line 12 \"a.glsl\"\n"
+              "int last = used();\n"
+              "#line 3 \"main.comp\"\n"
+              "void main() {}\n");
+}
+
 // A precision is not part of a declaration's type or name.
 TEST(DropUnused, SeesThroughPrecision) {
     const std::string used = "GLINT_RELAXED vec3 used(GLINT_RELAXED vec3 x) { return x; }\n";
-    const std::string text = dropUnused(kStart + "#line 1 \"a.glsl\"\n" + used +
+    const std::string text = dropUnused(kStart + used +
                                         "GLINT_RELAXED float a(GLINT_RELAXED float x) { return x; }\n"
                                         "mediump vec3 b() { return vec3(0.0); }\n"
                                         "const highp float kC = 1.0;\n"
@@ -105,13 +129,12 @@ TEST(DropUnused, ChangesNothingTheSecondTime) {
     const CompiledPackage package = testing::compileSample(settings);
     ASSERT_FALSE(package.modules.empty());
     for (const CompiledModule& module : package.modules) {
-        EXPECT_EQ(dropUnused(module.glsl), module.glsl) << module.name;
+        EXPECT_EQ(glint::dropUnused(module.glsl).withPlaces(), module.glsl.withPlaces()) << module.name;
     }
 }
 
 TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
-    EXPECT_EQ(essentialText(
-                  "#version 460\n#line 3 \"a\"\n// why\n\n  int a; // b\n\tint /* c\nd */ e = 1 / 2;\r\n"),
+    EXPECT_EQ(essentialText("#version 460\n// why\n\n  int a; // b\n\tint /* c\nd */ e = 1 / 2;\r\n"),
               "#version 460\nint a;\nint e = 1 / 2;\n");
 }
 
@@ -123,9 +146,9 @@ TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
     const CompiledPackage package = testing::compileSample(settings);
     for (const CompiledModule& module : package.modules) {
         const bool isCase = module.key.role == package::ModuleRole::ShadeCase;
-        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_CASE_COUNT")) << module.name;
-        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_HIT_ALWAYS_LOBES")) << module.name;
-        EXPECT_FALSE(isCase && has(module.glsl, "GLINT_ALWAYS_LOBES")) << module.name;
+        EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_CASE_COUNT")) << module.name;
+        EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_HIT_ALWAYS_LOBES")) << module.name;
+        EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_ALWAYS_LOBES")) << module.name;
     }
 }
 

@@ -2,21 +2,34 @@
 #pragma once
 
 #include "emit/compile_modules.h"
+#include "emit/glsl/tokens.h"
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace glint::testing {
 
-// `body` is the body of main(); it can use the buffer data.x.
+// Returns a unit whose lines have consecutive numbers in one file.
+inline GlslUnit makeUnit(std::string_view text, std::string_view file, int firstNumber = 1) {
+    GlslUnit unit;
+    for (const std::string_view line : splitLines(text)) {
+        unit.add(line, file, firstNumber++);
+    }
+    return unit;
+}
+
+// `body` is the body of main(); it can use the buffer data.x. The text after #version begins in line 10.
 inline ModuleSource makeTinyModule(int shaderId, const std::string& body) {
-    return {{package::ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
-            ShaderStage::Compute,
-            "shade_" + std::to_string(shaderId) + ".comp",
-            "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n#line 10 \"case.glsl\"\n"
-            "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
-            "void main() {\n" +
-                body + "\n}\n"};
+    return {
+        {package::ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
+        ShaderStage::Compute,
+        "shade_" + std::to_string(shaderId) + ".comp",
+        makeUnit("#version 460\n"
+                 "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
+                 "void main() {\n" +
+                     body + "\n}\n",
+                 "case.glsl", 9)};
 }
 
 }  // namespace glint::testing

@@ -1,10 +1,11 @@
 #include "emit/glsl/flatten.h"
 
-#include "emit/glsl/glsl_text.h"
+#include "emit/glsl/tokens.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <utility>
 #include <vector>
@@ -30,8 +31,8 @@ public:
     Flattener(const SourceLookup& lookup, FlattenSide side) : lookup_(lookup), side_(side) {}
 
     Status addFile(std::string_view name, std::string_view text);
-    std::string takeText() {
-        return std::move(out_);
+    GlslUnit takeUnit() {
+        return std::move(unit_);
     }
     bool sawVersion() const {
         return sawVersion_;
@@ -42,6 +43,7 @@ private:
         std::string name;
         std::vector<std::string_view> lines;
         std::vector<Frame> frames;
+        int offset = 1;  // of a line's number from its index
     };
 
     // Handles the directive at `index` if flatten() decides it itself. Returns whether it did.
@@ -49,18 +51,13 @@ private:
     Result<bool> addConditional(File& file, std::size_t index, const Directive& directive);
     Status addInclude(const File& file, int line, std::string_view argument);
     bool opensGuard(const File& file, std::size_t index) const;
-    void addLine(const File& file, int line, std::string_view text);
 
     const SourceLookup& lookup_;
     FlattenSide side_;
-    std::string out_;
+    GlslUnit unit_;
     std::set<std::string, std::less<>> added_;
     std::vector<std::string> open_;  // files being flattened, outermost first
-    // The file and line that the compiler assumes for the next line of out_.
-    std::string placeName_;
-    int placeLine_ = 0;
     bool sawVersion_ = false;
-    bool afterBlank_ = true;
 };
 
 Diagnostic errorAt(std::string id, std::string_view name, int line, std::string message, std::string hint) {
@@ -72,7 +69,7 @@ bool isActive(const std::vector<Frame>& frames) {
 }
 
 Status Flattener::addFile(std::string_view name, std::string_view text) {
-    File file{std::string(name), splitLines(text), {}};
+    File file{std::string(name), splitLines(text), {}, 1};
     added_.insert(file.name);
     open_.push_back(file.name);
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
@@ -81,7 +78,7 @@ Status Flattener::addFile(std::string_view name, std::string_view text) {
             return handled.error();
         }
         if (!*handled && isActive(file.frames)) {
-            addLine(file, static_cast<int>(i) + 1, file.lines[i]);
+            unit_.add(file.lines[i], file.name, static_cast<int>(i) + file.offset);
         }
     }
     if (!file.frames.empty()) {
@@ -97,7 +94,7 @@ Result<bool> Flattener::addDirective(File& file, std::size_t index) {
     if (directive.word.empty()) {
         return false;
     }
-    const int line = static_cast<int>(index) + 1;
+    const int line = static_cast<int>(index) + file.offset;
     if (directive.word == "include" && isActive(file.frames)) {
         const bool isSystem = directive.argument.starts_with('<');
         if (isSystem) {
@@ -108,9 +105,13 @@ Result<bool> Flattener::addDirective(File& file, std::size_t index) {
     }
     if (directive.word == "version" && side_ == FlattenSide::Glsl && !sawVersion_) {
         sawVersion_ = true;
-        addLine(file, line, file.lines[index]);
-        out_ += "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
-        placeLine_ = 0;
+        return false;
+    }
+    if (directive.word == "line") {
+        int number = 0;
+        std::from_chars(directive.argument.data(), directive.argument.data() + directive.argument.size(),
+                        number);
+        file.offset = number - static_cast<int>(index) - 1;
         return true;
     }
     // This is the guard's own #define.
@@ -122,7 +123,7 @@ Result<bool> Flattener::addDirective(File& file, std::size_t index) {
 }
 
 Result<bool> Flattener::addConditional(File& file, std::size_t index, const Directive& directive) {
-    const int line = static_cast<int>(index) + 1;
+    const int line = static_cast<int>(index) + file.offset;
     const std::string_view word = directive.word;
     std::vector<Frame>& frames = file.frames;
     if (word == "if" || word == "ifdef" || word == "ifndef") {
@@ -193,28 +194,10 @@ Status Flattener::addInclude(const File& file, int line, std::string_view argume
     return addFile(name, *text);
 }
 
-void Flattener::addLine(const File& file, int line, std::string_view text) {
-    const bool blank = trim(text).empty();
-    if (blank && afterBlank_) {
-        return;
-    }
-    afterBlank_ = blank;
-    const bool inPlace = placeLine_ == line && placeName_ == file.name;
-    if (side_ == FlattenSide::Glsl && sawVersion_ && !inPlace && !blank &&
-        parseDirective(text).word != "version") {
-        out_ += fmt::format("#line {} \"{}\"\n", line, file.name);
-        placeName_ = file.name;
-        placeLine_ = line;
-    }
-    out_ += text;
-    out_ += '\n';
-    ++placeLine_;
-}
-
 }  // namespace
 
-Result<std::string> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
-                            FlattenSide side) {
+Result<GlslUnit> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
+                         FlattenSide side) {
     Flattener flattener(lookup, side);
     if (Status status = flattener.addFile(name, text); !status) {
         return status.error();
@@ -222,7 +205,7 @@ Result<std::string> flatten(std::string_view name, std::string_view text, const 
     if (side == FlattenSide::Glsl && !flattener.sawVersion()) {
         return errorAt("source-version", name, 1, "has no #version", "begin the file with #version 460");
     }
-    return flattener.takeText();
+    return flattener.takeUnit();
 }
 
 }  // namespace glint

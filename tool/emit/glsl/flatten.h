@@ -1,6 +1,8 @@
 // Makes one self-contained text of a source file and everything that it includes.
 #pragma once
 
+#include "emit/glsl/unit.h"
+
 #include <glint/result.h>
 
 #include <functional>
@@ -18,12 +20,11 @@ enum class FlattenSide { Glsl, Cpp };
 using SourceLookup = std::function<std::optional<std::string_view>(std::string_view name)>;
 
 // Inlines each `#include "name"` once, and drops the parts for the other side. For GLSL it also drops include
-// guards and `#include <…>`, and emits `#line` directives with file names
-// (GL_GOOGLE_cpp_style_line_directive), so that the compiler's messages name the real place; apart from
-// comments, `text` must then begin with #version. Errors, each with file and line: "source-include" (missing
-// or cyclic), "source-conditional" (unbalanced, or a form of __cplusplus other than #ifdef, #ifndef and
-// #else), "source-version".
-Result<std::string> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
-                            FlattenSide side);
+// guards and `#include <…>`; apart from comments, `text` must then begin with #version. `#line N` gives the
+// number of the next line. Errors, each with file and line: "source-include" (missing or cyclic),
+// "source-conditional" (unbalanced, or a form of __cplusplus other than #ifdef, #ifndef and #else),
+// "source-version".
+Result<GlslUnit> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
+                         FlattenSide side);
 
 }  // namespace glint

@@ -1,11 +1,12 @@
 #include "emit/glsl/prefix.h"
 
-#include "emit/glsl/glsl_items.h"
+#include "emit/glsl/items.h"
+#include "emit/glsl/tokens.h"
 
 #include <algorithm>
 #include <cctype>
 #include <set>
-#include <vector>
+#include <string>
 
 namespace glint {
 
@@ -14,34 +15,8 @@ namespace {
 constexpr std::string_view kPublic[] = {"glint", "Glint"};
 constexpr std::string_view kMacro = "GLINT_";
 
-bool isWordCharacter(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-
-// A word, a comment or one other character.
-struct Token {
-    std::string_view text;
-    bool isName = false;
-};
-
-std::vector<Token> tokensOf(std::string_view glsl) {
-    std::vector<Token> tokens;
-    while (!glsl.empty()) {
-        std::size_t length = 1;
-        if (glsl.starts_with("//")) {
-            length = std::min(glsl.find('\n'), glsl.size());
-        } else if (glsl.starts_with("/*")) {
-            const std::size_t end = glsl.find("*/", 2);
-            length = end == std::string_view::npos ? glsl.size() : end + 2;
-        } else if (isWordCharacter(glsl.front())) {
-            length = static_cast<std::size_t>(std::ranges::find_if_not(glsl, isWordCharacter) - glsl.begin());
-        }
-        const bool isName =
-            isWordCharacter(glsl.front()) && std::isdigit(static_cast<unsigned char>(glsl.front())) == 0;
-        tokens.push_back({glsl.substr(0, length), isName});
-        glsl.remove_prefix(length);
-    }
-    return tokens;
+bool isName(std::string_view piece) {
+    return startsWord(piece.front());
 }
 
 bool isPublic(std::string_view name) {
@@ -73,30 +48,30 @@ Names namesOf(std::string_view glsl) {
 }
 
 // The structs and blocks of a text.
-Names typesOf(const std::vector<Token>& tokens) {
+Names typesOf(std::string_view glsl) {
     Names types;
     std::string_view before;
-    for (const Token& token : tokens) {
-        if (token.isName && (before == "struct" || before == "buffer") && !isPublic(token.text)) {
-            types.insert(token.text);
+    forEachPiece(glsl, [&](std::string_view piece) {
+        if (isName(piece) && (before == "struct" || before == "buffer") && !isPublic(piece)) {
+            types.insert(piece);
         }
-        before = token.isName ? token.text : token.text == " " ? before : std::string_view();
-    }
+        before = isName(piece) ? piece : piece == " " ? before : std::string_view();
+    });
     return types;
 }
 
 // Follows which braces are those of structs and blocks, whose members keep their names.
 class Members {
 public:
-    void add(const Token& token) {
-        if (token.text == "struct" || token.text == "buffer") {
+    void add(std::string_view piece) {
+        if (piece == "struct" || piece == "buffer") {
             begins_ = true;
-        } else if (token.text == "{") {
+        } else if (piece == "{") {
             inside_ = begins_;
             begins_ = false;
-        } else if (token.text == "}") {
+        } else if (piece == "}") {
             inside_ = false;
-        } else if (token.text == ";") {
+        } else if (piece == ";") {
             begins_ = false;
         }
     }
@@ -112,21 +87,20 @@ private:
 }  // namespace
 
 std::string prefixNames(std::string_view glsl) {
-    const std::vector<Token> tokens = tokensOf(glsl);
     const Names names = namesOf(glsl);
-    const Names types = typesOf(tokens);
+    const Names types = typesOf(glsl);
     std::string text;
     text.reserve(glsl.size() + glsl.size() / 8);
     Members members;
     char last = '\n';
-    for (const Token& token : tokens) {
-        members.add(token);
-        const bool renamed = token.isName && last != '.' &&
-                             (types.contains(token.text) ||
-                              (names.contains(token.text) && (!members.inside() || isConstant(token.text))));
-        text += renamed ? renamedOf(token.text) : std::string(token.text);
-        last = token.text.back();
-    }
+    forEachPiece(glsl, [&](std::string_view piece) {
+        members.add(piece);
+        const bool renamed =
+            isName(piece) && last != '.' &&
+            (types.contains(piece) || (names.contains(piece) && (!members.inside() || isConstant(piece))));
+        text += renamed ? renamedOf(piece) : std::string(piece);
+        last = piece.back();
+    });
     return text;
 }
 

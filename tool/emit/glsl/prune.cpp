@@ -1,13 +1,11 @@
 #include "emit/glsl/prune.h"
 
-#include "emit/glsl/glsl_items.h"
-
-#include <fmt/format.h>
+#include "emit/glsl/items.h"
+#include "emit/glsl/tokens.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace glint {
@@ -74,90 +72,44 @@ void dropComments(const Items& items, std::vector<bool>& kept) {
     }
 }
 
-// Joins items. Wherever an item's lines don't follow those of the last one, a directive gives their place.
-class Writer {
-public:
-    void add(const GlslItem& item) {
-        const bool blank = item.kind == GlslItemKind::Blank;
-        if (blank && afterBlank_) {
-            return;
-        }
-        afterBlank_ = blank;
-        const bool inPlace = item.file == file_ && item.line == line_;
-        if (!blank && !inPlace && !item.file.empty()) {
-            text_ += fmt::format("#line {} \"{}\"\n", item.line, item.file);
-        }
-        text_ += item.text;
-        // After a moved blank line, the place of the next line is unknown.
-        file_ = blank && !inPlace ? std::string_view() : item.endFile;
-        line_ = item.endLine;
-    }
-    std::string take() {
-        return std::move(text_);
-    }
-
-private:
-    std::string text_;
-    std::string_view file_;
-    int line_ = 0;
-    bool afterBlank_ = true;
-};
-
 }  // namespace
 
-std::string dropUnused(std::string_view glsl) {
-    const Items items = splitGlsl(glsl);
+GlslUnit dropUnused(const GlslUnit& unit) {
+    const Items items = splitGlsl(unit.text());
     std::vector<bool> kept = findReached(items);
     dropComments(items, kept);
-    Writer writer;
+    GlslUnit result;
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (kept[i]) {
-            writer.add(items[i]);
+            result.add(unit, items[i].firstLine, items[i].lineCount);
         }
     }
-    return writer.take();
+    return result;
 }
 
 std::string essentialText(std::string_view glsl) {
     std::string text;
     text.reserve(glsl.size());
     std::string line;
-    // GLSL has no literals that contain blanks, so one blank can replace several.
-    const auto addBlank = [&] {
-        if (!line.empty() && line.back() != ' ') {
-            line += ' ';
-        }
-    };
     const auto endLine = [&] {
-        while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) {
-            line.pop_back();
-        }
-        if (!line.empty() && !line.starts_with("#line ")) {
-            text += line;
+        const std::string_view words = trim(line);
+        if (!words.empty()) {
+            text += words;
             text += '\n';
         }
         line.clear();
     };
-    for (std::size_t i = 0; i < glsl.size();) {
-        const std::string_view rest = glsl.substr(i);
-        if (rest.starts_with("//")) {
-            i += std::min(rest.find('\n'), rest.size());
-        } else if (rest.starts_with("/*")) {
-            const std::size_t end = rest.find("*/", 2);
-            i += end == std::string_view::npos ? rest.size() : end + 2;
-            addBlank();
-        } else if (rest.front() == '\n') {
+    forEachPiece(glsl, [&](std::string_view piece) {
+        const bool blank = piece.starts_with("/*") || piece == " " || piece == "\t";
+        if (piece == "\n") {
             endLine();
-            ++i;
-        } else {
-            if (rest.front() == ' ' || rest.front() == '\t') {
-                addBlank();
-            } else {
-                line += rest.front();
-            }
-            ++i;
+        } else if (!blank && !piece.starts_with("//")) {
+            line += piece;
+        } else if (blank && !line.empty() && line.back() != ' ') {
+            // GLSL has no literals that contain blanks, so one blank can replace several.
+            line += ' ';
         }
-    }
+    });
     endLine();
     return text;
 }

@@ -1,8 +1,8 @@
 #include "emit/glsl/readable.h"
 
-#include "emit/glsl/glsl_text.h"
 #include "emit/glsl/prune.h"
 #include "emit/glsl/resolve.h"
+#include "emit/glsl/tokens.h"
 
 #include <fmt/format.h>
 
@@ -19,27 +19,12 @@ namespace {
 constexpr std::string_view kSharedTypes = "interop/types.h";
 constexpr std::string_view kMadeBy = "// Made by glint";
 
-bool isBlank(const GlslLine& line) {
-    return trim(line.text).empty();
+bool isBlank(std::string_view line) {
+    return trim(line).empty();
 }
 
-bool isComment(const GlslLine& line) {
-    return trim(line.text).starts_with("//");
-}
-
-// Joins the lines to one text, in the form that flatten() gives.
-std::string flattenedText(const std::vector<GlslLine>& lines) {
-    std::string text;
-    std::string file;
-    for (const GlslLine& line : lines) {
-        if (line.file != file) {
-            file = line.file;
-            text += fmt::format("#line 1 \"{}\"\n", file);
-        }
-        text += line.text;
-        text += '\n';
-    }
-    return text;
+bool isComment(std::string_view line) {
+    return trim(line).starts_with("//");
 }
 
 // Successive lines from one file.
@@ -48,22 +33,10 @@ struct Section {
     std::vector<std::string> lines;
 
     bool isRemark() const {
-        return std::ranges::all_of(lines, [](const std::string& line) {
-            return trim(line).empty() || trim(line).starts_with("//");
-        });
+        return std::ranges::all_of(lines,
+                                   [](const std::string& line) { return isBlank(line) || isComment(line); });
     }
 };
-
-std::vector<Section> sectionsOf(const std::vector<GlslLine>& lines) {
-    std::vector<Section> sections;
-    for (const GlslLine& line : lines) {
-        if (sections.empty() || sections.back().file != line.file) {
-            sections.push_back({line.file, {}});
-        }
-        sections.back().lines.push_back(line.text);
-    }
-    return sections;
-}
 
 // A comment at the head of a file stands before its includes. It is moved down to the file's own code, or
 // dropped if there is none.
@@ -90,21 +63,6 @@ std::vector<Section> placeRemarks(std::vector<Section> sections) {
     return placed;
 }
 
-// Takes the extensions out of the lines. Returns each once, in order.
-std::vector<std::string> takeExtensions(std::vector<GlslLine>& lines) {
-    std::vector<std::string> extensions;
-    std::erase_if(lines, [&](const GlslLine& line) {
-        if (parseDirective(line.text).word != "extension") {
-            return false;
-        }
-        if (std::ranges::find(extensions, line.text) == extensions.end()) {
-            extensions.push_back(line.text);
-        }
-        return true;
-    });
-    return extensions;
-}
-
 // Appends lines; several blank lines become one, and those at both ends are dropped.
 void appendLines(std::string& text, const std::vector<std::string>& lines) {
     bool blank = false;
@@ -121,38 +79,51 @@ void appendLines(std::string& text, const std::vector<std::string>& lines) {
     }
 }
 
-// Takes the comments at the start of the module's own file if they say what made it.
-std::string takeHeader(std::vector<GlslLine>& lines) {
-    std::string header;
-    auto line = lines.begin();
-    // #defines of the module may come first.
-    while (line != lines.end() && !isComment(*line) && (isBlank(*line) || line->text.starts_with('#'))) {
-        ++line;
+// The lines of a unit by what becomes of them.
+struct Parts {
+    std::string header;                   // comments at the start that say what made the unit
+    std::vector<std::string> extensions;  // each once, in order
+    std::vector<Section> sections;        // everything else but #version
+};
+
+Parts partsOf(const GlslUnit& unit) {
+    Parts parts;
+    // #defines of the module may stand before the header.
+    bool maybeHeader = true;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+        const std::string_view line = unit.line(i);
+        const std::string_view word = parseDirective(line).word;
+        if (maybeHeader && isComment(line) && (!parts.header.empty() || line.starts_with(kMadeBy))) {
+            parts.header += fmt::format("{}\n", line);
+            continue;
+        }
+        maybeHeader = maybeHeader && parts.header.empty() && (isBlank(line) || line.starts_with('#'));
+        if (word == "version") {
+            continue;
+        }
+        if (word == "extension") {
+            if (std::ranges::find(parts.extensions, line) == parts.extensions.end()) {
+                parts.extensions.emplace_back(line);
+            }
+            continue;
+        }
+        if (parts.sections.empty() || parts.sections.back().file != unit.file(i)) {
+            parts.sections.push_back({std::string(unit.file(i)), {}});
+        }
+        parts.sections.back().lines.emplace_back(line);
     }
-    if (line == lines.end() || !line->text.starts_with(kMadeBy)) {
-        return header;
-    }
-    const auto begin = line;
-    for (; line != lines.end() && isComment(*line); ++line) {
-        header += line->text + "\n";
-    }
-    lines.erase(begin, line);
-    return header;
+    return parts;
 }
 
 }  // namespace
 
-std::string makeReadable(std::string_view flattened, std::string_view header) {
-    std::vector<GlslLine> lines = expandMacros(resolveConditionals(linesOf(flattened)), kSharedTypes);
-    lines = linesOf(dropUnused(flattenedText(lines)));
-    const std::string own = takeHeader(lines);
-    const std::vector<std::string> extensions = takeExtensions(lines);
-
-    std::string text = "#version 460\n" + (own.empty() ? std::string(header) : own);
-    if (!extensions.empty()) {
-        text += fmt::format("\n{}\n", fmt::join(extensions, "\n"));
+std::string makeReadable(const GlslUnit& unit, std::string_view header) {
+    Parts parts = partsOf(dropUnused(expandMacros(resolveConditionals(unit), kSharedTypes)));
+    std::string text = "#version 460\n" + (parts.header.empty() ? std::string(header) : parts.header);
+    if (!parts.extensions.empty()) {
+        text += fmt::format("\n{}\n", fmt::join(parts.extensions, "\n"));
     }
-    for (const Section& section : placeRemarks(sectionsOf(lines))) {
+    for (const Section& section : placeRemarks(std::move(parts.sections))) {
         text += fmt::format("\n// --- {}\n", section.file);
         appendLines(text, section.lines);
     }

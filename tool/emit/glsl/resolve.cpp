@@ -1,13 +1,14 @@
 #include "emit/glsl/resolve.h"
 
-#include "emit/glsl/glsl_text.h"
+#include "emit/glsl/tokens.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <utility>
+#include <string>
+#include <vector>
 
 namespace glint {
 
@@ -219,46 +220,34 @@ std::string expandLine(std::string text, const std::map<std::string, Macro, std:
 
 }  // namespace
 
-std::vector<GlslLine> linesOf(std::string_view flattened) {
-    std::vector<GlslLine> lines;
-    std::string file;
-    for (const std::string_view text : splitLines(flattened)) {
-        const Directive directive = parseDirective(text);
-        if (directive.word == "line") {
-            const std::size_t quote = directive.argument.find('"');
-            if (quote != std::string_view::npos) {
-                file = directive.argument.substr(quote + 1, directive.argument.rfind('"') - quote - 1);
-            }
-        } else if (directive.word != "version" &&
-                   directive.argument.find("cpp_style_line_directive") == std::string_view::npos) {
-            lines.push_back({std::string(text), file});
+GlslUnit resolveConditionals(const GlslUnit& unit) {
+    Resolver resolver;
+    GlslUnit result;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+        if (resolver.keep(unit.line(i))) {
+            result.add(unit, i, 1);
         }
     }
-    return lines;
+    return result;
 }
 
-std::vector<GlslLine> resolveConditionals(std::vector<GlslLine> lines) {
-    Resolver resolver;
-    std::erase_if(lines, [&](const GlslLine& line) { return !resolver.keep(line.text); });
-    return lines;
-}
-
-std::vector<GlslLine> expandMacros(std::vector<GlslLine> lines, std::string_view file) {
+GlslUnit expandMacros(const GlslUnit& unit, std::string_view file) {
     std::map<std::string, Macro, std::less<>> macros;
-    std::vector<GlslLine> result;
-    for (GlslLine& line : lines) {
-        const Directive directive = parseDirective(line.text);
-        if (line.file == file && directive.word == "define") {
+    GlslUnit result;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+        const Directive directive = parseDirective(unit.line(i));
+        if (unit.file(i) == file && directive.word == "define") {
             macros[std::string(nameIn(directive.argument))] = parseMacro(directive.argument);
             continue;
         }
-        if (directive.word.empty() && !identifiersOf(line.text).empty()) {
-            line.text = expandLine(std::move(line.text), macros);
-            if (trim(line.text).empty()) {
-                continue;
-            }
+        if (!directive.word.empty() || identifiersOf(unit.line(i)).empty()) {
+            result.add(unit, i, 1);
+            continue;
         }
-        result.push_back(std::move(line));
+        const std::string text = expandLine(std::string(unit.line(i)), macros);
+        if (!trim(text).empty()) {
+            result.add(text, unit.file(i), unit.number(i));
+        }
     }
     return result;
 }

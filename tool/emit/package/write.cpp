@@ -1,7 +1,7 @@
 #include "base/staged_file.h"
 #include "emit/compile.h"
-#include "emit/glsl/in_place.h"
-#include "emit/glsl/swap.h"
+#include "emit/package/in_place.h"
+#include "emit/package/swap.h"
 #include "emit/package/manifest.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "emit/glsl/swap.h"
+#include "emit/package/swap.h"
 
 #include <fmt/format.h>
 

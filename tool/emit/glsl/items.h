@@ -1,6 +1,7 @@
-// Splits flattened GLSL into the items at its top level.
+// Splits GLSL into the items at its top level.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -22,15 +23,12 @@ struct GlslItem {
     std::string_view name;
     std::vector<std::string_view> words;   // identifiers
     std::vector<std::string_view> pasted;  // in a macro: the words that ## makes names of; "" means any name
-    // The place of the first line and of the line after the last. Files are empty before the first #line.
-    std::string_view file;
-    int line = 0;
-    std::string_view endFile;
-    int endLine = 0;
+    std::size_t firstLine = 0;             // counts the lines of the whole text, from 0
+    std::size_t lineCount = 0;
 };
 
-// Returns all lines in order, except the #line directives. Views point into `glsl`. An item that is not
-// clearly one definition (several on a line, a prototype, directives that cross its borders) has no name.
+// Returns all lines in order. Views point into `glsl`. An item that is not clearly one definition (several on
+// a line, a prototype, directives that cross its borders) has no name.
 std::vector<GlslItem> splitGlsl(std::string_view glsl);
 
 }  // namespace glint

@@ -1,7 +1,8 @@
-#include "emit/glsl/glsl_items.h"
+#include "emit/glsl/items.h"
+
+#include "emit/glsl/tokens.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <utility>
 
@@ -11,50 +12,22 @@ namespace {
 
 constexpr std::string_view kItemBlanks = " \t\r";
 
-bool startsWord(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-bool continuesWord(char c) {
-    return startsWord(c) || (c >= '0' && c <= '9');
-}
-
-// Returns the identifier, or the number, at the start of `text`.
-std::string_view wordAt(std::string_view text) {
-    const auto* const end = std::ranges::find_if_not(text, continuesWord);
-    return text.substr(0, static_cast<std::size_t>(end - text.begin()));
-}
-
 std::string_view skipBlanks(std::string_view text) {
     return text.substr(std::min(text.find_first_not_of(kItemBlanks), text.size()));
-}
-
-// Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
-std::size_t commentLength(std::string_view text) {
-    if (text.starts_with("//")) {
-        return std::min(text.find('\n'), text.size());
-    }
-    if (text.starts_with("/*")) {
-        const std::size_t end = text.find("*/", 2);
-        return end == std::string_view::npos ? text.size() : end + 2;
-    }
-    return 0;
 }
 
 // Calls `visit` for each identifier and each punctuation character of `text`. Comments and numbers are
 // skipped.
 template <typename Visit>
 void forEachToken(std::string_view text, const Visit& visit) {
-    while (!text.empty()) {
-        const std::size_t comment = commentLength(text);
-        const std::string_view word = comment == 0 ? wordAt(text) : std::string_view();
-        const std::size_t length = std::max({comment, word.size(), std::size_t{1}});
-        if (!word.empty() ? startsWord(word.front())
-                          : comment == 0 && kItemBlanks.find(text.front()) == std::string_view::npos) {
-            visit(text.substr(0, length));
+    forEachPiece(text, [&](std::string_view piece) {
+        const char first = piece.front();
+        const bool isComment = first == '/' && piece.size() > 1;
+        const bool isNumber = continuesWord(first) && !startsWord(first);
+        if (!isComment && !isNumber && kItemBlanks.find(first) == std::string_view::npos) {
+            visit(piece);
         }
-        text.remove_prefix(length);
-    }
+    });
 }
 
 // These words give the precision of a declaration, not its name or type.
@@ -183,10 +156,7 @@ public:
 
     std::vector<GlslItem> split() {
         while (!rest_.empty()) {
-            const std::string_view line = skipBlanks(lineAhead());
-            if (!takePlace(line)) {
-                addItem(line);
-            }
+            addItem(skipBlanks(lineAhead()));
         }
         return std::move(items_);
     }
@@ -206,30 +176,12 @@ private:
     }
     // Takes `text` and the line break after it.
     void take(std::string_view text) {
-        line_ += 1 + static_cast<int>(std::ranges::count(text, '\n'));
+        line_ += 1 + static_cast<std::size_t>(std::ranges::count(text, '\n'));
         rest_.remove_prefix(std::min(text.size() + 1, rest_.size()));
-    }
-    bool takePlace(std::string_view line) {
-        constexpr std::string_view kLine = "#line ";
-        if (!line.starts_with(kLine)) {
-            return false;
-        }
-        take(lineAhead());
-        line.remove_prefix(kLine.size());
-        int number = 0;
-        std::from_chars(line.data(), line.data() + line.size(), number);
-        line_ = number;
-        const std::size_t open = line.find('"');
-        const std::size_t close = line.rfind('"');
-        if (open < close) {
-            file_ = line.substr(open + 1, close - open - 1);
-        }
-        return true;
     }
     void addItem(std::string_view line) {
         GlslItem item;
-        item.file = file_;
-        item.line = line_;
+        item.firstLine = line_;
         const char* const begin = rest_.data();
         if (line.empty()) {
             item.kind = GlslItemKind::Blank;
@@ -243,8 +195,7 @@ private:
             takeCode(item);
         }
         item.text = {begin, static_cast<std::size_t>(rest_.data() - begin)};
-        item.endFile = file_;
-        item.endLine = line_;
+        item.lineCount = line_ - item.firstLine;
         items_.push_back(std::move(item));
     }
     void takeDirective(GlslItem& item) {
@@ -270,9 +221,6 @@ private:
         int conditionals = 0;
         while (!rest_.empty()) {
             const std::string_view line = skipBlanks(lineAhead());
-            if (takePlace(line)) {
-                continue;
-            }
             if (line.starts_with('#')) {
                 takeInnerDirective(item, shape, conditionals);
                 continue;
@@ -323,8 +271,7 @@ private:
     }
 
     std::string_view rest_;
-    std::string_view file_;
-    int line_ = 1;
+    std::size_t line_ = 0;
     std::vector<GlslItem> items_;
 };
 

@@ -1,7 +1,7 @@
-#include "emit/glsl/in_place.h"
+#include "emit/package/in_place.h"
 
 #include "base/staged_file.h"
-#include "emit/glsl/swap.h"
+#include "emit/package/swap.h"
 
 #include <algorithm>
 #include <system_error>

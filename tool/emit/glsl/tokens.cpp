@@ -1,17 +1,12 @@
-#include "emit/glsl/glsl_text.h"
+#include "emit/glsl/tokens.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace glint {
 
 namespace {
 
 constexpr std::string_view kTextBlanks = " \t\r";
-
-bool isWord(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
 
 }  // namespace
 
@@ -49,24 +44,24 @@ Directive parseDirective(std::string_view line) {
     return {line.substr(0, end), argument};
 }
 
-std::vector<std::string_view> identifiersOf(std::string_view line) {
-    line = line.substr(0, std::min(line.find("//"), line.size()));
-    std::vector<std::string_view> words;
-    std::size_t begin = 0;
-    while (begin < line.size()) {
-        if (!isWord(line[begin])) {
-            ++begin;
-            continue;
-        }
-        std::size_t end = begin;
-        while (end < line.size() && isWord(line[end])) {
-            ++end;
-        }
-        if (std::isdigit(static_cast<unsigned char>(line[begin])) == 0) {
-            words.push_back(line.substr(begin, end - begin));
-        }
-        begin = end;
+std::size_t commentLength(std::string_view text) {
+    if (text.starts_with("//")) {
+        return std::min(text.find('\n'), text.size());
     }
+    if (text.starts_with("/*")) {
+        const std::size_t end = text.find("*/", 2);
+        return end == std::string_view::npos ? text.size() : end + 2;
+    }
+    return 0;
+}
+
+std::vector<std::string_view> identifiersOf(std::string_view line) {
+    std::vector<std::string_view> words;
+    forEachPiece(line, [&](std::string_view piece) {
+        if (startsWord(piece.front())) {
+            words.push_back(piece);
+        }
+    });
     return words;
 }
 
