@@ -50,7 +50,6 @@ kSources=(
     "meshoptimizer|"
     "imath|-DPYTHON=OFF"
     "openexr|-DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF -DDOCS=OFF -DINSTALL_DOCS=OFF"
-    "tinygltf|-DTINYGLTF_BUILD_LOADER_EXAMPLE=OFF -Dstb_LIBRARY=$deps/lib/libstb.a"
 )
 # Debian's own static archives are used here, because a shared library of the same name would otherwise be
 # found first.
@@ -137,7 +136,7 @@ check_program() {
 
 # These are Debian's packages of the linked libraries. Their copyright files are included.
 kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
-    libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
+    libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
     libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
 
 pack() {

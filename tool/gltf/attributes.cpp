@@ -2,7 +2,9 @@
 
 #include "gltf/codecs/draco.h"
 #include "gltf/document/accessor.h"
+#include "gltf/document/validate.h"
 #include "gltf/motion/skinning.h"
+#include "gltf/triangles.h"
 
 #include <fmt/format.h>
 
@@ -90,11 +92,11 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
     const Document& document = reader.document();
     const bool isPosition = static_cast<const void*>(&values) == &reader.primitive.positions;
     const std::size_t expected = reader.draco != nullptr ? reader.draco->pointCount()
-                                 : isPosition            ? elementCount(document, accessor)
+                                 : isPosition            ? document.accessor(accessor).count
                                                          : reader.primitive.positions.size();
-    if (elementCount(document, accessor) != expected) {
+    if (document.accessor(accessor).count != expected) {
         return document.error("attribute-count", reader.pointer(attribute),
-                              fmt::format("has {} elements, {} has {}", elementCount(document, accessor),
+                              fmt::format("has {} elements, {} has {}", document.accessor(accessor).count,
                                           reader.draco != nullptr ? "the Draco data" : "POSITION", expected),
                               kExportMesh);
     }
@@ -120,8 +122,8 @@ Status readColors(const Reader& reader) {
     if (accessor < 0) {
         return okStatus();
     }
-    const auto& source = reader.document().model().accessors[static_cast<std::size_t>(accessor)];
-    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized) {
+    const Accessor& source = reader.document().accessor(accessor);
+    if (source.componentType != ComponentType::Float && !source.normalized) {
         reader.document().warn("color-normalized", reader.pointer("COLOR_0"),
                                "integer colours are not marked as normalised; they are read as if they were",
                                kExportMesh);
@@ -130,14 +132,14 @@ Status readColors(const Reader& reader) {
 }
 
 bool hasJointNumbers(const Document& document, int accessor) {
-    const tinygltf::Accessor& source = document.model().accessors[static_cast<std::size_t>(accessor)];
-    return !source.normalized && (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                                  source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+    const Accessor& source = document.accessor(accessor);
+    return !source.normalized && (source.componentType == ComponentType::UnsignedByte ||
+                                  source.componentType == ComponentType::UnsignedShort);
 }
 
 Status readInfluences(const Reader& reader) {
     std::vector<InfluenceSet> sets;
-    for (int set = 0;; ++set) {
+    for (int set = 0; set < kInfluenceSets; ++set) {
         const std::string joints = fmt::format("JOINTS_{}", set);
         const std::string weights = fmt::format("WEIGHTS_{}", set);
         const int jointAccessor = attributeAccessor(reader.source, joints.c_str());
@@ -243,12 +245,13 @@ Status readAttributes(const Reader& reader) {
 Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
     Document& document = reader.document();
     const std::size_t vertices = reader.primitive.positions.size();
-    if (reader.source.model.indices < 0) {
+    const int accessor = indexMember(reader.source.json, "indices");
+    if (accessor < 0) {
         std::vector<std::uint32_t> order(vertices);
         std::iota(order.begin(), order.end(), 0U);
         return order;
     }
-    Result<IndexElements> indices = readIndices(document, reader.source.model.indices);
+    Result<IndexElements> indices = readIndices(document, accessor);
     if (!indices) {
         return indices.error();
     }
@@ -271,22 +274,25 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
 
 // Draco drops degenerate triangles. Not every exporter corrects the accessor afterwards.
 void compareIndexCount(const Reader& reader, bool isList) {
-    const int accessor = reader.source.model.indices;
+    const int accessor = indexMember(reader.source.json, "indices");
     const std::size_t packed = reader.draco->indices().size();
-    if (isList && accessor >= 0 && elementCount(reader.document(), accessor) != packed) {
+    if (isList && accessor >= 0 && reader.document().accessor(accessor).count != packed) {
         reader.document().warn(
             "draco-count", reader.primitive.pointer + "/indices",
             fmt::format("has {} elements, the Draco data {}; those of the Draco data are used",
-                        elementCount(reader.document(), accessor), packed),
+                        reader.document().accessor(accessor).count, packed),
             kExportMesh);
     }
 }
 
 }  // namespace
 
+int modeOf(const PrimitiveSource& source) {
+    return integerMember(source.json, "mode", static_cast<int>(PrimitiveMode::Triangles));
+}
+
 int attributeAccessor(const PrimitiveSource& source, const char* attribute) {
-    const auto found = source.model.attributes.find(attribute);
-    return found == source.model.attributes.end() ? -1 : found->second;
+    return indexMember(source.json["attributes"], attribute);
 }
 
 Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
@@ -308,7 +314,7 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
     if (!draco) {
         return readOrder(reader);
     }
-    compareIndexCount(reader, source.model.mode == TINYGLTF_MODE_TRIANGLES);
+    compareIndexCount(reader, modeOf(source) == static_cast<int>(PrimitiveMode::Triangles));
     isList = true;
     return draco->indices();
 }

@@ -14,11 +14,14 @@ namespace glint::gltf {
 // One primitive while it is imported.
 struct PrimitiveSource {
     Document& document;
-    const tinygltf::Primitive& model;
-    const Json& json;  // the same primitive
+    const Json& json;
 };
 
-// Returns the accessor of the attribute with that name, or -1 if the primitive has no such attribute.
+// Returns how the primitive uses its vertices, as glTF's number. 4, a list of triangles, is the default.
+int modeOf(const PrimitiveSource& source);
+
+// Returns the accessor of the attribute with that name, or -1 if the primitive has no such attribute. The
+// name is one of kAttributes or of the model's attributes, as only their accessors have been checked.
 int attributeAccessor(const PrimitiveSource& source, const char* attribute);
 
 // Fills the attribute arrays of `primitive`, whose pointer is set. The values are those of the file, before

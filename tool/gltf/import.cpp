@@ -37,7 +37,7 @@ Status fillScene(Document& document, Scene& scene) {
     if (Status status = importNodes(document, scene); !status) {
         return status;
     }
-    std::vector<bool> placed(document.model().meshes.size());
+    std::vector<bool> placed(gltf::arraySize(document.json(), "/meshes"));
     for (const Node& node : scene.nodes) {
         if (node.mesh >= 0) {
             placed[static_cast<std::size_t>(node.mesh)] = true;

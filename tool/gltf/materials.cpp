@@ -158,14 +158,13 @@ void readParameters(Document& document, const Json& json, const std::string& poi
 Status importMaterials(Document& document, Scene& scene) {
     importSamplers(document, scene);
     TextureTable textures(document, scene);
-    for (std::size_t i = 0; i < document.model().materials.size(); ++i) {
+    for (std::size_t i = 0; i < arraySize(document.json(), "/materials"); ++i) {
         const Json& json = document.json()["materials"][i];
         const std::string pointer = fmt::format("/materials/{}", i);
         Material material(*document.options().materialModel);
-        material.name = document.model().materials[i].name;
-        const tinygltf::Material& source = document.model().materials[i];
-        material.alphaMode = readAlphaMode(document, source.alphaMode, pointer);
-        material.doubleSided = source.doubleSided;
+        material.name = textMember(json, "name");
+        material.alphaMode = readAlphaMode(document, textMember(json, "alphaMode"), pointer);
+        material.doubleSided = boolMember(json, "doubleSided", false);
         readParameters(document, json, pointer, material);
         if (Status status = readTextures(document, textures, json, pointer, material); !status) {
             return status;

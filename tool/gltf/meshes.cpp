@@ -30,7 +30,7 @@ ColorContent contentOf(const std::vector<Float4>& colors) {
 
 // Returns whether the mode of the primitive makes triangles. Otherwise it warns or fails.
 Result<bool> isDrawable(const PrimitiveSource& source, const std::string& pointer) {
-    const int mode = source.model.mode;
+    const int mode = modeOf(source);
     if (mode < 0 || mode > static_cast<int>(PrimitiveMode::TriangleFan)) {
         return source.document.error("primitive-mode", pointer + "/mode", fmt::format("{} is no mode", mode),
                                      "export the mesh again");
@@ -58,7 +58,7 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
     if (!order) {
         return order.error();
     }
-    const auto mode = isList ? PrimitiveMode::Triangles : static_cast<PrimitiveMode>(source.model.mode);
+    const auto mode = isList ? PrimitiveMode::Triangles : static_cast<PrimitiveMode>(modeOf(source));
     TriangleList list = makeTriangles(mode, std::move(*order));
     if (list.leftOver > 0) {
         source.document.warn(
@@ -79,16 +79,15 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
 }
 
 Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial) {
-    const tinygltf::Mesh& source = document.model().meshes[index];
-    const Json& primitives = arrayMember(document.json()["meshes"][index], "primitives");
+    const Json& json = document.json()["meshes"][index];
+    const Json& primitives = arrayMember(json, "primitives");
     Mesh mesh;
-    mesh.name = source.name;
-    for (std::size_t i = 0; i < source.primitives.size(); ++i) {
+    mesh.name = textMember(json, "name");
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
         Primitive primitive;
         primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        primitive.material =
-            source.primitives[i].material < 0 ? defaultMaterial : source.primitives[i].material;
-        const Result<bool> drawn = readPrimitive({document, source.primitives[i], primitives[i]}, primitive);
+        primitive.material = integerMember(primitives[i], "material", defaultMaterial);
+        const Result<bool> drawn = readPrimitive({document, primitives[i]}, primitive);
         // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
         // file's fault.
         if (!drawn && drawn.error().id == kNoData) {
@@ -112,7 +111,7 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
 Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
     const int defaultMaterial = static_cast<int>(scene.materials.size());
     bool usesDefault = false;
-    for (std::size_t i = 0; i < document.model().meshes.size(); ++i) {
+    for (std::size_t i = 0; i < arraySize(document.json(), "/meshes"); ++i) {
         Result<Mesh> mesh = readMesh(document, i, defaultMaterial);
         if (!mesh && placed[i]) {
             return mesh.error();
@@ -122,7 +121,7 @@ Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, S
             warning.severity = Severity::Warning;
             warning.message += "; no node draws the mesh, and it is left empty";
             document.warnings().push_back(std::move(warning));
-            scene.meshes.emplace_back().name = document.model().meshes[i].name;
+            scene.meshes.emplace_back().name = textMember(document.json()["meshes"][i], "name");
             continue;
         }
         for (const Primitive& primitive : mesh->primitives) {

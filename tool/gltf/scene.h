@@ -1,4 +1,4 @@
-// A scene as plain data, which the importer makes from a glTF file. It depends neither on tinygltf nor on
+// A scene as plain data, which the importer makes from a glTF file. It depends neither on JSON nor on
 // Vulkan.
 #pragma once
 

@@ -14,13 +14,17 @@ namespace glint::gltf {
 
 namespace {
 
+// The numbers are glTF's.
+constexpr int kNearest = 9728;
+constexpr int kLinear = 9729;
+
 std::optional<Wrap> wrapOf(int value) {
     switch (value) {
-        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+        case 10497:
             return Wrap::Repeat;
-        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+        case 33071:
             return Wrap::ClampToEdge;
-        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+        case 33648:
             return Wrap::MirroredRepeat;
         default:
             return std::nullopt;
@@ -28,66 +32,54 @@ std::optional<Wrap> wrapOf(int value) {
 }
 
 bool setMinification(int value, Sampler& sampler) {
-    switch (value) {
-        case -1:
-            return true;
-        case TINYGLTF_TEXTURE_FILTER_NEAREST:
-        case TINYGLTF_TEXTURE_FILTER_LINEAR:
-            sampler.mipmapped = false;
-            sampler.mip = Filter::Nearest;
-            sampler.minification =
-                value == TINYGLTF_TEXTURE_FILTER_NEAREST ? Filter::Nearest : Filter::Linear;
-            return true;
-        case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
-            sampler.minification = Filter::Nearest;
-            sampler.mip = Filter::Nearest;
-            return true;
-        case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
-            sampler.mip = Filter::Nearest;
-            return true;
-        case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
-            sampler.minification = Filter::Nearest;
-            return true;
-        case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
-            return true;
-        default:
-            return false;
+    // From 9984 on, bit 0 is the filter and bit 1 that between mips.
+    constexpr int kWithMips = 9984;
+    if (value == kNearest || value == kLinear) {
+        sampler.mipmapped = false;
+        sampler.mip = Filter::Nearest;
+        sampler.minification = value == kNearest ? Filter::Nearest : Filter::Linear;
+    } else if (value >= kWithMips && value < kWithMips + 4) {
+        sampler.minification = (value & 1) == 0 ? Filter::Nearest : Filter::Linear;
+        sampler.mip = (value & 2) == 0 ? Filter::Nearest : Filter::Linear;
+    } else {
+        return value == -1;
     }
+    return true;
 }
 
 bool setMagnification(int value, Sampler& sampler) {
-    if (value == TINYGLTF_TEXTURE_FILTER_NEAREST) {
+    if (value == kNearest) {
         sampler.magnification = Filter::Nearest;
     }
-    return value == -1 || value == TINYGLTF_TEXTURE_FILTER_NEAREST || value == TINYGLTF_TEXTURE_FILTER_LINEAR;
+    return value == -1 || value == kNearest || value == kLinear;
 }
 
 }  // namespace
 
 void importSamplers(Document& document, Scene& scene) {
-    for (std::size_t i = 0; i < document.model().samplers.size(); ++i) {
-        const tinygltf::Sampler& source = document.model().samplers[i];
-        const auto warnUnknown = [&](const char* member, int value) {
-            document.warn("sampler-value", fmt::format("/samplers/{}/{}", i, member),
-                          fmt::format("{} is no known value; the default is used", value));
+    const Json& samplers = arrayMember(document.json(), "samplers");
+    for (std::size_t i = 0; i < samplers.size(); ++i) {
+        // Takes the number of that member by `set`, which returns whether it knows the number.
+        const auto read = [&](const char* member, int fallback, const auto& set) {
+            const int value = integerMember(samplers[i], member, fallback);
+            if (!set(value)) {
+                document.warn("sampler-value", fmt::format("/samplers/{}/{}", i, member),
+                              fmt::format("{} is no known value; the default is used", value));
+            }
+        };
+        const auto wrapInto = [](Wrap& wrap) {
+            return [&wrap](int value) {
+                const std::optional<Wrap> known = wrapOf(value);
+                wrap = known.value_or(Wrap::Repeat);
+                return known.has_value();
+            };
         };
         Sampler sampler;
-        const auto wrapU = wrapOf(source.wrapS);
-        const auto wrapV = wrapOf(source.wrapT);
-        sampler.wrapU = wrapU.value_or(Wrap::Repeat);
-        sampler.wrapV = wrapV.value_or(Wrap::Repeat);
-        if (!wrapU) {
-            warnUnknown("wrapS", source.wrapS);
-        }
-        if (!wrapV) {
-            warnUnknown("wrapT", source.wrapT);
-        }
-        if (!setMinification(source.minFilter, sampler)) {
-            warnUnknown("minFilter", source.minFilter);
-        }
-        if (!setMagnification(source.magFilter, sampler)) {
-            warnUnknown("magFilter", source.magFilter);
-        }
+        constexpr int kRepeat = 10497;
+        read("wrapS", kRepeat, wrapInto(sampler.wrapU));
+        read("wrapT", kRepeat, wrapInto(sampler.wrapV));
+        read("minFilter", -1, [&](int value) { return setMinification(value, sampler); });
+        read("magFilter", -1, [&](int value) { return setMagnification(value, sampler); });
         scene.samplers.push_back(sampler);
     }
 }
@@ -118,7 +110,7 @@ Result<int> TextureTable::chooseImage(int texture) {
     constexpr const char* kEffect = "materials render without it";
     const Json& json = document_.json()["textures"][static_cast<std::size_t>(texture)];
     const std::string pointer = fmt::format("/textures/{}", texture);
-    const int plain = document_.model().textures[static_cast<std::size_t>(texture)].source;
+    const int plain = indexMember(json, "source");
     // Later candidates are those that a reader without the extensions would take.
     int basisu = -1;
     const bool mayFallBack = !requiresExtension(document_, "KHR_texture_basisu");
@@ -162,7 +154,6 @@ Result<int> TextureTable::chooseImage(int texture) {
 }
 
 Result<int> TextureTable::append(int texture) {
-    const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(texture)];
     Result<int> chosen = chooseImage(texture);
     if (!chosen || *chosen < 0) {
         return chosen;
@@ -171,7 +162,7 @@ Result<int> TextureTable::append(int texture) {
     if (!image) {
         return image;
     }
-    int sampler = source.sampler;
+    int sampler = indexMember(document_.json()["textures"][static_cast<std::size_t>(texture)], "sampler");
     if (sampler < 0) {
         if (!defaultSampler_) {
             defaultSampler_ = static_cast<int>(scene_.samplers.size());

@@ -175,16 +175,16 @@ bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribut
     return true;
 }
 
-bool appendValuesAs(int componentType, const draco::Mesh& mesh, const draco::PointAttribute& attribute,
-                    std::size_t components, Bytes& bytes) {
+bool appendValuesAs(ComponentType componentType, const draco::Mesh& mesh,
+                    const draco::PointAttribute& attribute, std::size_t components, Bytes& bytes) {
     switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
+        case ComponentType::Byte:
             return appendValues<std::int8_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case ComponentType::UnsignedByte:
             return appendValues<std::uint8_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
+        case ComponentType::Short:
             return appendValues<std::int16_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case ComponentType::UnsignedShort:
             return appendValues<std::uint16_t>(mesh, attribute, components, bytes);
         default:
             return appendValues<float>(mesh, attribute, components, bytes);

@@ -35,11 +35,6 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
-std::string textMember(const Json& object, std::string_view name) {
-    const Json* member = find(object, name);
-    return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
-}
-
 std::string nameOf(const Json& json, int image) {
     if (std::string name = textMember(json, "name"); !name.empty()) {
         return name;

@@ -1,7 +1,5 @@
 #include "gltf/document/accessor.h"
 
-#include "gltf/document/validate.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,10 +35,6 @@ std::string accessorPointer(int accessor) {
     return fmt::format("/accessors/{}", accessor);
 }
 
-const tinygltf::Accessor& accessorOf(const Document& document, int accessor) {
-    return document.model().accessors[static_cast<std::size_t>(accessor)];
-}
-
 Diagnostic rangeError(const Document& document, const std::string& pointer, std::size_t count,
                       const ElementLayout& layout) {
     return document.error(
@@ -58,11 +52,11 @@ T load(const std::uint8_t* bytes) {
     return value;
 }
 
-std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+std::uint32_t loadUnsigned(const std::uint8_t* bytes, ComponentType type) {
+    switch (type) {
+        case ComponentType::UnsignedByte:
             return load<std::uint8_t>(bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case ComponentType::UnsignedShort:
             return load<std::uint16_t>(bytes);
         default:
             return load<std::uint32_t>(bytes);
@@ -70,13 +64,13 @@ std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
 }
 
 // Returns the largest value of an unsigned component type, or 0 for other types.
-std::uint32_t largestUnsigned(int componentType) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+std::uint32_t largestUnsigned(ComponentType type) {
+    switch (type) {
+        case ComponentType::UnsignedByte:
             return std::numeric_limits<std::uint8_t>::max();
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case ComponentType::UnsignedShort:
             return std::numeric_limits<std::uint16_t>::max();
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        case ComponentType::UnsignedInt:
             return std::numeric_limits<std::uint32_t>::max();
         default:
             return 0;
@@ -85,8 +79,8 @@ std::uint32_t largestUnsigned(int componentType) {
 
 // Copies the accessor's own elements, without substitutions, tightly packed.
 Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes& elements) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
-    if (accessor.bufferView < 0 || accessor.bufferView == standInBufferView(document.json())) {
+    const Accessor& accessor = document.accessor(index);
+    if (accessor.bufferView < 0) {
         if (!document.chargeZeroElements(accessor.count)) {
             return document.error(
                 "accessor-count", accessorPointer(index),
@@ -102,8 +96,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
     if (!bytes) {
         return bytes.error();
     }
-    const std::size_t viewStride =
-        document.model().bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
+    const std::size_t viewStride = document.stride(accessor.bufferView);
     const std::size_t stride = viewStride == 0 ? elementSize : viewStride;
     if (stride < elementSize) {
         return document.error("accessor-stride",
@@ -112,7 +105,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes&
                                           accessorPointer(index), elementSize),
                               kDamaged);
     }
-    const ElementLayout layout{*bytes, accessor.byteOffset, stride, elementSize};
+    const ElementLayout layout{*bytes, accessor.offset, stride, elementSize};
     if (!fits(layout, accessor.count)) {
         return rangeError(document, accessorPointer(index), accessor.count, layout);
     }
@@ -139,36 +132,34 @@ Result<ElementLayout> sparseLayout(Document& document, const std::string& pointe
 
 // Puts the substitutes of a sparse accessor into `elements`.
 Status substituteSparse(Document& document, int index, std::size_t elementSize, Bytes& elements) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
-    const auto& sparse = accessor.sparse;
-    const auto count = static_cast<std::size_t>(sparse.count);
+    const Accessor& accessor = document.accessor(index);
+    const Accessor::Sparse& sparse = *accessor.sparse;
+    const std::size_t count = sparse.count;
     const std::string pointer = accessorPointer(index) + "/sparse";
     if (count > accessor.count) {
         return document.error("sparse-count", pointer + "/count",
                               fmt::format("is {}, more than the {} elements", count, accessor.count),
                               kDamaged);
     }
-    const int indexType = sparse.indices.componentType;
-    if (largestUnsigned(indexType) == 0) {
+    if (largestUnsigned(sparse.indicesType) == 0) {
         return document.error("accessor-component-type", pointer + "/indices/componentType",
-                              fmt::format("{} is no unsigned integer", indexType), kDamaged);
+                              fmt::format("{} is no unsigned integer", static_cast<int>(sparse.indicesType)),
+                              kDamaged);
     }
-    const auto indexSize =
-        static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(indexType)));
-    const Result<ElementLayout> indices =
-        sparseLayout(document, pointer + "/indices", sparse.indices.bufferView, sparse.indices.byteOffset,
-                     indexSize, count);
+    const std::size_t indexSize = sizeOf(sparse.indicesType);
+    const Result<ElementLayout> indices = sparseLayout(document, pointer + "/indices", sparse.indicesView,
+                                                       sparse.indicesOffset, indexSize, count);
     if (!indices) {
         return indices.error();
     }
-    const Result<ElementLayout> values = sparseLayout(document, pointer + "/values", sparse.values.bufferView,
-                                                      sparse.values.byteOffset, elementSize, count);
+    const Result<ElementLayout> values = sparseLayout(document, pointer + "/values", sparse.valuesView,
+                                                      sparse.valuesOffset, elementSize, count);
     if (!values) {
         return values.error();
     }
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t target =
-            loadUnsigned(&indices->bytes[indices->offset + i * indexSize], indexType);
+            loadUnsigned(&indices->bytes[indices->offset + i * indexSize], sparse.indicesType);
         if (target >= accessor.count) {
             return document.error(
                 "sparse-index", pointer + "/indices",
@@ -182,7 +173,7 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 
 // Returns all elements, tightly packed.
 Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const Accessor& accessor = document.accessor(index);
     if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
         return status.error();
     }
@@ -190,7 +181,7 @@ Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
     if (Status status = gatherBase(document, index, elementSize, elements); !status) {
         return status.error();
     }
-    if (accessor.sparse.isSparse) {
+    if (accessor.sparse) {
         if (Status status = substituteSparse(document, index, elementSize, elements); !status) {
             return status.error();
         }
@@ -214,41 +205,34 @@ void appendIntegers(const Bytes& bytes, bool normalized, std::vector<float>& val
 }  // namespace
 
 Result<ElementFormat> floatFormat(const Document& document, int index) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
-    const bool isVector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_VEC2 ||
-                          accessor.type == TINYGLTF_TYPE_VEC3 || accessor.type == TINYGLTF_TYPE_VEC4;
-    if (!isVector) {
+    const Accessor& accessor = document.accessor(index);
+    if (accessor.isMatrix) {
         return document.error("accessor-type", accessorPointer(index) + "/type",
                               "a vertex attribute can't be a matrix", "export the scene again");
     }
-    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    if (accessor.componentType == ComponentType::UnsignedInt) {
         return document.error("accessor-component-type", accessorPointer(index) + "/componentType",
                               "a vertex attribute can't have 32-bit integers", "export the scene again");
     }
-    return ElementFormat{
-        accessor.componentType,
-        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type))),
-        static_cast<std::size_t>(
-            tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)))};
+    return ElementFormat{accessor.componentType, accessor.components, sizeOf(accessor.componentType)};
 }
 
 FloatElements toFloats(const Document& document, int index, Integers integers, const Bytes& bytes) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const Accessor& accessor = document.accessor(index);
     FloatElements result;
-    result.components =
-        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+    result.components = accessor.components;
     const bool normalized = accessor.normalized || integers == Integers::Normalized;
     switch (accessor.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
+        case ComponentType::Byte:
             appendIntegers<std::int8_t>(bytes, normalized, result.values);
             break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case ComponentType::UnsignedByte:
             appendIntegers<std::uint8_t>(bytes, normalized, result.values);
             break;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
+        case ComponentType::Short:
             appendIntegers<std::int16_t>(bytes, normalized, result.values);
             break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case ComponentType::UnsignedShort:
             appendIntegers<std::uint16_t>(bytes, normalized, result.values);
             break;
         default:
@@ -274,8 +258,8 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
 }
 
 Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
-    if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    const Accessor& accessor = document.accessor(index);
+    if (!accessor.isMatrix || accessor.components != 16 || accessor.componentType != ComponentType::Float) {
         return document.error("accessor-type", accessorPointer(index), "must have 4 x 4 matrices of floats",
                               "export the scene again");
     }
@@ -292,14 +276,13 @@ Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
 }
 
 Result<IndexElements> readIndices(Document& document, int index) {
-    const tinygltf::Accessor& accessor = accessorOf(document, index);
+    const Accessor& accessor = document.accessor(index);
     const std::uint32_t restart = largestUnsigned(accessor.componentType);
-    if (accessor.type != TINYGLTF_TYPE_SCALAR || restart == 0) {
+    if (accessor.components != 1 || restart == 0) {
         return document.error("accessor-component-type", accessorPointer(index),
                               "indices must be scalars of unsigned integers", "export the scene again");
     }
-    const auto size = static_cast<std::size_t>(
-        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+    const std::size_t size = sizeOf(accessor.componentType);
     const Result<Bytes> bytes = gather(document, index, size);
     if (!bytes) {
         return bytes.error();
@@ -311,10 +294,6 @@ Result<IndexElements> readIndices(Document& document, int index) {
         result.values.push_back(loadUnsigned(&(*bytes)[i * size], accessor.componentType));
     }
     return result;
-}
-
-std::size_t elementCount(const Document& document, int accessor) {
-    return accessorOf(document, accessor).count;
 }
 
 }  // namespace glint::gltf

@@ -23,7 +23,7 @@ enum class Integers : std::uint8_t { AsValues, Normalized };
 
 // What the elements of an accessor look like.
 struct ElementFormat {
-    int componentType = 0;  // glTF's number
+    ComponentType componentType = ComponentType::Float;
     std::size_t components = 0;
     std::size_t componentSize = 0;  // bytes
 };
@@ -50,8 +50,5 @@ struct IndexElements {
 
 // Reads a scalar accessor of unsigned integers.
 Result<IndexElements> readIndices(Document& document, int accessor);
-
-// Returns how many elements the accessor has. It need not have been read.
-std::size_t elementCount(const Document& document, int accessor);
 
 }  // namespace glint::gltf

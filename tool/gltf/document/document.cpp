@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 
 namespace glint::gltf {
 
@@ -79,49 +78,23 @@ Status Document::parse() {
     if (failure) {
         return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
     }
-    buffers_.resize(arraySize(json_, "/buffers"));
-    unpackedViews_.resize(arraySize(json_, "/bufferViews"));
-    return parseModel();
-}
-
-Status Document::parseModel() {
-    tinygltf::TinyGLTF parser;
-    std::string problems;
-    std::string ignored;
-    const std::string text = projectDocument(json_, *options_.materialModel).dump();
-    bool parsed = false;
-    try {
-        parsed = parser.LoadASCIIFromString(&model_, &problems, &ignored, text.data(),
-                                            static_cast<unsigned>(text.size()), "", tinygltf::NO_REQUIRE);
-    } catch (const std::exception& exception) {
-        problems = exception.what();
-    }
-    if (!parsed || !mirrorsJson()) {
-        std::replace(problems.begin(), problems.end(), '\n', ' ');
-        return error("gltf", "", problems.empty() ? "can't be read" : "can't be read: " + problems,
-                     hintFor("gltf"));
-    }
+    readElements();
     return okStatus();
 }
 
-// Returns whether tinygltf kept every element, so that the indices of one are valid for the other.
-bool Document::mirrorsJson() const {
-    const auto same = [&](std::size_t size, std::string_view pointer) {
-        return size == arraySize(json_, pointer);
-    };
-    if (!same(model_.meshes.size(), "/meshes")) {
-        return false;
+void Document::readElements() {
+    buffers_.resize(arraySize(json_, "/buffers"));
+    for (const Json& view : arrayMember(json_, "bufferViews")) {
+        views_.push_back(readBufferView(view));
     }
-    for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
-        if (model_.meshes[i].primitives.size() != arraySize(json_["meshes"][i], "/primitives")) {
-            return false;
+    unpackedViews_.resize(views_.size());
+    const std::vector<bool> used = usedAccessors(json_, *options_.materialModel);
+    accessors_.resize(used.size());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i]) {
+            accessors_[i] = readAccessor(json_["accessors"][i]);
         }
     }
-    return same(model_.accessors.size(), "/accessors") &&
-           same(model_.bufferViews.size() - 1, "/bufferViews") &&
-           same(model_.materials.size(), "/materials") && same(model_.textures.size(), "/textures") &&
-           same(model_.samplers.size(), "/samplers") && same(model_.nodes.size(), "/nodes") &&
-           same(model_.scenes.size(), "/scenes") && same(model_.cameras.size(), "/cameras");
 }
 
 Status Document::checkVersion() const {
@@ -141,12 +114,12 @@ Status Document::checkVersion() const {
 }
 
 Result<ByteView> Document::bufferView(int index) {
-    const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
+    const BufferView& view = views_[static_cast<std::size_t>(index)];
     const std::string pointer = fmt::format("/bufferViews/{}", index);
     if (const Json* extension = findMeshopt(json_["bufferViews"][static_cast<std::size_t>(index)])) {
         return unpackedView(index, *extension, pointer);
     }
-    return bufferRange(view.buffer, view.byteOffset, view.byteLength, pointer);
+    return bufferRange(view.buffer, view.offset, view.length, pointer);
 }
 
 Result<ByteView> Document::unpackedView(int index, const Json& extension, const std::string& pointer) {
@@ -159,8 +132,8 @@ Result<ByteView> Document::unpackedView(int index, const Json& extension, const 
         if (!packed) {
             return packed.error();
         }
-        Result<Bytes> bytes = unpackMeshopt(*this, extension, pointer, *packed,
-                                            model_.bufferViews[static_cast<std::size_t>(index)].byteLength);
+        Result<Bytes> bytes =
+            unpackMeshopt(*this, extension, pointer, *packed, views_[static_cast<std::size_t>(index)].length);
         if (!bytes) {
             return bytes.error();
         }

@@ -1,13 +1,12 @@
 // An opened and checked glTF document. Every part of the importer reads from it.
 #pragma once
 
+#include "gltf/document/elements.h"
 #include "gltf/document/file_source.h"
 #include "gltf/document/schema.h"
 #include "gltf/import.h"
 
 #include <glint/result.h>
-
-#include <tiny_gltf.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -28,13 +27,18 @@ public:
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const ImportOptions& options);
 
-    // The file's JSON serves extensions and images; tinygltf's view of it (projectDocument()) serves
-    // everything else. All references in both are in range.
+    // The file's JSON, in which all types, ranges and references that the importer reads have been checked.
+    // Views and accessors are read from it once.
     const Json& json() const {
         return json_;
     }
-    const tinygltf::Model& model() const {
-        return model_;
+    // The accessor must be one that the importer reads (usedAccessors()).
+    const Accessor& accessor(int index) const {
+        return accessors_[static_cast<std::size_t>(index)];
+    }
+    // Returns how far apart the elements of a buffer view are in bytes, or 0 if they follow each other.
+    std::size_t stride(int bufferView) const {
+        return views_[static_cast<std::size_t>(bufferView)].stride;
     }
     const ImportOptions& options() const {
         return options_;
@@ -79,8 +83,7 @@ private:
 
     Status parse();
     Status checkVersion() const;
-    Status parseModel();
-    bool mirrorsJson() const;
+    void readElements();
     Result<ByteView> buffer(int index);
     Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,
                                  const std::string& pointer);
@@ -93,7 +96,8 @@ private:
     Bytes file_;
     std::optional<ByteView> binary_;  // views file_
     Json json_;
-    tinygltf::Model model_;
+    std::vector<BufferView> views_;
+    std::vector<Accessor> accessors_;
     std::vector<std::optional<Bytes>> buffers_;
     std::vector<std::optional<Bytes>> unpackedViews_;
     std::vector<Diagnostic> warnings_;

@@ -5,7 +5,7 @@
 
 namespace glint::gltf::rules {
 
-// A larger value does not fit into tinygltf's int.
+// A larger value does not fit into an int.
 inline constexpr double kMaxInt = 2147483647.0;
 // Above this value, doubles no longer represent every integer.
 inline constexpr double kMaxSize = 9007199254740991.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace glint::gltf {
 
@@ -179,6 +180,40 @@ const Json& arrayMember(const Json& object, std::string_view name) {
     static const Json kNone = Json::array();
     const Json* member = find(object, name);
     return member != nullptr && member->is_array() ? *member : kNone;
+}
+
+namespace {
+
+template <typename T>
+T memberOr(const Json& object, std::string_view name, T fallback) {
+    const Json* const member = find(object, name);
+    return member == nullptr ? std::move(fallback) : member->get<T>();
+}
+
+}  // namespace
+
+int indexMember(const Json& object, std::string_view name) {
+    return memberOr(object, name, -1);
+}
+
+std::uint64_t sizeMember(const Json& object, std::string_view name) {
+    return memberOr<std::uint64_t>(object, name, 0);
+}
+
+std::string textMember(const Json& object, std::string_view name) {
+    return memberOr<std::string>(object, name, {});
+}
+
+std::vector<double> numbersMember(const Json& object, std::string_view name) {
+    return memberOr<std::vector<double>>(object, name, {});
+}
+
+int integerMember(const Json& object, std::string_view name, int fallback) {
+    return memberOr(object, name, fallback);
+}
+
+bool boolMember(const Json& object, std::string_view name, bool fallback) {
+    return memberOr(object, name, fallback);
 }
 
 std::size_t arraySize(const Json& root, std::string_view pointer) {

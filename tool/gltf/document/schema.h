@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint::gltf {
 
@@ -58,6 +59,14 @@ const Json* find(const Json& object, std::string_view name);
 const Json* findExtension(const Json& object, std::string_view name);
 // Returns the array of that name, or an empty one if there is none.
 const Json& arrayMember(const Json& object, std::string_view name);
+// Return the member of a checked object, or what counts where it is absent: -1 for an index, 0 for a size, an
+// empty text, no numbers, the fallback.
+int indexMember(const Json& object, std::string_view name);
+std::uint64_t sizeMember(const Json& object, std::string_view name);
+std::string textMember(const Json& object, std::string_view name);
+std::vector<double> numbersMember(const Json& object, std::string_view name);
+int integerMember(const Json& object, std::string_view name, int fallback);
+bool boolMember(const Json& object, std::string_view name, bool fallback);
 // Returns how many elements the array at that JSON pointer has, or 0 if there is no array.
 std::size_t arraySize(const Json& root, std::string_view pointer);
 

@@ -15,8 +15,7 @@ namespace {
 
 using namespace rules;
 
-// These are the rules of buffers, views and accessors. tinygltf reads the offsets of sparse accessors into an
-// int.
+// These are the rules of buffers, views and accessors.
 constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
 constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
                                  size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
@@ -164,52 +163,6 @@ private:
     std::vector<Rule> root_;
 };
 
-// Calls `use(index, isIndices)` for every accessor to which the member of that name refers, if there is such
-// a member.
-template <typename Use>
-void useAccessor(const Json& object, const char* name, bool isIndices, const Use& use) {
-    if (const Json* accessor = find(object, name)) {
-        use(accessor->get<std::size_t>(), isIndices);
-    }
-}
-
-// Calls `use` in the same way for every accessor that the importer reads.
-template <typename Use>
-void forEachAccessor(const Json& root, const MaterialModel& model, const Use& use) {
-    for (const Json& mesh : arrayMember(root, "meshes")) {
-        for (const Json& primitive : arrayMember(mesh, "primitives")) {
-            for (const char* name : kAttributes) {
-                useAccessor(primitive["attributes"], name, false, use);
-            }
-            for (const VertexAttribute& attribute : model.attributes) {
-                useAccessor(primitive["attributes"], attribute.gltf.c_str(), false, use);
-            }
-            for (const Json& target : arrayMember(primitive, "targets")) {
-                for (const char* name : kTargetAttributes) {
-                    useAccessor(target, name, false, use);
-                }
-            }
-            useAccessor(primitive, "indices", true, use);
-        }
-    }
-    for (const Json& node : arrayMember(root, "nodes")) {
-        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
-            for (const char* name : kInstanceAttributes) {
-                useAccessor((*instancing)["attributes"], name, false, use);
-            }
-        }
-    }
-    for (const Json& animation : arrayMember(root, "animations")) {
-        for (const Json& sampler : arrayMember(animation, "samplers")) {
-            useAccessor(sampler, "input", false, use);
-            useAccessor(sampler, "output", false, use);
-        }
-    }
-    for (const Json& skin : arrayMember(root, "skins")) {
-        useAccessor(skin, "inverseBindMatrices", false, use);
-    }
-}
-
 bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
     for (const std::string_view candidate : values) {
         if (candidate == value) {
@@ -217,34 +170,6 @@ bool isOneOf(std::string_view value, std::initializer_list<std::string_view> val
         }
     }
     return false;
-}
-
-// Copies the members in `rules` from `from`, and the members of the objects that they hold, as deep as the
-// tables go.
-Json project(const Json& from, std::span<const Rule> rules) {
-    Json to = Json::object();
-    for (const Rule& rule : rules) {
-        const Json* member = find(from, rule.name);
-        // The importer reads these from the file's JSON. tinygltf would also narrow the integers in
-        // extensions.
-        const bool apart =
-            isOneOf(rule.name, {"extensions", "targets", "weights", "skin", "animations", "skins"});
-        if (member == nullptr || apart) {
-            continue;
-        }
-        if (rule.kind == Kind::Object) {
-            to[std::string(rule.name)] = project(*member, rule.rules);
-        } else if (rule.kind == Kind::Objects) {
-            Json array = Json::array();
-            for (const Json& element : *member) {
-                array.push_back(project(element, rule.rules));
-            }
-            to[std::string(rule.name)] = std::move(array);
-        } else {
-            to[std::string(rule.name)] = *member;
-        }
-    }
-    return to;
 }
 
 std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const std::string& pointer) {
@@ -303,40 +228,57 @@ std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model)
     if (auto error = checkCameras(root)) {
         return error;
     }
-    std::optional<SchemaError> error;
-    std::vector<bool> seen(arraySize(root, "/accessors"));
-    forEachAccessor(root, model, [&](std::size_t accessor, bool) {
-        if (!error && !seen[accessor]) {
-            seen[accessor] = true;
-            error = checkAccessor(root, root["accessors"][accessor], fmt::format("/accessors/{}", accessor));
+    const std::vector<bool> used = usedAccessors(root, model);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i]) {
+            if (auto error = checkAccessor(root, root["accessors"][i], fmt::format("/accessors/{}", i))) {
+                return error;
+            }
         }
-    });
-    return error;
+    }
+    return std::nullopt;
 }
 
-Json projectDocument(const Json& root, const MaterialModel& model) {
-    const RootRules rules(model);
-    Json projection = project(root, rules.rules());
-    projection["asset"] = {{"version", "2.0"}};
-    projection.erase("buffers");
-    projection.erase("images");
-    const Json standIn{{"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}};
-    projection["accessors"] = Json(std::vector<Json>(arraySize(root, "/accessors"), standIn));
-    projection["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
-    std::vector<bool> isIndices(arraySize(root, "/accessors"));
-    forEachAccessor(root, model, [&](std::size_t accessor, bool indexing) {
-        isIndices[accessor] = isIndices[accessor] || indexing;
-        Json& copy = projection["accessors"][accessor];
-        copy = project(root["accessors"][accessor], kAccessor);
-        if (isIndices[accessor] && !copy.contains("bufferView")) {
-            copy["bufferView"] = standInBufferView(root);
+std::vector<bool> usedAccessors(const Json& root, const MaterialModel& model) {
+    std::vector<bool> used(arraySize(root, "/accessors"));
+    const auto use = [&](const Json& object, std::string_view name) {
+        if (const Json* accessor = find(object, name)) {
+            used[accessor->get<std::size_t>()] = true;
         }
-    });
-    return projection;
-}
-
-int standInBufferView(const Json& root) {
-    return static_cast<int>(arraySize(root, "/bufferViews"));
+    };
+    for (const Json& mesh : arrayMember(root, "meshes")) {
+        for (const Json& primitive : arrayMember(mesh, "primitives")) {
+            for (const char* name : kAttributes) {
+                use(primitive["attributes"], name);
+            }
+            for (const VertexAttribute& attribute : model.attributes) {
+                use(primitive["attributes"], attribute.gltf);
+            }
+            for (const Json& target : arrayMember(primitive, "targets")) {
+                for (const char* name : kTargetAttributes) {
+                    use(target, name);
+                }
+            }
+            use(primitive, "indices");
+        }
+    }
+    for (const Json& node : arrayMember(root, "nodes")) {
+        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
+            for (const char* name : kInstanceAttributes) {
+                use((*instancing)["attributes"], name);
+            }
+        }
+    }
+    for (const Json& animation : arrayMember(root, "animations")) {
+        for (const Json& sampler : arrayMember(animation, "samplers")) {
+            use(sampler, "input");
+            use(sampler, "output");
+        }
+    }
+    for (const Json& skin : arrayMember(root, "skins")) {
+        use(skin, "inverseBindMatrices");
+    }
+    return used;
 }
 
 }  // namespace glint::gltf

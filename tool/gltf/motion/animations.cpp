@@ -215,15 +215,13 @@ private:
     // Returns which demand of a pointer's property the accessor does not meet, or an empty text if it meets
     // all.
     std::string flawOfForm(int accessor, const KeyframeForm& form, Interpolation interpolation) const {
-        const tinygltf::Accessor& values = document_.model().accessors[static_cast<std::size_t>(accessor)];
-        const auto components = static_cast<std::size_t>(
-            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(values.type)));
+        const Accessor& values = document_.accessor(accessor);
         const std::size_t expected = form.kind == ValueKind::Vector ? form.width : 1;
-        if (components != expected) {
-            return fmt::format("/accessors/{} has elements of {} numbers, not {}", accessor, components,
-                               expected);
+        if (values.components != expected) {
+            return fmt::format("/accessors/{} has elements of {} numbers, not {}", accessor,
+                               values.components, expected);
         }
-        const bool isByte = values.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        const bool isByte = values.componentType == ComponentType::UnsignedByte;
         if (form.kind == ValueKind::Bool && (!isByte || values.normalized)) {
             return fmt::format("/accessors/{} drives true and false, but holds no plain unsigned bytes",
                                accessor);

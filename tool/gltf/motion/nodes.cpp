@@ -22,10 +22,11 @@ std::string pointerOf(std::size_t node) {
 
 // Returns the parent of each node, which is -1 for roots.
 Result<std::vector<int>> findParents(const Document& document) {
-    const auto& nodes = document.model().nodes;
+    const Json& nodes = arrayMember(document.json(), "nodes");
     std::vector<int> parents(nodes.size(), -1);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        for (const int child : nodes[i].children) {
+        for (const Json& index : arrayMember(nodes[i], "children")) {
+            const int child = index.get<int>();
             int& parent = parents[static_cast<std::size_t>(child)];
             if (parent >= 0) {
                 return document.error("node-parents", pointerOf(static_cast<std::size_t>(child)),
@@ -51,8 +52,9 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
         const std::size_t node = open.back();
         open.pop_back();
         reached[node] = true;
-        const auto& children = document.model().nodes[node].children;
-        open.insert(open.end(), children.begin(), children.end());
+        for (const Json& child : arrayMember(document.json()["nodes"][node], "children")) {
+            open.push_back(child.get<std::size_t>());
+        }
     }
     const auto missed = std::find(reached.begin(), reached.end(), false);
     if (missed != reached.end()) {
@@ -64,9 +66,9 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
 
 // Returns the nodes at which the default scene starts, in the file's order.
 std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& parents) {
-    const tinygltf::Model& model = document.model();
+    const Json& scenes = arrayMember(document.json(), "scenes");
     std::vector<std::size_t> roots;
-    if (model.scenes.empty()) {
+    if (scenes.empty()) {
         for (std::size_t i = 0; i < parents.size(); ++i) {
             if (parents[i] < 0) {
                 roots.push_back(i);
@@ -74,10 +76,11 @@ std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& p
         }
         return roots;
     }
-    const std::size_t scene = model.defaultScene < 0 ? 0 : static_cast<std::size_t>(model.defaultScene);
+    const std::uint64_t scene = sizeMember(document.json(), "scene");
+    const Json& nodes = arrayMember(scenes[scene], "nodes");
     std::vector<bool> listed(parents.size());
-    for (std::size_t i = 0; i < model.scenes[scene].nodes.size(); ++i) {
-        const auto node = static_cast<std::size_t>(model.scenes[scene].nodes[i]);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto node = nodes[i].get<std::size_t>();
         const std::string pointer = fmt::format("/scenes/{}/nodes/{}", scene, i);
         if (listed[node]) {
             document.warn("scene-node-repeated", pointer, "names a node that the scene has already",
@@ -118,14 +121,13 @@ std::array<double, 4> readRotation(Document& document, const std::vector<double>
     return {values[0] / length, values[1] / length, values[2] / length, values[3] / length};
 }
 
-Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& json,
-                   const std::string& pointer) {
+Matrix4 readMatrix(Document& document, const Json& json, const std::string& pointer) {
     if (json.contains("translation") || json.contains("rotation") || json.contains("scale")) {
         document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
                       kExportNodes);
     }
     Matrix4 matrix{};
-    std::copy_n(node.matrix.begin(), matrix.size(), matrix.begin());
+    std::ranges::copy(numbersMember(json, "matrix"), matrix.begin());
     if (matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0) {
         document.warn("node-matrix", pointer + "/matrix",
                       "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
@@ -137,19 +139,19 @@ Matrix4 readMatrix(Document& document, const tinygltf::Node& node, const Json& j
 
 // Reads the node's local transform into `node`, and returns it as a matrix.
 Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
-    const tinygltf::Node& node = document.model().nodes[index];
     const Json& json = document.json()["nodes"][index];
     const std::string pointer = pointerOf(index);
-    if (node.matrix.size() == 16) {
-        placed.matrix = readMatrix(document, node, json, pointer);
+    if (json.contains("matrix")) {
+        placed.matrix = readMatrix(document, json, pointer);
         return *placed.matrix;
     }
-    const auto triple = [](const std::vector<double>& values, double fallback) {
+    const auto triple = [&](const char* name, double fallback) {
+        const std::vector<double> values = numbersMember(json, name);
         return values.size() == 3 ? Double3{values[0], values[1], values[2]}
                                   : Double3{fallback, fallback, fallback};
     };
-    placed.rest = {triple(node.translation, 0.0), readRotation(document, node.rotation, pointer),
-                   triple(node.scale, 1.0)};
+    placed.rest = {triple("translation", 0.0),
+                   readRotation(document, numbersMember(json, "rotation"), pointer), triple("scale", 1.0)};
     return compose(placed.rest.translation, placed.rest.rotation, placed.rest.scale);
 }
 
@@ -176,11 +178,11 @@ Status placeLight(Document& document, int light, Node& node, Scene& scene) {
 }
 
 Status appendNode(Document& document, std::size_t index, int parent, Scene& scene) {
-    const tinygltf::Node& source = document.model().nodes[index];
+    const Json& json = document.json()["nodes"][index];
     Node node;
-    node.name = source.name;
+    node.name = textMember(json, "name");
     node.parent = parent;
-    node.mesh = source.mesh;
+    node.mesh = indexMember(json, "mesh");
     node.source = static_cast<int>(index);
     const Matrix4 above = parent < 0 ? identity() : scene.nodes[static_cast<std::size_t>(parent)].world;
     node.world = multiply(above, readTransform(document, index, node));
@@ -188,13 +190,11 @@ Status appendNode(Document& document, std::size_t index, int parent, Scene& scen
         return document.error("node-transform", pointerOf(index), "its transform in the world overflows",
                               "check the scales of the node and its parents");
     }
-    const Json& json = document.json()["nodes"][index];
     if (const Json* const visibility = findExtension(json, "KHR_node_visibility")) {
-        const Json* const visible = find(*visibility, "visible");
-        node.visible = visible == nullptr || visible->get<bool>();
+        node.visible = boolMember(*visibility, "visible", true);
     }
-    if (source.camera >= 0) {
-        if (Status status = placeCamera(document, source.camera, node, scene); !status) {
+    if (const int camera = indexMember(json, "camera"); camera >= 0) {
+        if (Status status = placeCamera(document, camera, node, scene); !status) {
             return status;
         }
     }
@@ -234,9 +234,9 @@ Status importNodes(Document& document, Scene& scene) {
         if (Status status = appendNode(document, next.node, next.parent, scene); !status) {
             return status;
         }
-        const auto& children = document.model().nodes[next.node].children;
-        for (auto child = children.rbegin(); child != children.rend(); ++child) {
-            pending.push_back({static_cast<std::size_t>(*child), parent});
+        const Json& children = arrayMember(document.json()["nodes"][next.node], "children");
+        for (std::size_t i = children.size(); i-- > 0;) {
+            pending.push_back({children[i].get<std::size_t>(), parent});
         }
     }
     return okStatus();

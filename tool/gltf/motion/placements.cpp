@@ -83,34 +83,37 @@ float readChannel(Document& document, const std::string& pointer, double value) 
 }  // namespace
 
 Result<Camera> importCamera(Document& document, int index, const Matrix4& world) {
-    const tinygltf::Camera& source = document.model().cameras[static_cast<std::size_t>(index)];
-    const std::string pointer = fmt::format("/cameras/{}/{}", index, source.type);
+    const Json& source = document.json()["cameras"][static_cast<std::size_t>(index)];
+    const std::string type = textMember(source, "type");
+    const Json& lens = source[type];
+    const std::string pointer = fmt::format("/cameras/{}/{}", index, type);
     const auto fail = [&](const char* member, const char* rule, double value) {
         return document.error("camera-range", fmt::format("{}/{}", pointer, member),
                               fmt::format("is {}; it must be {}", value, rule), "correct the camera");
     };
     Camera camera;
-    camera.name = source.name;
+    camera.name = textMember(source, "name");
     camera.world = poseOf(document, fmt::format("/cameras/{}", index), world);
-    camera.orthographic = source.type == "orthographic";
+    camera.orthographic = type == "orthographic";
+    camera.znear = lens["znear"].get<double>();
+    const Json* const zfar = find(lens, "zfar");
+    camera.zfar = zfar == nullptr ? 0.0 : zfar->get<double>();
     if (camera.orthographic) {
-        camera.xmag = std::abs(source.orthographic.xmag);
-        camera.ymag = std::abs(source.orthographic.ymag);
-        camera.znear = source.orthographic.znear;
-        camera.zfar = source.orthographic.zfar;
+        const auto xmag = lens["xmag"].get<double>();
+        const auto ymag = lens["ymag"].get<double>();
+        camera.xmag = std::abs(xmag);
+        camera.ymag = std::abs(ymag);
         if (camera.xmag == 0.0 || camera.ymag == 0.0) {
             return fail(camera.xmag == 0.0 ? "xmag" : "ymag", "other than 0", 0.0);
         }
-        if (source.orthographic.xmag < 0.0 || source.orthographic.ymag < 0.0) {
+        if (xmag < 0.0 || ymag < 0.0) {
             document.warn("camera-range", pointer, "has a negative magnification; its size is used");
         }
         if (camera.znear < 0.0) {
             return fail("znear", "0 or more", camera.znear);
         }
     } else {
-        camera.yfov = source.perspective.yfov;
-        camera.znear = source.perspective.znear;
-        camera.zfar = source.perspective.zfar;  // 0 if the file has none
+        camera.yfov = lens["yfov"].get<double>();
         if (camera.yfov <= 0.0 || camera.yfov >= std::numbers::pi) {
             return fail("yfov", "between 0 and pi", camera.yfov);
         }
@@ -118,8 +121,7 @@ Result<Camera> importCamera(Document& document, int index, const Matrix4& world)
             return fail("znear", "above 0", camera.znear);
         }
     }
-    const Json& json = document.json()["cameras"][static_cast<std::size_t>(index)][source.type];
-    if (json.contains("zfar") && camera.zfar <= camera.znear) {
+    if (zfar != nullptr && camera.zfar <= camera.znear) {
         return fail("zfar", "above znear", camera.zfar);
     }
     return camera;
@@ -130,8 +132,7 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
     const Json& json =
         document.json()["extensions"]["KHR_lights_punctual"]["lights"][static_cast<std::size_t>(index)];
     Light light;
-    const Json* name = find(json, "name");
-    light.name = name == nullptr ? "" : name->get<std::string>();
+    light.name = textMember(json, "name");
     const std::string& type = json["type"].get_ref<const std::string&>();
     if (type == "spot") {
         light.type = LightType::Spot;

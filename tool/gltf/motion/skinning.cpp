@@ -74,8 +74,7 @@ Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, cons
     const Json& json = document.json()["skins"][index];
     const std::string pointer = fmt::format("/skins/{}", index);
     Skin skin;
-    const Json* name = find(json, "name");
-    skin.name = name == nullptr ? "" : name->get<std::string>();
+    skin.name = textMember(json, "name");
     const Json& joints = json["joints"];
     if (joints.empty() || joints.size() > kMaxJoints) {
         return document.error("skin-joints", pointer + "/joints",
