@@ -1,7 +1,7 @@
 # glint_embed(TARGET OUTPUT file.cpp HEADER path.h FUNCTION name ROOTS dir… PATTERNS glob…): compiles text
-# files into TARGET. At run time they are found by their path below a root through glint::FUNCTION(), which
-# HEADER declares as std::span<const BuiltinFile> FUNCTION(). Changed, added and removed files cause a
-# rebuild.
+# files into TARGET. At run time they are found by their path below a root through FUNCTION(), named with its
+# namespaces, which HEADER declares as std::span<const BuiltinFile> FUNCTION(). Changed, added and removed
+# files cause a rebuild.
 #
 # The same file is the generator: cmake -DOUTPUT=… -DLIST=… -DHEADER=… -DFUNCTION=… -P GlintEmbed.cmake, where
 # each line of LIST is "name|path".
@@ -9,8 +9,8 @@
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS "${LIST}" entries ENCODING UTF-8)
   set(code "// Made by cmake/GlintEmbed.cmake from the files that it names. Do not edit.\n")
-  string(APPEND code "#include \"${HEADER}\"\n\nnamespace glint {\n\n")
-  string(APPEND code "std::span<const BuiltinFile> ${FUNCTION}() {\n    static constexpr BuiltinFile kFiles[] = {\n")
+  string(APPEND code "#include \"${HEADER}\"\n\n")
+  string(APPEND code "std::span<const glint::BuiltinFile> ${FUNCTION}() {\n    static constexpr glint::BuiltinFile kFiles[] = {\n")
   foreach(entry IN LISTS entries)
     string(REGEX MATCH "^([^|]+)\\|(.+)$" matched "${entry}")
     set(name "${CMAKE_MATCH_1}")
@@ -21,7 +21,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
     endif()
     string(APPEND code "        {\"${name}\", R\"glint(${text})glint\"},\n")
   endforeach()
-  string(APPEND code "    };\n    return kFiles;\n}\n\n}  // namespace glint\n")
+  string(APPEND code "    };\n    return kFiles;\n}\n")
   file(WRITE "${OUTPUT}" "${code}")
   return()
 endif()

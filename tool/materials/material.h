@@ -4,6 +4,8 @@
 
 #include "materials/material_model.h"
 
+#include <glint/names.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -150,6 +152,13 @@ struct PrimitiveInputs {
 };
 
 enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
+inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
+    {AlphaPolicy::Opaque, "opaque", "ignored"},
+    {AlphaPolicy::Tested, "tested", "each candidate hit is tested"},
+};
+constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
+    return kAlphaNames;
+}
 
 struct KeyOptions {
     AlphaPolicy alpha = AlphaPolicy::Opaque;

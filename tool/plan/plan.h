@@ -108,12 +108,4 @@ std::size_t caseCount(const Plan& plan);
 // Returns a message for the user if the plan has more cases than options.maxShaders.
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options);
 
-inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
-    {AlphaPolicy::Opaque, "opaque", "ignored"},
-    {AlphaPolicy::Tested, "tested", "each candidate hit is tested"},
-};
-constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
-    return kAlphaNames;
-}
-
 }  // namespace glint
