@@ -2,6 +2,7 @@
 // nothing.
 #include "render/pixel_test.h"
 #include "render/rooms.h"
+#include "support/effect_bits.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "context/commands.h"
 #include "context/resources.h"
 #include "renderer/renderer_state.h"
+#include "support/effect_bits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -112,7 +112,7 @@ std::string chosenEffects(const EffectPlan& effects) {
     std::vector<std::string_view> names;
     for (const EffectDecision& decision : effects.decisions) {
         if (decision.chosen) {
-            names.push_back(package::nameOf(decision.effect));
+            names.push_back(decision.name);
         }
     }
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -210,7 +210,7 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const 
         return costs.error();
     }
     FrameShape shape;
-    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects;
+    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
     shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
     const Plan made = known != nullptr ? Plan() : makePlan(scenes.materials(), scenes.primitives(), plan);
     Result<StrategyAdvice> advice = measure::adviseStrategy(
@@ -221,7 +221,7 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const 
     }
     const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
     settings.compile.strategies |=
-        chosen | (chosen == package::kStrategyHitShaders ? std::uint32_t{package::kStrategyUber} : 0U);
+        chosen | ((chosen & package::kPipelineStrategies) != 0 ? std::uint32_t{package::kStrategyUber} : 0U);
     settings.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }

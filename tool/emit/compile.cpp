@@ -63,9 +63,10 @@ Status checkPositionFetch(const CompileSettings& settings, const std::string& wh
                 glslangVersion()),
             "build glint with glslang 12.2 or newer, as Debian 13 has it, or leave out --position-fetch");
     }
-    const bool uber = (settings.strategies & package::kStrategyUber) != 0 &&
-                      (settings.tracers & package::kTracerRayQuery) != 0;
-    if (!uber && (settings.strategies & package::kStrategyHitShaders) == 0) {
+    const std::uint32_t able = settings.strategies & ~package::kOrderedStrategies;
+    const bool byQuery =
+        (able & ~package::kPipelineStrategies) != 0 && (settings.tracers & package::kTracerRayQuery) != 0;
+    if (!byQuery && (able & package::kPipelineStrategies) == 0) {
         return makeError("position-fetch", where,
                          "no shader of this package could fetch positions: only uber with ray queries and "
                          "hit-shaders can, because they shade a hit where they find it",
@@ -169,9 +170,9 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     return package;
 }
 
-// Hit shaders have a tracer of their own. If nothing else traces, it is the only tracer.
+// Some strategies have a tracer of their own. If nothing else traces, it is the only tracer.
 CompileSettings withOwnTracers(CompileSettings settings) {
-    if (settings.strategies == package::kStrategyHitShaders) {
+    if ((settings.strategies & ~package::kPipelineStrategies) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
     return settings;

@@ -2,6 +2,7 @@
 
 #include "base/json_depth.h"
 #include "materials/declaration_json.h"
+#include "materials/effect_reader.h"
 #include "materials/feature_code.h"
 
 #include <fmt/format.h>
@@ -113,6 +114,7 @@ public:
         for (const DeclarationFile& file : sorted) {
             parse(file);
         }
+        readEffects();
         // The core comes before the extensions. This is not std::ranges, whose subrange Clang 14 can't read
         // in libstdc++ 12.
         std::stable_partition(files_.begin(), files_.end(),
@@ -205,6 +207,21 @@ private:
             failAt(parsed.name, "is no JSON", "look for a missing comma or bracket");
         }
         files_.push_back(std::move(parsed));
+    }
+
+    // Declarations of effects have a kind; those of features have none.
+    void readEffects() {
+        const auto isEffect = [](const File& file) {
+            return file.json.is_object() && file.json.contains("kind");
+        };
+        for (const File& file : files_) {
+            if (isEffect(file)) {
+                model_.effects.push_back(
+                    readEffect({file.json, file.name + "#", effectMembers()}, file.name, file.isOfPack));
+            }
+        }
+        std::erase_if(files_, isEffect);
+        numberEffects(model_.effects);
     }
 
     Members membersOf(const File& file) const {
