@@ -155,6 +155,24 @@ TEST_F(EffectOfThePage, MayComposeItsLight) {
     expectNoValidationMessages();
 }
 
+TEST_F(EffectOfThePage, ErrorsOfGlslNameTheFileTheLineAndTheEffect) {
+    const auto path = folder_.path() / "translucency" / "translucency.glsl";
+    ASSERT_TRUE(writeFile(path,
+                          "#include \"effects/sample.glsl\"\n"
+                          "#include \"effects/sky_shares.glsl\"\n"
+                          "EffectSample sampleTranslucency(Hit hit, Surface surface, Features features,\n"
+                          "                                inout SkyShares sky) {\n"
+                          "    return nonsense;\n"
+                          "}\n"));
+    const Result<CompiledPackage> package =
+        compilePackage(sheetAndPanel(model()), settingsWith({"translucency"}));
+    ASSERT_FALSE(package);
+    EXPECT_EQ(package.error().id, "glsl");
+    EXPECT_EQ(package.error().where, path.string() + ":5");
+    EXPECT_NE(package.error().message.find("effect translucency"), std::string::npos)
+        << package.error().message;
+}
+
 // In Glint's own sources the same folder needs no other change either: the declarations that the build would
 // embed are those of the sources and this one, and the package is the same.
 TEST_F(EffectOfThePage, IsTheSameInTheSources) {

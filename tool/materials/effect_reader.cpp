@@ -117,6 +117,9 @@ EffectDeclaration readEffect(const Members& members, std::string_view file, bool
     }
     effect.declaration = file;
     effect.about = members.text("about");
+    if (!effect.about.ends_with('.')) {
+        failAt(members.at("about"), "must be a sentence, with its full stop");
+    }
     effect.kind = choose(kKinds, members, "kind", members.text("kind")).kind;
     effect.order = members.number("order", kUnlimited);
     effect.isOfPack = isOfPack;

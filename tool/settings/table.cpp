@@ -155,8 +155,7 @@ constexpr Descriptor kRows[] = {
      .commands = kMakers,
      .stage = SettingStage::Package,
      .group = kEffectOptions,
-     .what = "which effects the package has, separated by commas; no scene calls for some, which have to be "
-             "named",
+     .what = "which effects the package has, separated by commas",
      .values = kEffects,
      .bench = {.use = BenchUse::Swept,
                .exact = "",

@@ -228,7 +228,9 @@ inline std::vector<SettingWord> effectWords() {
     std::vector<SettingWord> words{
         {std::string(kAuto), ""}, {std::string(kNone), "no effect"}, {std::string(kAll), "every effect"}};
     for (const EffectDeclaration& effect : builtinMaterialModel().effects) {
-        words.push_back({effect.name, effect.refines.empty() ? "" : "has to be named"});
+        std::string what = effect.about.substr(0, effect.about.size() - 1);
+        what.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(what.front())));
+        words.push_back({effect.name, what + (effect.refines.empty() ? "" : "; has to be named")});
     }
     return words;
 }
@@ -346,7 +348,7 @@ inline constexpr SettingValues kEffects{.form = ValueForm::List,
                                         .automatic = "those that the scenes call for",
                                         .type = "auto|none|all|LIST",
                                         .accepts = isEffectName,
-                                        .further = "a name of an effect of a pack"};
+                                        .further = "effects of packs (--materials)"};
 
 inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
                                          .text = hitLobesOf,

@@ -173,6 +173,7 @@ TEST(Declarations, OfEffectsSayWhatIsWrongAndWhere) {
     refuses(glowWith("\"glow\"", "\"glow-\""), "#/name: \"glow-\" must be words");
     refuses(glowWith("\"glow\"", "\"shadow\""), "declared twice");
     refuses(glowWith("\"glow\"", "\"auto\""), "has another meaning");
+    refuses(glowWith("It glows.", "It glows"), "#/about: must be a sentence");
     refuses(glowWith("\"rays\"", "\"ray\""), "#/kind: there is no \"ray\"; did you mean");
     refuses(glowWith("\"rays\"", "\"surface\""), "#/glsl/sample: there is no member");
     refuses(glowWith("{ \"sample\": \"glow.glsl\" }", "{}"), "#/glsl: has no \"sample\"");
