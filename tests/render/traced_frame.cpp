@@ -57,7 +57,7 @@ Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
         return counters.error();
     }
     frame.counters = *counters;
-    Result<std::vector<PixelPath>> paths = renderer.readCoverage();
+    Result<std::vector<PixelPath>> paths = renderer.readCoverage(package::kEffectReflection);
     if (!paths) {
         return paths.error();
     }
