@@ -2,6 +2,7 @@
 // covers every pair of values of two settings.
 #include "render/harness.h"
 #include "render/rooms.h"
+#include "support/nightly.h"
 
 #include <glint/package_modules.h>
 
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -116,11 +116,11 @@ std::vector<Pair> pairsOf(const Combination& combination) {
     return pairs;
 }
 
-// Chooses few combinations, greedily, that cover every pair of values of two settings. The nightly sweep sets
-// GLINT_NIGHTLY and takes all combinations.
+// Chooses few combinations, greedily, that cover every pair of values of two settings. The nightly sweep
+// takes all combinations.
 std::vector<Combination> chosenCombinations() {
     const std::vector<Combination> all = allCombinations();
-    if (std::getenv("GLINT_NIGHTLY") != nullptr) {
+    if (test::nightly()) {
         return all;
     }
     std::set<Pair> missing;
