@@ -1,6 +1,7 @@
 #include "render/harness.h"
 
 #include "image/compare.h"
+#include "support/shared_modules.h"
 
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/package.h>
@@ -46,7 +47,7 @@ LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
 
 Status LoadedScene::load(const Scene& scene, const CompileSettings& settings,
                          const std::function<void(scene_view::SceneViewData&)>& change) {
-    Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    Result<CompiledPackage> compiled = compilePackage(scene, settings, &sharedModules());
     if (!compiled) {
         return compiled.error();
     }

@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "emit/glsl/flatten.h"
 #include "emit/sources.h"
-#include "spirv/compiler.h"
+#include "support/shared_modules.h"
 
 #include <utility>
 
@@ -27,7 +27,7 @@ Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const Loade
     if (!glsl) {
         return glsl.error();
     }
-    return compileShader({shader, ShaderStage::Compute, glsl->withPlaces()}, {});
+    return compileComputeOnce(shader, glsl->withPlaces());
 }
 
 }  // namespace

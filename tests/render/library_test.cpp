@@ -11,6 +11,7 @@
 #include "render/pixel_test.h"
 #include "spirv/compiler.h"
 #include "spirv/optimize.h"
+#include "support/shared_modules.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -100,7 +101,7 @@ protected:
         settings.emitLibrary = true;
         settings.emitLinkable = true;
         Result<std::vector<PackageFile>> files =
-            makeLibrary(SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings);
+            makeLibrary(SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules());
         ASSERT_TRUE(files) << toString(files.error());
         files_ = std::move(*files);
     }

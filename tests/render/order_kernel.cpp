@@ -6,7 +6,7 @@
 #include "emit/modules.h"
 #include "package/shader_modules.h"
 #include "renderer/tile_sort.h"
-#include "spirv/compiler.h"
+#include "support/shared_modules.h"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
     std::erase_if(*modules, [](const ModuleSource& module) {
         return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
     });
-    return compileModules(std::move(*modules), 0, false);
+    return compileModules(std::move(*modules), 0, false, &sharedModules());
 }
 
 }  // namespace
@@ -119,8 +119,7 @@ Status OrderKernel::createPipelines() {
         }
         pipelines_.emplace(module.key, std::move(*pipeline));
     }
-    const Result<std::vector<std::uint32_t>> copy =
-        compileShader({"plain copy", ShaderStage::Compute, kPlainCopy}, {});
+    const Result<std::vector<std::uint32_t>> copy = compileComputeOnce("plain copy", kPlainCopy);
     if (!copy) {
         return copy.error();
     }

@@ -1,0 +1,31 @@
+#include "support/shared_modules.h"
+
+#include "emit/compile_modules.h"
+#include "spirv/compiler.h"
+
+#include <optional>
+#include <utility>
+
+namespace glint::testing {
+
+ModuleCache& sharedModules() {
+    constexpr std::uint64_t kMaxBytes = 512ULL << 20;
+    static CacheStore store({GLINT_BINARY_DIR "/tests/cache", kMaxBytes, {}});
+    static ModuleCache cache(store, moduleCompiler());
+    return cache;
+}
+
+Result<std::vector<std::uint32_t>> compileComputeOnce(const std::string& name, const std::string& glsl) {
+    const std::string text = "compute shader of a test\n" + glsl;
+    if (std::optional<CachedModule> found = sharedModules().find(text)) {
+        return std::move(found->spirv);
+    }
+    Result<CachedModule> compiled = compileMeasured({name, ShaderStage::Compute, glsl, {}}, {});
+    if (!compiled) {
+        return compiled.error();
+    }
+    sharedModules().put(text, *compiled);
+    return std::move(compiled->spirv);
+}
+
+}  // namespace glint::testing
