@@ -9,10 +9,14 @@ usage: scripts/sanitize.sh [--all]
 
 Builds the command and the replays of tests/fuzz with both sanitizers (preset sanitize, which needs Clang:
 scripts/setup.sh --sanitize) and runs
-  - every file of tests/fuzz/corpus through the reader that it was made for, and through the command;
-  - every command over the example scenes, with each strategy;
-  - explain, compile and render over the scenes of scripts/models.sh where they are; each scene is rendered with one of
-    the strategies in turn. With --all, these get every command and strategy, too (scripts/nightly.sh).
+  - every file of tests/fuzz/corpus through the reader that it was made for, and invalid scenes through both readers
+    of scenes;
+  - every eighth of these files through the command;
+  - every command over the small example scenes, with each strategy;
+  - explain over the gallery and the scenes of scripts/models.sh where they are. The gallery and every fourth of these
+    scenes are also compiled and rendered, each with one of the strategies in turn.
+With --all, as in scripts/nightly.sh, every file goes through the command, and every scene through every command and
+strategy.
 Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
 with a diagnostic.
 TEXT
@@ -94,11 +98,15 @@ check_scene() {
     rm -rf "$package"
 }
 
-# check_scene_quickly STRATEGY:SCENE: runs what most scenes differ in, with one strategy.
-check_scene_quickly() {
+# explain_scene SCENE: reads the scene and plans.
+explain_scene() {
+    check 0 "$build/bin/glint" explain "$1" --plan --merge auto
+}
+
+# render_scene STRATEGY:SCENE: compiles and renders for one strategy.
+render_scene() {
     local strategy=${1%%:*} scene=${1#*:} glint=$build/bin/glint package
     package=$(mktemp -d "$work/packages/XXXXXX")
-    check 0 "$glint" explain "$scene" --plan --merge auto
     check 0 "$glint" compile "$scene" -o "$package/a" --strategy "$strategy" --lock "$package/ids.lock"
     check 0 "$glint" render "$scene" -o "$package/a.exr" --package "$package/a" --size 32x18 --strategy "$strategy"
     rm -rf "$package"
@@ -115,6 +123,17 @@ check_farm() {
     for shell in bash zsh fish; do
         check 0 "$glint" completion "$shell"
     done
+}
+
+# replay FOLDER: runs the files of a folder of tests/fuzz/corpus through their reader, in one process.
+replay() {
+    check 0 "$build/tests/fuzz_${1##*/}" "$1"
+}
+
+# replay_scenes READER: runs invalid scenes through a reader of scenes.
+replay_scenes() {
+    mapfile -d '' folders < <(find "$models/invalid" -type f -printf '%h\0' | sort -zu)
+    check 0 "$build/tests/fuzz_$1" "${folders[@]}"
 }
 
 # check_input FILE: runs the reader of a file of tests/fuzz/corpus, which its folder determines, or of a scene
@@ -163,22 +182,31 @@ each() {
         xargs -0 -n "$batch" -P "$(nproc)" bash -c 'for file in "${@:2}"; do "$1" "$file"; done' _ "$function"
 }
 
-export build work
-export -f check check_scene check_scene_quickly check_input
+# every COUNT WORD…: prints the first of each COUNT words, with a 0 byte behind each.
+every() {
+    local count=$1 i
+    shift
+    for ((i = 1; i <= $#; i += count)); do
+        printf '%s\0' "${!i}"
+    done
+}
+
+export build work models
+export -f check check_scene explain_scene render_scene replay replay_scenes check_input
 
 say "replays of the corpus"
-for folder in tests/fuzz/corpus/*; do
-    check 0 "$build/tests/fuzz_${folder##*/}" "$folder"
-done
+each 1 replay tests/fuzz/corpus/*
+if [[ -d $models/invalid ]]; then
+    each 1 replay_scenes gltf_json gltf_glb
+fi
 
 mapfile -d '' inputs < <(find tests/fuzz/corpus "$models/invalid" -type f \
-    \( -path '*/corpus/*' -o -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null || true)
+    \( -path '*/corpus/*' -o -name '*.gltf' -o -name '*.glb' \) -print0 2>/dev/null | sort -z || true)
+if [[ $all == false ]]; then
+    mapfile -d '' inputs < <(every 8 "${inputs[@]}")
+fi
 say "${#inputs[@]} inputs through the command"
 each 16 check_input "${inputs[@]}"
-
-check 0 "$build/bin/gallery" "$work/gallery"
-say "a plan of two scenes, by Ninja"
-check_farm examples/cmake-consumer/scene/cubes.gltf "$work/gallery/gallery.gltf"
 
 # scenes_in FOLDER…: prints the scenes, with a 0 byte behind each. A scene with only KTX2 textures is an error in a build
 # without the transcoder.
@@ -187,25 +215,34 @@ scenes_in() {
     if "$build/bin/glint" --version | grep -q 'KTX2.*not built in'; then
         without=(! -path '*-ktx2/*')
     fi
-    find "$@" \( -name '*.gltf' -o -name '*.glb' \) "${without[@]}" -print0 2>/dev/null || true
+    find "$@" \( -name '*.gltf' -o -name '*.glb' \) "${without[@]}" -print0 2>/dev/null | sort -z || true
 }
 
-# The gallery comes first, because it takes longest.
-mapfile -d '' scenes < <(scenes_in "$work/gallery" examples)
+check 0 "$build/bin/gallery" "$work/gallery"
+gallery=$work/gallery/gallery.gltf
+farm=(examples/cmake-consumer/scene/cubes.gltf examples/engine/scene/engine.gltf)
+mapfile -d '' scenes < <(scenes_in examples)
 mapfile -d '' others < <(scenes_in "$models/large" "$models/features")
 if [[ $all == true ]]; then
-    scenes+=("${others[@]}")
+    farm[1]=$gallery
+    # The gallery comes first, because it takes longest.
+    scenes=("$gallery" "${scenes[@]}" "${others[@]}")
     others=()
 fi
+say "a plan of two scenes, by Ninja"
+check_farm "${farm[@]}"
 say "${#scenes[@]} scenes through every command"
 each 1 check_scene "${scenes[@]}"
-if [[ ${#others[@]} -gt 0 ]]; then
-    strategies=(uber visibility sorted-uber hit-shaders)
-    for i in "${!others[@]}"; do
-        others[i]=${strategies[i % 4]}:${others[i]}
+if [[ $all == false ]]; then
+    say "$((${#others[@]} + 1)) scenes through explain"
+    each 2 explain_scene "$gallery" "${others[@]}"
+    mapfile -d '' rendered < <(every 4 "$gallery" "${others[@]}")
+    strategies=(hit-shaders uber visibility sorted-uber)
+    for i in "${!rendered[@]}"; do
+        rendered[i]=${strategies[i % 4]}:${rendered[i]}
     done
-    say "${#others[@]} scenes through explain, compile and render"
-    each 1 check_scene_quickly "${others[@]}"
+    say "${#rendered[@]} of them through compile and render"
+    each 1 render_scene "${rendered[@]}"
 fi
 
 if [[ -n $(ls "$work/failed") ]]; then

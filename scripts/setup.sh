@@ -140,6 +140,7 @@ add_sanitizer_needs() {
     esac
     needs+=(
         "command clang++|clang"
+        "command ld.lld|lld"
         "command llvm-symbolizer|llvm"
         "file /usr/lib/llvm-$version/lib/clang/*/lib/linux/libclang_rt.asan-*.a|libclang-rt-$version-dev"
     )

@@ -83,7 +83,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
         back += ambientTransmission(surface, features) * sky.transmitted;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        back += surface.bsdf.diffuseTransmitted * (below * sky.diffuse) * hostSkyIrradianceOverPi(-surface.normal);
+        back += surface.bsdf.diffuseTransmitted * (below * sky.behind) * hostSkyIrradianceOverPi(-surface.normal);
     }
     return addSkyOfLayers(surface, features, view, sky, open, front * open + back);
 }

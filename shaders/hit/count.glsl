@@ -23,7 +23,7 @@ uint counterCopy() {
 
 // The index of a count (kRay*, kCount*) of an effect.
 uint counterOf(uint effect, uint kind) {
-    uint number = kEffectCount * counterCopy() + uint(findLSB(effect));
+    uint number = GLINT_EFFECT_COUNT * counterCopy() + uint(findLSB(effect));
     return kCounterEffects + kCountsOfEffect * number + kind;
 }
 

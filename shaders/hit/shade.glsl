@@ -1,8 +1,8 @@
 // shade(): the one function that every strategy calls for a hit. Here it answers with the light that comes back.
 #include "effects/ambient.glsl"
+#include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
 #include "hit/material.glsl"
-#include "hit/samples.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 
@@ -83,12 +83,7 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
 ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     SkyShares sky = wholeSky();
-#if GLINT_EFFECT_REFRACTION
-    if (hasLobe(features, GLINT_TRANSMISSION) && hit.target / pixelCount() == GLINT_SLOT_REFRACTION) {
-        // The walk of the refracted ray has chosen the light that does not pass.
-        sky.transmitted = 0.0;
-    }
-#endif
+    changeSkyOfHit(hit, features, sky);
     result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
     chooseLight(hit, surface, features, result);
     return result;

@@ -149,14 +149,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray
 
 GLINT_INTEROP_BEGIN
 
-// The bits of effects, as in package::Effect.
-GLINT_CONSTANT(kEffectShadow, 1u);
-GLINT_CONSTANT(kEffectAmbientOcclusion, 2u);
-GLINT_CONSTANT(kEffectReflection, 4u);
-GLINT_CONSTANT(kEffectRefraction, 8u);
-GLINT_CONSTANT(kEffectIndirectDiffuse, 16u);
-GLINT_CONSTANT(kEffectCount, 5u);
-
 // Whether a surface sends a ray of an effect, or why it doesn't. These are also the first counts of an effect.
 GLINT_CONSTANT(kRaySent, 0u);
 GLINT_CONSTANT(kRayNoSurface, 1u);  // the pixel shows the sky
@@ -182,13 +174,11 @@ GLINT_CONSTANT(kCounterRays, 0u);           // rays appended to the list
 GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays in the list
 GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
 GLINT_CONSTANT(kCounterOrderErrors, 3u);    // lost, doubled or misplaced hits, found by the check of the order
-// These counters exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the order of
-// their bits.
-GLINT_CONSTANT(kCounterEffects, 4u);
+GLINT_CONSTANT(kCounterNonFinite, 4u);      // pixels whose sample was not a number and was taken as black
+// The counters from here on exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the
+// order of their bits up to the package's last one.
+GLINT_CONSTANT(kCounterEffects, 5u);
 GLINT_CONSTANT(kCounterCopies, 64u);
-// Pixels whose sample was not a number and was taken as black.
-GLINT_CONSTANT(kCounterNonFinite, kCounterEffects + kCounterCopies * kEffectCount * kCountsOfEffect);
-GLINT_CONSTANT(kCounterCount, kCounterNonFinite + 1u);
 
 // FrameConstants::binning: the criterion by which rays of a workgroup are sorted before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);
@@ -298,7 +288,7 @@ GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the prim
 GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over the samples so far, linear
 GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding leaves out of that mean
 GLINT_CONSTANT(kBindingPosition, 4u);     // rgba32f: ray origin off the surface; geometric normal, octahedral, bits
-                                          // 2x16snorm. In packages with reflection, for the march over the screen
+                                          // 2x16snorm. In packages with an effect that starts on the screen
 GLINT_CONSTANT(kFrameImageCount, 5u);
 // The set also holds:
 GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map

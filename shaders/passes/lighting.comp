@@ -71,7 +71,7 @@ void main() {
         }
     }
     imageStore(radianceImage, place, radianceDepth);
-#if GLINT_EFFECT_REFLECTION
+#if GLINT_STARTS_ON_SCREEN
     imageStore(positionImage, place, position);
 #endif
 }

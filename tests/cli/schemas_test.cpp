@@ -195,14 +195,16 @@ TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
     ASSERT_FALSE(declarationFiles().empty());
     for (const BuiltinFile& file : declarationFiles()) {
         SCOPED_TRACE(file.name);
-        expectFits("material_feature", Json::parse(file.text));
+        expectFits(file.name.starts_with("effects/") ? "effect" : "material_feature", Json::parse(file.text));
     }
+    EXPECT_FALSE(fits("effect", Json{{"name", "glow"}, {"about", "It glows."}, {"kind", "glowing"}}));
     EXPECT_FALSE(
         fits("material_feature", Json{{"name", "wet"}, {"stage", "layer"}, {"neutrl", Json::array()}}));
 }
 
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
     expectFits("material_feature", exampleIn("material_features.md", "## A declaration"));
+    expectFits("effect", exampleIn("effects.md", "## An effect of your own"));
     expectFits("compile", exampleIn("cli.md", "## glint compile"));
     expectFits("lint", exampleIn("lint.md", "## JSON"));
     const Json diagnostic = exampleIn("cli.md", "## What is reported");

@@ -1,4 +1,4 @@
-// Fuzzes the declaration of a material feature of a pack, beside those of Glint.
+// Fuzzes the declaration of a material feature or an effect of a pack, beside those of Glint.
 #include "fuzz/fuzz_target.h"
 #include "materials/declaration_files.h"
 #include "materials/declarations.h"
@@ -23,6 +23,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     }
     for (const glint::Feature& feature : glint::builtinMaterialModel().features) {
         require(model->mask(feature.name) == feature.mask(), "a pack moves no bit of Glint's own features");
+    }
+    const std::vector<glint::EffectDeclaration>& effects = glint::builtinMaterialModel().effects;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        require(model->effects[i].name == effects[i].name, "a pack moves no bit of Glint's own effects");
     }
     glint::FeatureMask all = 0;
     for (const glint::Feature& feature : model->features) {

@@ -4,6 +4,7 @@
 #include "oracle/irradiance.h"
 #include "oracle/light.h"
 #include "oracle/scene_file.h"
+#include "support/effect_bits.h"
 
 namespace {
 

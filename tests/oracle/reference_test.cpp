@@ -4,6 +4,7 @@
 #include "oracle/comparison.h"
 #include "oracle/device.h"
 #include "oracle/scene_file.h"
+#include "support/effect_bits.h"
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "oracle/device.h"
 #include "oracle/light.h"
 #include "oracle/scene_file.h"
+#include "support/effect_bits.h"
 
 namespace {
 

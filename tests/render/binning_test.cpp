@@ -1,6 +1,7 @@
 // Rays are sorted by direction within their workgroup. The list must stay complete, and the picture the same.
 #include "render/scene_builder.h"
 #include "render/traced_frame.h"
+#include "support/effect_bits.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 // nothing.
 #include "render/pixel_test.h"
 #include "render/rooms.h"
+#include "support/effect_bits.h"
 
 #include <gtest/gtest.h>
 
@@ -78,8 +79,8 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     for (const package::Effect effect :
          {package::kEffectReflection, package::kEffectRefraction, package::kEffectIndirectDiffuse}) {
         const EffectCounters counters = first.of(effect);
-        EXPECT_GT(counters.rays, 0U) << package::nameOf(effect);
-        EXPECT_EQ(counters.hits + counters.misses, counters.rays) << package::nameOf(effect);
+        EXPECT_GT(counters.rays, 0U) << effect;
+        EXPECT_EQ(counters.hits + counters.misses, counters.rays) << effect;
     }
     EXPECT_GT(first.of(package::kEffectRefraction).segments, 0U);
     EXPECT_GT(first.of(package::kEffectShadow).rays, 0U);
@@ -99,8 +100,8 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
         EXPECT_EQ(counters.orderErrors, 0U) << what;
         for (const EffectCounters& effect : counters.effects) {
             const EffectCounters other = first.of(effect.effect);
-            EXPECT_EQ(effect.rays, other.rays) << what << ", " << package::nameOf(effect.effect);
-            EXPECT_EQ(effect.hits, other.hits) << what << ", " << package::nameOf(effect.effect);
+            EXPECT_EQ(effect.rays, other.rays) << what << ", " << effect.name;
+            EXPECT_EQ(effect.hits, other.hits) << what << ", " << effect.name;
         }
     }
 }

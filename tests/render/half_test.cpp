@@ -3,6 +3,7 @@
 #include "image/compare.h"
 #include "render/pixel_test.h"
 #include "render/rooms.h"
+#include "support/effect_bits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -95,7 +95,7 @@ Result<std::unique_ptr<OrderBuffers>> createOrderBuffers(Context::State& context
         kOrderBuffersWord;
     const VkDeviceSize bucketBytes = VkDeviceSize{bucketCount} * kOrderBuffersWord;
     const VkDeviceSize dispatchBytes = (VkDeviceSize{bucketCount} + 1) * sizeof(gpu::DispatchArguments);
-    constexpr VkDeviceSize kCounterBytes = gpu::kCounterCount * kOrderBuffersWord;
+    constexpr VkDeviceSize kCounterBytes = gpu::kCounterEffects * kOrderBuffersWord;
     const struct {
         Buffer& target;
         VkDeviceSize bytes;
@@ -189,7 +189,7 @@ void recordOutput(Context::State& context, VkCommandBuffer commands, const Order
 OrderResult readResult(const OrderBuffers& buffers) {
     const std::size_t bucketCount = buffers.values.bucketCount;
     OrderResult result;
-    std::array<std::uint32_t, gpu::kCounterCount> counters{};
+    std::array<std::uint32_t, gpu::kCounterEffects> counters{};
     result.counts.resize(bucketCount);
     result.begins.resize(bucketCount);
     result.cursors.resize(bucketCount);

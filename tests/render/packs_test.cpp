@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "gltf/import.h"
 #include "render/pixel_test.h"
+#include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 #include <map>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -145,27 +145,11 @@ TEST(Packs, FibresAreThoseOfDoublePrecision) {
     }
 }
 
-// Returns the code of a document that stands below a line with the file's name in bold: "**wax/wax.json**".
-std::string printedFile(std::string_view document, const std::string& name) {
-    const std::size_t title = document.find("**" + name + "**");
-    const std::size_t begin = document.find('\n', document.find("```", title)) + 1;
-    return title == std::string_view::npos
-               ? ""
-               : std::string(document.substr(begin, document.find("```", begin) - begin));
-}
-
 // The page's lobe is added by the three files that it prints, and by nothing else.
 TEST(Packs, ThePageAddsALobe) {
-    const Result<Bytes> page = readFile(GLINT_SOURCE_DIR "/docs/material_features.md");
-    ASSERT_TRUE(page);
-    const std::string_view text(reinterpret_cast<const char*>(page->data()), page->size());
     const test::TemporaryFolder folder;
-    for (const char* const name : {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"}) {
-        const std::string file = printedFile(text, name);
-        ASSERT_FALSE(file.empty()) << name;
-        fs::create_directories((folder.path() / name).parent_path());
-        ASSERT_TRUE(writeFile(folder.path() / name, file));
-    }
+    test::writePrintedFiles("material_features.md", folder.path(),
+                            {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"});
     const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
     ASSERT_TRUE(model) << toString(model.error());
     Material material = blackMaterial(**model);

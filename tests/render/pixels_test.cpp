@@ -2,6 +2,7 @@
 // test holds for both strategies.
 #include "context/context_state.h"
 #include "render/pixel_test.h"
+#include "support/effect_bits.h"
 
 #include <cmath>
 

@@ -2,6 +2,7 @@
 // where it finds nothing, the picture is that of rays.
 #include "render/pixel_test.h"
 #include "render/traced_frame.h"
+#include "support/effect_bits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "context/commands.h"
 #include "context/resources.h"
 #include "renderer/renderer_state.h"
+#include "support/effect_bits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +57,7 @@ Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
         return counters.error();
     }
     frame.counters = *counters;
-    Result<std::vector<PixelPath>> paths = renderer.readCoverage();
+    Result<std::vector<PixelPath>> paths = renderer.readCoverage(package::kEffectReflection);
     if (!paths) {
         return paths.error();
     }

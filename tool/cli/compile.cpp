@@ -112,7 +112,7 @@ std::string chosenEffects(const EffectPlan& effects) {
     std::vector<std::string_view> names;
     for (const EffectDecision& decision : effects.decisions) {
         if (decision.chosen) {
-            names.push_back(package::nameOf(decision.effect));
+            names.push_back(decision.name);
         }
     }
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -198,8 +198,9 @@ std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes) {
 // Adds to the strategies, if they contain "auto", the one that should be fastest for a frame of 1920 x 1080
 // of each scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the
 // choice is hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
-// adviseStrategy(). `known` is the plan with these options, or null if it has not been made.
-Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const Plan* known,
+// adviseStrategy(). `made` is the plan with these options; if it is needed, it is
+// made here at the latest.
+Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, std::optional<Plan>& made,
                         CompileArguments& arguments) {
     Settings& settings = arguments.settings;
     if (!settings.advisesStrategy) {
@@ -210,27 +211,29 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, const 
         return costs.error();
     }
     FrameShape shape;
-    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects;
+    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
     shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
-    const Plan made = known != nullptr ? Plan() : makePlan(scenes.materials(), scenes.primitives(), plan);
+    if (!made) {
+        made = makePlan(scenes.materials(), scenes.primitives(), plan);
+    }
     Result<StrategyAdvice> advice = measure::adviseStrategy(
-        *costs, measure::roundsOf(scenes, known != nullptr ? *known : made, plan, shape),
+        *costs, measure::roundsOf(scenes, *made, plan, shape),
         measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
     if (!advice) {
         return advice.error();
     }
     const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
     settings.compile.strategies |=
-        chosen | (chosen == package::kStrategyHitShaders ? std::uint32_t{package::kStrategyUber} : 0U);
+        chosen | ((chosen & package::kPipelineStrategies) != 0 ? std::uint32_t{package::kStrategyUber} : 0U);
     settings.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }
 
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
 int planOnly(const Console& console, const CompileArguments& arguments, std::span<const Scene> scenes,
-             const PlanOptions& options, const LockChoice& lock, std::span<const std::string> dependencies,
-             Clock::time_point start) {
-    const Result<PackagePlan> planned = planPackage(scenes, settingsOf(arguments, options));
+             const PlanOptions& options, std::optional<Plan> made, const LockChoice& lock,
+             std::span<const std::string> dependencies, Clock::time_point start) {
+    const Result<PackagePlan> planned = planPackage(scenes, settingsOf(arguments, options), std::move(made));
     if (!planned) {
         return fail(console, planned.error());
     }
@@ -327,15 +330,15 @@ int compile(const Console& console, const CompileArguments& given) {
     report(warningsOf(*scenes));
     report(plan->warnings);
     report(plan->notes);
-    const Result<LockChoice> lock = applyLock(arguments.lock, list, plan->options);
+    Result<LockChoice> lock = applyLock(arguments.lock, list, plan->options);
     if (!lock) {
         return fail(console, lock.error());
     }
     report(lock->warnings);
     report(lock->notes);
-    if (Status settled =
-            settleStrategies(list, plan->options, lock->plan ? &*lock->plan : nullptr, arguments);
-        !settled) {
+    // From here on there is one plan, made where it is first needed.
+    std::optional<Plan> made = std::move(lock->plan);
+    if (Status settled = settleStrategies(list, plan->options, made, arguments); !settled) {
         return fail(console, settled.error());
     }
     if (const std::optional<StrategyAdvice>& advice = arguments.settings.compile.strategyChoice) {
@@ -346,9 +349,9 @@ int compile(const Console& console, const CompileArguments& given) {
         return kExitFailed;
     }
     if (arguments.dryRun) {
-        const Plan made =
-            lock->plan ? *lock->plan : makePlan(list.materials(), list.primitives(), plan->options);
-        return dryRun(console, Outcome{arguments, list, made}, plan->options, start);
+        const Plan planned =
+            made ? std::move(*made) : makePlan(list.materials(), list.primitives(), plan->options);
+        return dryRun(console, Outcome{arguments, list, planned}, plan->options, start);
     }
     // The files of scenes come first, each in the state in which it was read.
     const std::vector<FileState> sceneFiles = filesOf(*scenes);
@@ -362,11 +365,12 @@ int compile(const Console& console, const CompileArguments& given) {
         return fail(console, listed.error());
     }
     if (!arguments.planOnly.empty()) {
-        return planOnly(console, arguments, *scenes, plan->options, *lock, dependencies, start);
+        return planOnly(console, arguments, *scenes, plan->options, std::move(made), *lock, dependencies,
+                        start);
     }
     console.progress("compiling " + join(arguments.scenes));
-    const Result<CompiledPackage> package =
-        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)), cache.modules());
+    const Result<CompiledPackage> package = compilePackage(
+        *scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(), std::move(made));
     if (!package) {
         return fail(console, package.error());
     }

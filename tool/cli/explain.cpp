@@ -231,7 +231,7 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
 Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
                               const EffectPlan& effects) {
     FrameShape shape;
-    shape.effects = effects.effects;
+    shape.effects = effects.effects.all;
     return measure::adviseStrategy(
         costs, measure::roundsOf(planned.scenes, planned.plan, planned.options, shape),
         measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);

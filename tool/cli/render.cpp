@@ -52,7 +52,7 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
             measure::addsSun(arguments, scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
                 return light.shines() || light.canShine;
             });
-        if (checked && isLit && (package->shape().effects & package::kEffectShadow) == 0) {
+        if (checked && isLit && package->shape().effects.lights == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
                                       "has no effect shadow, so the lights of the picture cast no shadows",
                                       "compile it with --effects auto,shadow, or render with --sun off"});

@@ -63,9 +63,10 @@ Status checkPositionFetch(const CompileSettings& settings, const std::string& wh
                 glslangVersion()),
             "build glint with glslang 12.2 or newer, as Debian 13 has it, or leave out --position-fetch");
     }
-    const bool uber = (settings.strategies & package::kStrategyUber) != 0 &&
-                      (settings.tracers & package::kTracerRayQuery) != 0;
-    if (!uber && (settings.strategies & package::kStrategyHitShaders) == 0) {
+    const std::uint32_t able = settings.strategies & ~package::kOrderedStrategies;
+    const bool byQuery =
+        (able & ~package::kPipelineStrategies) != 0 && (settings.tracers & package::kTracerRayQuery) != 0;
+    if (!byQuery && (able & package::kPipelineStrategies) == 0) {
         return makeError("position-fetch", where,
                          "no shader of this package could fetch positions: only uber with ray queries and "
                          "hit-shaders can, because they shade a hit where they find it",
@@ -108,11 +109,11 @@ struct Prepared {
     std::vector<ModuleSource> modules;
 };
 
-Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& settings) {
+Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& settings, std::optional<Plan> made) {
     if (Status valid = checkSettings(settings, scenes.path()); !valid) {
         return valid.error();
     }
-    Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    Plan plan = made ? std::move(*made) : makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     plan.effects = planEffects(scenes, settings);
     if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);
@@ -128,9 +129,9 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
 }
 
-Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings,
-                                ModuleCache* cache) {
-    Result<Prepared> prepared = prepare(scenes, settings);
+Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings, ModuleCache* cache,
+                                std::optional<Plan> made) {
+    Result<Prepared> prepared = prepare(scenes, settings, std::move(made));
     if (!prepared) {
         return prepared.error();
     }
@@ -169,9 +170,9 @@ Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& 
     return package;
 }
 
-// Hit shaders have a tracer of their own. If nothing else traces, it is the only tracer.
+// Some strategies have a tracer of their own. If nothing else traces, it is the only tracer.
 CompileSettings withOwnTracers(CompileSettings settings) {
-    if (settings.strategies == package::kStrategyHitShaders) {
+    if ((settings.strategies & ~package::kPipelineStrategies) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
     return settings;
@@ -222,9 +223,10 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
     return names;
 }
 
-Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings) {
+Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings,
+                                std::optional<Plan> made) {
     return guarded<PackagePlan>(scenes, [&]() -> Result<PackagePlan> {
-        Result<Prepared> prepared = prepare(SceneList(scenes), withOwnTracers(settings));
+        Result<Prepared> prepared = prepare(SceneList(scenes), withOwnTracers(settings), std::move(made));
         if (!prepared) {
             return prepared.error();
         }
@@ -234,9 +236,9 @@ Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSett
 }
 
 Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache) {
+                                       ModuleCache* cache, std::optional<Plan> made) {
     return guarded<CompiledPackage>(
-        scenes, [&] { return compile(SceneList(scenes), withOwnTracers(settings), cache); });
+        scenes, [&] { return compile(SceneList(scenes), withOwnTracers(settings), cache, std::move(made)); });
 }
 
 }  // namespace glint

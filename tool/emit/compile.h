@@ -64,15 +64,18 @@ struct PackagePlan {
     Plan plan;
     std::vector<PlannedModule> modules;
 };
-// Plans a package. Has the errors of compilePackage(), except those of compiling.
-Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings);
+// Plans a package. Has the errors of compilePackage(), except those of compiling. `made` is what makePlan()
+// has made of the scenes with settings.plan, if that was needed before.
+Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings,
+                                std::optional<Plan> made = {});
 
 // Compiles one package for `scenes` (at least one): they share the cases, and each has its own tables.
 // Modules that `cache` has are not compiled; others are compiled and added to it. `cache` may be null.
 // Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
-// line (a defect of Glint itself); with settings.modules, also those of takeModules().
+// line (a defect of Glint itself); with settings.modules, also those of takeModules(). `made` is that of
+// planPackage().
 Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache = nullptr);
+                                       ModuleCache* cache = nullptr, std::optional<Plan> made = {});
 inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings,
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);

@@ -11,24 +11,15 @@ namespace mustache = kainjow::mustache;
 
 namespace {
 
+// Each effect has pairs of dimensions of the sequence (hit/sequence.glsl) of its own. Those below belong to
+// Glint's shaders.
+constexpr std::size_t kFirstPair = 1024;
+constexpr std::size_t kPairsOfEffect = 4;
+
 // At rest, or at a time of an animation.
 bool isLit(const Scene& scene) {
     return std::ranges::any_of(scene.lights,
                                [](const Light& light) { return light.shines() || light.canShine; });
-}
-
-std::string upperCase(std::string_view name) {
-    std::string text(name);
-    std::ranges::transform(text, text.begin(), [](char c) {
-        return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    });
-    return text;
-}
-
-mustache::data entryOf(std::uint32_t effects, const package::EffectInfo& info) {
-    mustache::data entry;
-    addEffect(entry, effects, info.effect);
-    return entry;
 }
 
 }  // namespace
@@ -39,9 +30,12 @@ EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings)
     if (settings.passes == package::Passes::Steps) {
         // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
         const bool lights = settings.answer == package::HitAnswer::Radiance;
-        plan.effects &= lights ? package::kEffectShadow : 0U;
+        const std::vector<EffectDeclaration>& declared = scenes.materials().empty()
+                                                             ? builtinMaterialModel().effects
+                                                             : scenes.materials().front().model().effects;
+        plan.effects = effectSetOf(declared, lights ? plan.effects.lights : 0U);
         for (EffectDecision& decision : plan.decisions) {
-            if (decision.chosen && (plan.effects & decision.effect) == 0) {
+            if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
                 decision.chosen = false;
                 decision.reason = "the steps of a host's own rays have no effects but the shadows of hits";
             }
@@ -50,49 +44,57 @@ EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings)
     return plan;
 }
 
-std::string effectDefines(std::uint32_t effects) {
+std::string effectDefines(const MaterialModel& model, const package::EffectSet& effects) {
     std::string text;
-    for (const package::EffectInfo& info : package::kEffects) {
-        const std::string name = upperCase(info.file);
-        const bool chosen = (effects & info.effect) != 0;
-        text += fmt::format("#define GLINT_EFFECT_{} {}\n", name, chosen ? 1 : 0);
-        if (chosen && info.kind == package::EffectKind::Rays) {
+    std::string bits;
+    for (std::size_t i = 0; i < model.effects.size(); ++i) {
+        const EffectDeclaration& effect = model.effects[i];
+        const package::Effect bit = infoOf(effect, i).effect;
+        text += fmt::format("#define GLINT_EFFECT_{} {}\n", effect.macro(), (effects.all & bit) != 0 ? 1 : 0);
+        if ((effects.rays & bit) != 0) {
             text +=
-                fmt::format("#define GLINT_SLOT_{} {}u\n", name, package::effectSlot(effects, info.effect));
+                fmt::format("#define GLINT_SLOT_{} {}u\n", effect.macro(), package::effectSlot(effects, bit));
         }
+        if ((effects.all & bit) != 0) {
+            text +=
+                fmt::format("#define GLINT_PAIRS_{} {}u\n", effect.macro(), kFirstPair + kPairsOfEffect * i);
+        }
+        bits += fmt::format("const uint kEffect{} = {}u;\n", effect.function(), bit);
     }
-    return text;
+    text += fmt::format("#define GLINT_EFFECT_COUNT {}u\n", package::countedEffects(effects));
+    text += fmt::format("#define GLINT_STARTS_ON_SCREEN {}\n", effects.screenStarts != 0 ? 1 : 0);
+    return text + bits;
 }
 
-void addEffect(mustache::data& context, std::uint32_t effects, package::Effect effect) {
-    const package::EffectInfo& info = package::effectInfo(effect);
-    context.set("name", std::string(info.name));
-    context.set("file", std::string(info.file));
-    context.set("function", std::string(info.function));
-    context.set("bit", fmt::format("kEffect{}", info.function));
-    context.set("start", info.screenStart ? fmt::format("{}_start", info.file) : "plain_start");
-    context.set("slot", fmt::format("{}", package::effectSlot(effects, effect)));
+void addEffect(mustache::data& context, const MaterialModel& model, const package::EffectSet& effects,
+               std::size_t number) {
+    const EffectDeclaration& effect = model.effects[number];
+    const auto file = [](const std::string& name) {
+        return name.empty() ? mustache::data(false) : mustache::data(name);
+    };
+    context.set("name", effect.name);
+    context.set("function", effect.function());
+    context.set("bit", fmt::format("kEffect{}", effect.function()));
+    context.set("main", effect.main());
+    context.set("compose", file(effect.compose));
+    context.set("hit", file(effect.hit));
+    context.set("start", effect.start.empty() ? "effects/plain_start.glsl" : effect.start);
+    context.set("slot", fmt::format("{}", package::effectSlot(effects, infoOf(effect, number).effect)));
 }
 
-void addEffects(mustache::data& context, std::uint32_t effects) {
-    mustache::data all(mustache::data::type::list);
-    mustache::data surface(mustache::data::type::list);
-    mustache::data rays(mustache::data::type::list);
-    for (const package::EffectInfo& info : package::kEffects) {
-        if ((effects & info.effect) == 0) {
-            continue;
-        }
-        all.push_back(entryOf(effects, info));
-        if (info.kind == package::EffectKind::Surface) {
-            surface.push_back(entryOf(effects, info));
-        }
-        if (info.kind == package::EffectKind::Rays) {
-            rays.push_back(entryOf(effects, info));
-        }
-    }
-    context.set("effects", all);
-    context.set("surfaceEffects", surface);
-    context.set("rayEffects", rays);
+void addEffects(mustache::data& context, const MaterialModel& model, const package::EffectSet& effects) {
+    const auto list = [&](std::uint32_t bits) {
+        mustache::data entries(mustache::data::type::list);
+        package::forEachEffect(bits, [&](std::uint32_t number) {
+            mustache::data entry;
+            addEffect(entry, model, effects, number);
+            entries.push_back(entry);
+        });
+        return entries;
+    };
+    context.set("effects", list(effects.all));
+    context.set("surfaceEffects", list(effects.surfaces));
+    context.set("rayEffects", list(effects.rays));
 }
 
 }  // namespace glint

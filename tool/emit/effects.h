@@ -14,12 +14,14 @@ namespace glint {
 // Decides by the materials that primitives use, and by the lights.
 EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings);
 
-// Returns the effects' macros for generated/scene.glsl.
-std::string effectDefines(std::uint32_t effects);
+// Returns the effects' macros and bits for generated/scene.glsl.
+std::string effectDefines(const MaterialModel& model, const package::EffectSet& effects);
 
-// Adds the fields for effects.glsl.mustache and compose_effects.glsl.mustache.
-void addEffects(kainjow::mustache::data& context, std::uint32_t effects);
-// Adds the fields for effect_rays.comp.mustache: one effect that sends rays.
-void addEffect(kainjow::mustache::data& context, std::uint32_t effects, package::Effect effect);
+// Adds the fields for the templates that call the effects of a package.
+void addEffects(kainjow::mustache::data& context, const MaterialModel& model,
+                const package::EffectSet& effects);
+// Adds the fields for effect_rays.comp.mustache: the effect with that number, which sends rays.
+void addEffect(kainjow::mustache::data& context, const MaterialModel& model,
+               const package::EffectSet& effects, std::size_t number);
 
 }  // namespace glint

@@ -31,7 +31,7 @@ constexpr std::string_view kAdapters = "library/host/";
 
 // Puts the library's forms in the place of the files that read resources.
 Result<SourceSet> librarySources(const SceneList& scenes, Plan plan, CompileSettings settings) {
-    plan.effects.effects = 0;
+    plan.effects.effects = {};
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
     settings.answer = package::HitAnswer::Radiance;

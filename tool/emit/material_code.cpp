@@ -268,19 +268,31 @@ Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const 
         error.hint = "correct the file; docs/host.md says which functions it must have";
         return error;
     }
+    const auto isBeside = [&](const std::string& declaration) {
+        const std::string folder = declaration.substr(0, declaration.rfind('/') + 1);
+        return !folder.empty() && error.where.starts_with(folder);
+    };
+    for (const EffectDeclaration& effect : model.effects) {
+        if (effect.isOfPack && isBeside(effect.declaration)) {
+            error.message += fmt::format("; it is GLSL of the effect {}", effect.name);
+            error.hint = "correct the file; docs/effects.md says which functions it must have";
+            return error;
+        }
+    }
     for (const FeatureCode& code : model.code) {
-        const std::string folder = code.declaration.substr(0, code.declaration.rfind('/') + 1);
-        if (code.isOfPack && !folder.empty() && error.where.starts_with(folder)) {
+        if (code.isOfPack && isBeside(code.declaration)) {
             error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
             error.hint = "correct the file; docs/material_features.md says what each stage may use";
             return error;
         }
     }
-    error.hint = host.empty()
-                     ? "look whether a pack has all functions of its stages (docs/material_features.md); "
-                       "otherwise this is a defect of Glint"
-                     : "look whether the files of --host have all functions of those that they replace "
-                       "(docs/host.md), and packs those of their stages; otherwise this is a defect of Glint";
+    error.hint =
+        host.empty()
+            ? "look whether a pack has all functions of its stages and effects (docs/material_features.md, "
+              "docs/effects.md); "
+              "otherwise this is a defect of Glint"
+            : "look whether the files of --host have all functions of those that they replace "
+              "(docs/host.md), and packs those of their stages; otherwise this is a defect of Glint";
     return error;
 }
 

@@ -31,7 +31,7 @@ constexpr StageName kStages[] = {
     {ShaderStage::Miss, "rmiss"},
 };
 
-std::string_view stageName(ShaderStage stage) {
+std::string_view nameInText(ShaderStage stage) {
     for (const StageName& entry : kStages) {
         if (entry.stage == stage) {
             return entry.name;
@@ -57,7 +57,7 @@ Diagnostic formatError(const std::string& name, const std::string& why) {
 }  // namespace
 
 std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
-    std::string text = fmt::format("{}\n{}{}\n", kFirstLine, kStage, stageName(source.stage));
+    std::string text = fmt::format("{}\n{}{}\n", kFirstLine, kStage, nameInText(source.stage));
     for (const std::string& function : source.functionsApart) {
         text += fmt::format("{}{}\n", kApart, function);
     }

@@ -40,30 +40,33 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::Lighting, "passes/lighting.comp"},
     {ModuleRole::EffectRays, "effect_rays.comp.mustache"},
     {ModuleRole::RayDispatch, "passes/ray_dispatch.comp"},
-    {ModuleRole::UberShade, "passes/uber.comp"},
+    {ModuleRole::UberShade, "strategies/uber/uber.comp"},
     {ModuleRole::Trace, "passes/trace.comp"},
     {ModuleRole::BucketCount, "passes/bucket_count.comp"},
     {ModuleRole::BucketOffset, "passes/bucket_offset.comp"},
     {ModuleRole::BucketCopy, "passes/bucket_copy.comp"},
-    {ModuleRole::ShadeMiss, "passes/shade_miss.comp"},
-    {ModuleRole::ShadeCase, "shade_case.comp.mustache"},
+    {ModuleRole::ShadeMiss, "strategies/visibility/shade_miss.comp"},
+    {ModuleRole::ShadeCase, "strategies/visibility/shade_case.comp.mustache"},
     {ModuleRole::Compose, "passes/compose.comp"},
-    {ModuleRole::SortedShade, "passes/sorted_shade.comp"},
+    {ModuleRole::SortedShade, "strategies/sorted_uber/sorted_shade.comp"},
     {ModuleRole::ShadowDispatch, "passes/shadow_dispatch.comp"},
     {ModuleRole::ShadowTrace, "passes/shadow_trace.comp"},
     {ModuleRole::OrderCheck, "passes/order_check.comp"},
     {ModuleRole::TraceClosestHit, "passes/trace.rchit"},
     {ModuleRole::TraceAnyHit, "passes/trace.rahit"},
     {ModuleRole::TraceMiss, "passes/trace.rmiss"},
-    {ModuleRole::HitTrace, "passes/hit_trace.rgen"},
-    {ModuleRole::HitCase, "hit_case.rchit.mustache"},
-    {ModuleRole::HitUnknown, "passes/hit_unknown.rchit"},
-    {ModuleRole::HitMiss, "passes/hit_miss.rmiss"},
-    {ModuleRole::RefractionWalk, "passes/refraction_walk.comp"},
+    {ModuleRole::HitTrace, "strategies/hit_shaders/hit_trace.rgen"},
+    {ModuleRole::HitCase, "strategies/hit_shaders/hit_case.rchit.mustache"},
+    {ModuleRole::HitUnknown, "strategies/hit_shaders/hit_unknown.rchit"},
+    {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
     {ModuleRole::Deform, "passes/deform.comp"},
 };
 
-std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key) {
+std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key,
+                          const MaterialModel& model) {
+    if (key.role == ModuleRole::EffectWalk) {
+        return model.effects[key.index].walk;
+    }
     const bool sortsTiles = info.repeated == package::Repeated::ByOrdering &&
                             key.index == static_cast<std::uint32_t>(package::Ordering::TileSort);
     const std::span<const RoleSource> sources =
@@ -99,8 +102,8 @@ constexpr std::string_view kComputeExtension = ".comp";
 // "passes/lighting.comp" gives lighting.comp, or lighting.rgen if it is a ray generation shader. If a role
 // has several modules, the name says which one it is.
 std::string moduleName(std::string_view source, const package::RoleInfo& info, const package::ModuleKey& key,
-                       std::string_view caseName) {
-    std::string name(source.substr(source.find('/') + 1));
+                       std::string_view caseName, const MaterialModel& model) {
+    std::string name(source.substr(source.rfind('/') + 1));
     if (name.ends_with(kTemplateSuffix)) {
         name.resize(name.size() - kTemplateSuffix.size());
     }
@@ -119,7 +122,9 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
         }
     } else if (info.repeated == package::Repeated::ByEffect) {
         // "effect_rays" gives reflection_rays.
-        name.replace(0, name.find('_'), package::kEffects[key.index].file);
+        name.replace(0, name.find('_'), model.effects[key.index].file());
+    } else if (info.repeated == package::Repeated::ByWalk) {
+        name = model.effects[key.index].file() + "_walk";
     }
     if (extension == kComputeExtension && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
         extension = ".rgen";
@@ -156,9 +161,11 @@ void insertDefines(std::string& text, const std::string& defines) {
 // Files of `own` stand in for those of `sources` that have their names.
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
                                 std::string_view caseName, const SourceSet& sources, const SourceSet& own,
-                                const kainjow::mustache::data& context, package::ShadingPrecision precision) {
+                                const kainjow::mustache::data& context, const MaterialModel& model,
+                                package::ShadingPrecision precision) {
     const package::RoleInfo& info = *package::findRole(key.role);
-    ModuleSource module{key, stageOf(info, key.tracer), moduleName(source, info, key, caseName), {}, {}};
+    ModuleSource module{
+        key, stageOf(info, key.tracer), moduleName(source, info, key, caseName, model), {}, {}};
     std::string text;
     std::string origin(source);
     if (source.ends_with(kTemplateSuffix)) {
@@ -230,11 +237,11 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
             }
             own = *code;
         } else if (key.role == ModuleRole::EffectRays) {
-            addEffect(context, plan.effects.effects, package::kEffects[key.index].effect);
+            addEffect(context, *plan.model, plan.effects.effects, key.index);
         }
-        Result<ModuleSource> module =
-            makeModule(sourceOf(info, key), key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
-                       sources, *own, context, settings.precision);
+        Result<ModuleSource> module = makeModule(sourceOf(info, key, *plan.model), key,
+                                                 ofCase ? std::string_view(plan.cases[key.index].name) : "",
+                                                 sources, *own, context, *plan.model, settings.precision);
         if (!module) {
             return module.error();
         }

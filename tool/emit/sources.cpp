@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
 // The files of generated/ that are made from templates.
-constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl"};
+constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl",
+                                           "hit_effects.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, FeatureMask always, FeatureMask sometimes) {
     const auto define = [&](std::string_view when, FeatureMask mask) {
@@ -101,7 +102,7 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));
     text += bindingDefines(settings.bindings);
-    text += effectDefines(plan.effects.effects);
+    text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
     const FeatureMask maskCode = maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
@@ -161,7 +162,7 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     }
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    addEffects(context, plan.effects.effects);
+    addEffects(context, *plan.model, plan.effects.effects);
     for (const std::string_view name : kGenerated) {
         Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
         if (!text) {

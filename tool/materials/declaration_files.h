@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Returns the declarations of shaders/materials, sorted by name ("materials/sheen/sheen.json"). They have
+// Returns the declarations of shaders/materials and shaders/effects ("materials/sheen/sheen.json"). They have
 // static storage.
 std::span<const BuiltinFile> declarationFiles();
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 #include <iterator>
 #include <span>
@@ -127,6 +128,13 @@ private:
     const DeclarationJson& json_;
     std::string where_;
 };
+
+// A name that an #include may have, and that stays in its folder.
+inline bool isDeclaredFile(std::string_view name, std::string_view extension) {
+    return name.ends_with(extension) && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {
+               return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+           });
+}
 
 // Returns the row of `table` that is called `name`.
 template <typename Row, std::size_t Count>

@@ -1,5 +1,6 @@
-// Reads the declarations of material features: the JSON of shaders/materials/<feature>/<feature>.json, whose
-// members docs/schemas/material_feature.schema.json describes.
+// Reads the declarations of material features and effects: the JSON of
+// shaders/materials/<feature>/<feature>.json and shaders/effects/<effect>/<effect>.json, whose members
+// docs/schemas/material_feature.json and docs/schemas/effect.json describe.
 #pragma once
 
 #include "materials/material_model.h"
@@ -14,7 +15,7 @@ namespace glint {
 struct DeclarationFile {
     std::string_view name;  // for diagnostics: "materials/sheen/sheen.json"
     std::string_view text;
-    bool isOfPack = false;  // of a user's own; its features have bits after those of Glint's own
+    bool isOfPack = false;  // of a user's own; its features and effects have bits after those of Glint's own
 };
 
 // Makes the model of all files together, as they may refer to each other. The result depends on neither the

@@ -1,19 +1,6 @@
 #include "materials/feature_code.h"
 
-#include <cctype>
-
 namespace glint {
-
-namespace {
-
-// A name that an #include may have, and that stays in its folder.
-bool isFileName(std::string_view name) {
-    return name.ends_with(".glsl") && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {
-               return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-           });
-}
-
-}  // namespace
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
@@ -39,7 +26,7 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     for (const auto& [member, place] : stages) {
         if (members.has(member)) {
             const std::string name = members.text(member);
-            if (!isFileName(name)) {
+            if (!isDeclaredFile(name, ".glsl")) {
                 failAt(members.at(member),
                        fmt::format("\"{}\" must be the name of a .glsl file beside the declaration", name));
             }

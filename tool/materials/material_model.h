@@ -3,6 +3,7 @@
 // from it.
 #pragma once
 
+#include "materials/effect_declaration.h"
 #include "materials/expression.h"
 
 #include <array>
@@ -246,12 +247,13 @@ public:
     std::vector<int> order;                   // indices into `features`, in the order of evaluation
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
-    std::vector<FeatureCode> code;          // in the order in which it runs
-    std::vector<ModelSource> sources;       // GLSL of packs; that of Glint's own features is embedded
-    FeatureMask unlit = 0;                  // features without light
-    FeatureMask lobes = 0;                  // features that are lobes
-    int valueCount = 0;                     // length of Material::values
-    std::vector<std::array<int, 2>> pairs;  // textures that same() compares
+    std::vector<EffectDeclaration> effects;  // by the number of their bit
+    std::vector<FeatureCode> code;           // in the order in which it runs
+    std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
+    FeatureMask unlit = 0;                   // features without light
+    FeatureMask lobes = 0;                   // features that are lobes
+    int valueCount = 0;                      // length of Material::values
+    std::vector<std::array<int, 2>> pairs;   // textures that same() compares
 
     // Each returns the index of that name, or -1.
     int findParameter(std::string_view name) const;

@@ -21,13 +21,13 @@ namespace {
 constexpr std::uint64_t kMaxFileBytes = 16ULL << 20;
 
 Diagnostic folderError(const std::string& folder, std::string message) {
-    return makeError(
-        "materials-folder", folder, std::move(message),
-        "name a folder that holds <feature>/<feature>.json, as docs/material_features.md describes");
+    return makeError("materials-folder", folder, std::move(message),
+                     "name a folder that holds <feature>/<feature>.json or <effect>/<effect>.json, as "
+                     "docs/material_features.md and docs/effects.md describe");
 }
 
 bool isPackFile(const fs::path& path) {
-    return path.extension() == ".json" || path.extension() == ".glsl";
+    return path.extension() == ".json" || path.extension() == ".glsl" || path.extension() == ".comp";
 }
 
 // Adds the files of one folder.
@@ -48,7 +48,7 @@ Status addFolder(const std::string& folder, std::vector<fs::path>& files) {
     }
     const auto begin = files.begin() + static_cast<std::ptrdiff_t>(before);
     if (std::none_of(begin, files.end(), [](const fs::path& path) { return path.extension() == ".json"; })) {
-        return folderError(folder, "holds no declaration of a material feature");
+        return folderError(folder, "holds no declaration of a material feature or an effect");
     }
     return okStatus();
 }
@@ -57,6 +57,20 @@ Status checkCode(const MaterialModel& model) {
     const auto isThere = [&](const std::string& name) {
         return std::ranges::find(model.sources, name, &ModelSource::name) != model.sources.end();
     };
+    const auto check = [&](const std::string& declared, const std::string& file) -> Status {
+        return isThere(file)
+                   ? okStatus()
+                   : makeError("materials-glsl", file,
+                               fmt::format("is named by the declaration of {}, but is not there", declared),
+                               "write the file, or correct the member \"glsl\" of the declaration");
+    };
+    for (const EffectDeclaration& effect : model.effects) {
+        for (const std::string* const file : effect.files()) {
+            if (Status status = effect.isOfPack ? check(effect.name, *file) : okStatus(); !status) {
+                return status;
+            }
+        }
+    }
     for (const FeatureCode& code : model.code) {
         // The build checks the files of Glint's own features.
         if (!code.isOfPack) {
@@ -64,11 +78,8 @@ Status checkCode(const MaterialModel& model) {
         }
         for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission, code.coordinates,
                                         code.opacity, code.diffuse}) {
-            if (!file.empty() && !isThere(file)) {
-                return makeError(
-                    "materials-glsl", file,
-                    fmt::format("is named by the declaration of {}, but is not there", code.name),
-                    "write the file, or correct the member \"glsl\" of the declaration");
+            if (Status status = file.empty() ? okStatus() : check(code.name, file); !status) {
+                return status;
             }
         }
     }
@@ -118,7 +129,7 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
             return bytes.error();
         }
         std::string text(bytes->begin(), bytes->end());
-        if (file.extension() == ".glsl") {
+        if (file.extension() != ".json") {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
             declarations.push_back(

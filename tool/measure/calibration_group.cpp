@@ -11,8 +11,7 @@ namespace glint::measure {
 namespace {
 
 package::Effect effectOf(synthetic::Coherence coherence) {
-    return coherence == synthetic::Coherence::Coherent ? package::kEffectReflection
-                                                       : package::kEffectIndirectDiffuse;
+    return builtinEffects({coherence == synthetic::Coherence::Coherent ? "reflection" : "indirect-diffuse"});
 }
 
 CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
@@ -25,9 +24,9 @@ CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tr
     }
     compile.addsLight = false;
     // The settings cover scenes with both kinds of rays, so that they can share a package.
-    compile.effects = {false, package::kEffectReflection | package::kEffectIndirectDiffuse};
+    compile.effects = {false, builtinEffects({"reflection", "indirect-diffuse"})};
     if (settings.shadows) {
-        compile.effects.named |= package::kEffectShadow;
+        compile.effects.named |= builtinEffects({"shadow"});
     }
     compile.emitHeader = false;
     return compile;
@@ -51,7 +50,7 @@ std::vector<CaseWork> workOf(const CompiledPackage& compiled) {
 std::vector<std::string> strategiesFor(std::uint32_t tracers) {
     std::vector<std::string> names;
     for (const package::Strategy strategy : package::kStrategies) {
-        const bool pipelineOnly = strategy == package::kStrategyHitShaders;
+        const bool pipelineOnly = (strategy & package::kPipelineStrategies) != 0;
         if (!pipelineOnly || (tracers & package::kTracerRayPipeline) != 0) {
             names.emplace_back(package::nameOf(strategy));
         }

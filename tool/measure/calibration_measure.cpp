@@ -136,7 +136,7 @@ private:
         }
         RendererOptions rendering = rendererOptions(settings_.render);
         rendering.strategy = *valueNamed<package::Strategy>(measure.strategy);
-        if (rendering.strategy == package::kStrategyHitShaders) {
+        if ((rendering.strategy & package::kPipelineStrategies) != 0) {
             rendering.tracer.reset();
         }
         rendering.width = entry_.width;

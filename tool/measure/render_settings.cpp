@@ -29,12 +29,13 @@ BenchFacts factsOf(const Settings& settings, const Scene& scene, const PlanOptio
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();
     const CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
-    const std::uint32_t effects = planEffects(SceneList({&scene, 1}), compile).effects;
-    for (const package::EffectInfo& info : package::kEffects) {
-        if ((effects & info.effect) != 0) {
-            facts.effects.emplace(info.name);
+    const EffectPlan effects = planEffects(SceneList({&scene, 1}), compile);
+    for (const EffectDecision& decision : effects.decisions) {
+        if (decision.chosen) {
+            facts.effects.emplace(decision.name);
         }
     }
+    facts.sendsRays = effects.effects.rays != 0;
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });

@@ -66,7 +66,8 @@ std::vector<Setting> settingsFor(const BenchFacts& facts, const Configuration& b
         };
         std::vector<std::string> values = valuesToTry(row, facts, setting.base, quick);
         insertBase(values, setting.base);
-        const std::string reasonForAll = reasonAgainst("");
+        const std::string noEffect = withoutEffect(row, facts);
+        const std::string reasonForAll = noEffect.empty() ? reasonAgainst("") : noEffect;
         for (std::string& value : values) {
             std::string reason = value == setting.base  ? std::string()
                                  : reasonForAll.empty() ? reasonAgainst(value)
@@ -90,7 +91,8 @@ Configuration exactValues(const BenchFacts& facts) {
             exact.emplace(row.name, *row.bench.exact);
         }
     }
-    if (!facts.effects.contains("reflection")) {
+    // A higher limit of roughness would call for reflections.
+    if (!withoutEffect(*sweptSetting("max-roughness"), facts).empty()) {
         exact.erase("max-roughness");
     }
     return exact;

@@ -121,12 +121,12 @@ Result<StrategyAdvice> adviseRender(const Settings& render, const PlanOptions& p
     const SceneList scenes({&scene, 1});
     if (package == nullptr) {
         const CompileSettings settings = compileSettings(render, plan, tracers, scene);
-        const FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects);
+        const FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects.all);
         const Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
         return adviseStrategy(*costs, roundsOf(scenes, made, plan, shape),
                               runnableStrategies(tracers, render.renderer.tracer, nullptr), shape.pixels);
     }
-    const FrameShape shape = shapeOf(render, package->shape().effects);
+    const FrameShape shape = shapeOf(render, package->shape().effects.all);
     std::vector<std::string> available = runnableStrategies(tracers, render.renderer.tracer, package);
     if (available.empty()) {
         // What the device lacks is reported when the package is used.

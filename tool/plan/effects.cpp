@@ -12,8 +12,6 @@ namespace glint {
 
 namespace {
 
-using package::Effect;
-
 struct Finding {
     bool usable = false;
     std::string reason;
@@ -122,44 +120,47 @@ Finding findSurface(std::span<const Surface> surfaces, const std::string& none, 
     return {false, surfaces.empty() ? "nothing has a surface" : anyLit ? none : "every material is unlit"};
 }
 
-Finding find(Effect effect, std::span<const Surface> surfaces, const SceneLights& lights,
+Finding find(const EffectDeclaration& effect, std::span<const Surface> surfaces, const SceneLights& lights,
              const EffectRequest& request) {
     const double limit = request.maxReflectionRoughness;
-    const auto behaves = [&](Behaviour behaviour, const std::string& none) {
-        return findSurface(surfaces, none, [&](const Surface& surface) {
-            return SurfaceBehaviour(surface).why(behaviour, limit);
-        });
-    };
-    const auto always = [&](const char* reason) {
-        return findSurface(surfaces, "", [reason](const Surface&) { return std::string(reason); });
-    };
-    switch (effect) {
-        case package::kEffectShadow:
-            return lights.lit ? always("is lit by punctual lights") : Finding{false, "no light shines"};
-        case package::kEffectAmbientOcclusion:
-            return always("is lit by the sky");
-        case package::kEffectReflection:
-            return behaves(Behaviour::Reflects,
-                           fmt::format("no surface is smoother than the roughness limit {:.3g}", limit));
-        case package::kEffectRefraction:
-            return behaves(Behaviour::Transmits, "no material transmits light");
-        default:
-            return behaves(Behaviour::Scatters, "no material scatters light diffusely");
+    const EffectCall& call = effect.call;
+    if (call.lights && !lights.lit) {
+        return {false, "no light shines"};
     }
+    return findSurface(surfaces, filledIn(call.otherwise, "{limit}", limit), [&](const Surface& surface) {
+        return call.byAll ? call.because : SurfaceBehaviour(surface).why(call.behaviour, limit);
+    });
 }
 
-// These effects refine the sky's light. Every lit surface could use them, and no file asks for them.
-constexpr std::uint32_t kRefinements = package::kEffectAmbientOcclusion | package::kEffectIndirectDiffuse;
+const MaterialModel& modelOf(std::span<const Material> materials) {
+    return materials.empty() ? builtinMaterialModel() : materials.front().model();
+}
+
+// Returns the bits of the effects that the user asks for.
+std::uint32_t namedEffects(const EffectRequest& request, const MaterialModel& model) {
+    std::uint32_t named = request.named;
+    for (const std::string& name : request.ofPacks) {
+        named |= findEffect(model.effects, name);
+    }
+    return named;
+}
 
 }  // namespace
 
-bool sendsRays(package::Effect effect, const Material& material, const PrimitiveInputs& primitive,
+std::uint32_t builtinEffects(std::initializer_list<std::string_view> names) {
+    std::uint32_t bits = 0;
+    for (const std::string_view name : names) {
+        bits |= findEffect(builtinMaterialModel().effects, name);
+    }
+    return bits;
+}
+
+bool sendsRays(const EffectDeclaration& effect, const Material& material, const PrimitiveInputs& primitive,
                float maxReflectionRoughness) {
     const Surface alone[] = {{&material, &primitive}};
     EffectRequest request;
     request.maxReflectionRoughness = maxReflectionRoughness;
-    return package::effectInfo(effect).kind == package::EffectKind::Rays &&
-           find(effect, alone, {}, request).usable;
+    return effect.kind == package::EffectKind::Rays && find(effect, alone, {}, request).usable;
 }
 
 double leastRoughness(const Material& material, const PrimitiveInputs& primitive) {
@@ -169,23 +170,29 @@ double leastRoughness(const Material& material, const PrimitiveInputs& primitive
 EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
                          const SceneLights& lights, const EffectRequest& request) {
     const std::vector<Surface> surfaces = surfacesOf(materials, primitives);
+    const MaterialModel& model = modelOf(materials);
+    const std::uint32_t allNamed = namedEffects(request, model);
     EffectPlan plan;
-    plan.effects = 0;
-    for (const package::EffectInfo& info : package::kEffects) {
-        Finding finding = find(info.effect, surfaces, lights, request);
-        EffectDecision decision{info.effect, false, finding.usable, std::move(finding.reason)};
-        const bool named = (request.named & info.effect) != 0;
-        const bool refines = (kRefinements & info.effect) != 0;
+    for (std::size_t i = 0; i < model.effects.size(); ++i) {
+        const EffectDeclaration& effect = model.effects[i];
+        const package::EffectInfo info = infoOf(effect, i);
+        Finding finding = find(effect, surfaces, lights, request);
+        const bool named = (allNamed & info.effect) != 0;
+        // Every lit surface could use these effects, and no file asks for them.
+        const bool refines = !effect.refines.empty();
+        EffectDecision decision{info.effect, effect.name,    named && request.named != package::kAllEffects,
+                                false,       finding.usable, std::move(finding.reason)};
         decision.chosen = named || (request.automatic && decision.usable && !refines);
         if (named) {
             decision.reason = (decision.usable ? "asked for: " : "asked for, though ") + decision.reason;
         } else if (!request.automatic) {
             decision.reason = "not asked for";
         } else if (decision.usable && refines) {
-            decision.reason = "refines the sky's light; no file asks for it, so it has to be named";
+            decision.reason =
+                fmt::format("refines {}; no file asks for it, so it has to be named", effect.refines);
         }
         if (decision.chosen) {
-            plan.effects |= info.effect;
+            plan.effects.add(info);
         }
         plan.decisions.push_back(std::move(decision));
     }

@@ -7,8 +7,10 @@
 #include <glint/effects.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -19,6 +21,9 @@ struct EffectRequest {
     std::uint32_t named = 0;  // Effect bits: always chosen
     // Surfaces that are rougher than this send no reflection ray: FrameOptions::maxReflectionRoughness.
     float maxReflectionRoughness = 0.3F;
+    // Effects of packs that are always chosen, by name, because their bits are known only once the packs are
+    // read.
+    std::vector<std::string> ofPacks{};
 };
 
 // The facts about a scene that decide, apart from its materials.
@@ -27,25 +32,31 @@ struct SceneLights {
 };
 
 struct EffectDecision {
-    package::Effect effect{};
+    package::Effect effect = 0;
+    std::string name{};
+    bool isNamed = false;  // the user asks for it by name
     bool chosen = false;
     bool usable = false;  // the scenes call for it
     std::string reason;
 };
 
 struct EffectPlan {
-    std::uint32_t effects = package::kEffectShadow | package::kEffectReflection;  // Effect bits
-    std::vector<EffectDecision> decisions;  // one for each of package::kEffects, in their order
+    package::EffectSet effects{};
+    std::vector<EffectDecision> decisions{};  // one for each effect of the model, in their order
 };
 
+// Returns the bits of effects of Glint's own.
+std::uint32_t builtinEffects(std::initializer_list<std::string_view> names);
+
 // Only the materials of `primitives` count. Requires every PrimitiveInputs::material to index `materials`.
-// The reasons name values, not extensions that are merely present.
+// The reasons name values, not extensions that are merely present. The effects are those of the materials'
+// model. The names of `request` must be among them.
 EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
                          const SceneLights& lights, const EffectRequest& request);
 
 // Returns whether pixels of this material on this primitive may send rays of an effect of the kind Rays. A
 // texture may make parts of it rougher or black.
-bool sendsRays(package::Effect effect, const Material& material, const PrimitiveInputs& primitive,
+bool sendsRays(const EffectDeclaration& effect, const Material& material, const PrimitiveInputs& primitive,
                float maxReflectionRoughness);
 
 // Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.

@@ -9,16 +9,12 @@ namespace glint {
 
 namespace {
 
-double coherenceOf(package::Effect effect, const Material& material, const PrimitiveInputs& primitive) {
-    switch (effect) {
-        case package::kEffectReflection:
-            return leastRoughness(material, primitive) <= kMirrorRoughness ? kMirrorCoherence
-                                                                           : kGlossyCoherence;
-        case package::kEffectRefraction:
-            return kRefractionCoherence;
-        default:
-            return kDiffuseCoherence;
-    }
+double coherenceOf(const EffectDeclaration& effect, const Material& material,
+                   const PrimitiveInputs& primitive) {
+    const EffectCoherence& coherence = effect.coherence;
+    const bool differs = coherence.mirror != coherence.glossy;
+    return differs && leastRoughness(material, primitive) <= kMirrorRoughness ? coherence.mirror
+                                                                              : coherence.glossy;
 }
 
 // Returns each primitive's share of the surfaces in the picture. All shares are equal if nothing is known.
@@ -93,17 +89,20 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
                                const std::vector<RoundCase>& cases, const FrameShape& shape) {
     const std::vector<double> shares = surfaceShares(primitives);
     std::vector<Round> rounds;
-    for (const package::EffectInfo& info : package::kEffects) {
-        if ((shape.effects & info.effect) == 0 || info.kind != package::EffectKind::Rays) {
+    const MaterialModel& model = materials.empty() ? builtinMaterialModel() : materials.front().model();
+    for (std::size_t number = 0; number < model.effects.size(); ++number) {
+        const EffectDeclaration& effect = model.effects[number];
+        if ((shape.effects & infoOf(effect, number).effect) == 0 ||
+            effect.kind != package::EffectKind::Rays) {
             continue;
         }
         Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
-            if (sendsRays(info.effect, material, primitives[i], shape.maxReflectionRoughness)) {
+            if (sendsRays(effect, material, primitives[i], shape.maxReflectionRoughness)) {
                 senders += shares[i];
-                round.coherence += shares[i] * coherenceOf(info.effect, material, primitives[i]);
+                round.coherence += shares[i] * coherenceOf(effect, material, primitives[i]);
             }
         }
         if (senders <= 0.0) {

@@ -23,13 +23,12 @@ namespace glint {
 inline constexpr double kSurfaceShare = 0.8;
 inline constexpr double kRayHitShare = 0.7;
 
-// How alike the hits of neighbouring rays are (Round::coherence). The values are chosen between those of the
-// calibration's coherent scenes (mirrors), near 1, and its incoherent scenes (diffuse rays), near 0.
-inline constexpr double kMirrorCoherence = 0.9;      // Neighbours hit one surface up to its border.
-inline constexpr double kGlossyCoherence = 0.5;      // The lobe is some ten degrees wide.
-inline constexpr double kRefractionCoherence = 0.7;  // The surfaces in between bend and scatter the rays.
-inline constexpr double kDiffuseCoherence = 0.1;     // Rays take any direction of a hemisphere, but a large
-                                                     // floor is alike.
+// Declarations of effects say how alike the hits of neighbouring rays are (Round::coherence). The values are
+// chosen between those of the calibration's coherent scenes (mirrors), near 1, and its incoherent scenes
+// (diffuse rays), near 0. Mirrors have 0.9, as neighbours hit one surface up to its border; glossy lobes,
+// some ten degrees wide, have 0.5; refraction has 0.7, as the surfaces in between bend and scatter the rays;
+// diffuse rays have 0.1, as they take any direction of a hemisphere, but a large floor is alike.
+//
 // Surfaces that are rougher are glossy. This is the default of FrameOptions::mirrorRoughness.
 inline constexpr float kMirrorRoughness = 0.05F;
 
@@ -63,7 +62,7 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
 std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
                                   const MaterialModel& model = builtinMaterialModel());
 
-// Returns one round for each effect that sends rays, in the order of package::kEffects, or one round for all.
+// Returns one round for each effect that sends rays, in the order of the effects, or one round for all.
 // `primitives` are those of one scene; their materials index `materials`.
 std::vector<Round> frameRounds(std::span<const Material> materials,
                                std::span<const PrimitiveInputs> primitives,

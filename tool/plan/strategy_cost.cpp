@@ -33,16 +33,16 @@ std::span<const CostTermInfo> costTerms() {
 }
 
 bool hasTerm(std::string_view strategy, CostTerm term) {
-    const bool ordered = strategy == "visibility" || strategy == "sorted-uber";
+    const package::StrategyInfo& info = *package::findStrategy(strategy);
     switch (term) {
         case CostTerm::Cases:
         case CostTerm::Buckets:
-            return ordered;
+            return info.ordersHits;
         case CostTerm::Divergence:
         case CostTerm::Misses:
-            return !ordered;
+            return !info.ordersHits;
         case CostTerm::Code:
-            return strategy != "visibility";
+            return !info.dispatchesCases;
         default:
             return true;
     }

@@ -17,6 +17,20 @@ std::vector<SettingWord> wordsOf(const Descriptor& row) {
     return words;
 }
 
+std::string withoutEffect(const Descriptor& row, const BenchFacts& facts) {
+    std::string reason;
+    for (const EffectDeclaration& effect : builtinMaterialModel().effects) {
+        if (std::ranges::find(effect.settings, row.name) == effect.settings.end()) {
+            continue;
+        }
+        if (facts.effects.contains(effect.name)) {
+            return {};
+        }
+        reason = effect.absent;
+    }
+    return reason;
+}
+
 std::string boundText(double bound) {
     std::string text = fmt::format("{:g}", bound);
     if (bound < 1e7 || text.find('.') != std::string::npos) {

@@ -42,7 +42,7 @@ struct CompileSettings {
     // from the acceleration structure instead of the vertex buffer.
     bool positionFetch = false;
     PlanOptions plan;
-    EffectRequest effects{false, package::kEffectShadow | package::kEffectReflection};
+    EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};
     // The renderer adds a light to those of the scenes, which --effects auto takes into account.
     bool addsLight = false;
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.

@@ -25,6 +25,7 @@ struct BenchFacts {
     bool positionFetch = false;
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name
+    bool sendsRays = false;                      // one of them has rays whose hits are shaded
     // The luminance that the picture's exposure maps to white, in the scene's units; 0 if unknown.
     double white = 0.0;
 };

@@ -10,12 +10,6 @@ using namespace values;
 
 constexpr double kMaxMetres = 1e6;
 
-bool sendsRays(const BenchFacts& facts) {
-    return std::ranges::any_of(package::kEffects, [&](const package::EffectInfo& info) {
-        return info.kind == package::EffectKind::Rays && facts.effects.contains(info.name);
-    });
-}
-
 bool ordersHits(const Configuration& base) {
     const std::optional<package::Strategy> strategy =
         valueNamed<package::Strategy>(base.find("strategy")->second);
@@ -23,13 +17,8 @@ bool ordersHits(const Configuration& base) {
 }
 
 // Why settings are not worth trying. Each returns a reason for all values, or nothing.
-std::string withoutReflections(std::string_view value, const BenchFacts& facts,
-                               const Configuration& /*base*/) {
-    return value.empty() && !facts.effects.contains("reflection") ? "there are no reflections" : "";
-}
-
 std::string withoutRays(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {
-    return value.empty() && !sendsRays(facts) ? "no effect sends rays whose hits are shaded" : "";
+    return value.empty() && !facts.sendsRays ? "no effect sends rays whose hits are shaded" : "";
 }
 
 std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base) {
@@ -129,15 +118,13 @@ constexpr Descriptor kRows[] = {
      .group = kEffectOptions,
      .what = "shadow rays per sample to each light that has a size",
      .values = number<&Settings::frame, &FrameOptions::shadowSamples>(1, 4096),
-     .bench = approximates("", "1 2 4 8 16", "1 4",
-                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(!value.empty()                      ? ""
-                                                  : !facts.effects.contains("shadow") ? "there are no shadows"
-                                                  : facts.sizedLights
-                                                      ? ""
-                                                      : "no light has a size (--light-radius, --sun-angle): "
-                                                        "one ray is exact");
-                           })},
+     .bench = approximates(
+         "", "1 2 4 8 16", "1 4",
+         [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+             return std::string(!value.empty() || facts.sizedLights
+                                    ? ""
+                                    : "no light has a size (--light-radius, --sun-angle): one ray is exact");
+         })},
     {.name = "light-radius",
      .commands = kOfRender,
      .group = kEffectOptions,
@@ -153,13 +140,7 @@ constexpr Descriptor kRows[] = {
      .group = kEffectOptions,
      .what = "rays per sample of ambient-occlusion",
      .values = number<&Settings::frame, &FrameOptions::occlusionSamples>(1, 4096),
-     .bench = approximates("", "1 2 4 8 16", "1 4",
-                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(value.empty() &&
-                                                          !facts.effects.contains("ambient-occlusion")
-                                                      ? "there is no ambient occlusion (--effects)"
-                                                      : "");
-                           })},
+     .bench = approximates("", "1 2 4 8 16", "1 4")},
     {.name = "ao-radius",
      .commands = kOfRender,
      .group = kEffectOptions,
@@ -174,8 +155,7 @@ constexpr Descriptor kRows[] = {
      .commands = kMakers,
      .stage = SettingStage::Package,
      .group = kEffectOptions,
-     .what = "which effects the package has, separated by commas; ambient-occlusion and indirect-diffuse "
-             "have to be named",
+     .what = "which effects the package has, separated by commas",
      .values = kEffects,
      .bench = {.use = BenchUse::Swept,
                .exact = "",
@@ -191,13 +171,13 @@ constexpr Descriptor kRows[] = {
      .group = kEffectOptions,
      .what = "rougher surfaces send no reflection ray; compile uses it for --effects auto alone",
      .values = number<&Settings::frame, &FrameOptions::maxReflectionRoughness>(0.0, 1.0),
-     .bench = approximates("1", "0.1 0.2 0.3 0.6 1", "0.1 0.3 1", withoutReflections)},
+     .bench = approximates("1", "0.1 0.2 0.3 0.6 1", "0.1 0.3 1")},
     {.name = "mirror-roughness",
      .commands = kOfRender,
      .group = kReflections,
      .what = "smoother surfaces reflect as mirrors",
      .values = number<&Settings::frame, &FrameOptions::mirrorRoughness>(0.0, 1.0),
-     .bench = approximates("0", "0 0.05 0.1 0.2", "0.05 0.2", withoutReflections)},
+     .bench = approximates("0", "0 0.05 0.1 0.2", "0.05 0.2")},
     {.name = "skip-below",
      .commands = kOfRender,
      .group = kEffectOptions,
@@ -216,7 +196,7 @@ constexpr Descriptor kRows[] = {
      .group = kReflections,
      .what = "march N steps in screen space before a ray is sent",
      .values = kScreenSteps,
-     .bench = approximates("off", "off 8 16 32 64", "off 16", withoutReflections),
+     .bench = approximates("off", "off 8 16 32 64", "off 16"),
      .document = "reflections.md#screen-space-before-rays"},
     {.name = "ssr-thickness",
      .commands = kOfRender,
@@ -228,12 +208,7 @@ constexpr Descriptor kRows[] = {
      .group = kEffectOptions,
      .what = "the most surfaces that a refracted ray meets; after that it shows the sky",
      .values = number<&Settings::frame, &FrameOptions::maxInterfaces>(1, 64),
-     .bench = approximates("64", "2 4 8 16 32", "2 8",
-                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(value.empty() && !facts.effects.contains("refraction")
-                                                      ? "nothing refracts"
-                                                      : "");
-                           })},
+     .bench = approximates("64", "2 4 8 16 32", "2 8")},
     {.name = "hit-lobes",
      .commands = kPlanners,
      .stage = SettingStage::Package,
@@ -374,7 +349,8 @@ constexpr Descriptor kRows[] = {
      .bench =
          changesTime(
              [](std::string_view value, const BenchFacts& facts, const Configuration& base) {
-                 return value == package::nameOf(package::kStrategyHitShaders) && !facts.rayPipeline
+                 const package::StrategyInfo* const info = package::findStrategy(value);
+                 return info != nullptr && info->ownPipeline && !facts.rayPipeline
                             ? std::string("the device has no ray tracing pipelines")
                             : withoutRays(value, facts, base);
              },

@@ -103,6 +103,9 @@ constexpr bool isCompiled(const Descriptor& row) {
 }
 
 std::vector<SettingWord> wordsOf(const Descriptor& row);
+// Returns why the setting of a row changes nothing: only effects that the default configuration lacks have
+// it. Returns an empty text if it may change something.
+std::string withoutEffect(const Descriptor& row, const BenchFacts& facts);
 // Returns "\"fast\" is none of on, off", or an empty text for a value. A list is checked word by word.
 std::string complaintAbout(const Descriptor& row, std::string_view text);
 // Returns a bound of a range: "0.5", "1e9".

@@ -190,29 +190,36 @@ constexpr SettingValues bits(std::string_view automatic = {}) {
 
 inline std::string effectsOf(const Settings& settings) {
     const EffectRequest& request = settings.compile.effects;
+    if (!request.automatic && request.named == package::kAllEffects) {
+        return std::string(kAll);
+    }
     std::vector<std::string_view> words;
     if (request.automatic) {
         words.push_back(kAuto);
     }
-    for (const package::EffectInfo& info : package::kEffects) {
-        if ((request.named & info.effect) != 0) {
-            words.push_back(info.name);
+    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        if ((request.named & infoOf(effects[i], i).effect) != 0) {
+            words.push_back(effects[i].name);
         }
     }
-    return words.empty() ? std::string(kNone)
-           : !request.automatic && request.named == package::kAllEffects
-               ? std::string(kAll)
-               : fmt::format("{}", fmt::join(words, ","));
+    words.insert(words.end(), request.ofPacks.begin(), request.ofPacks.end());
+    return words.empty() ? std::string(kNone) : fmt::format("{}", fmt::join(words, ","));
 }
 
 inline void setEffects(Settings& settings, std::string_view text) {
     EffectRequest& request = settings.compile.effects;
     request.automatic = false;
     request.named = 0;
+    request.ofPacks.clear();
     eachWord(text, [&](std::string_view word) {
-        request.automatic = request.automatic || word == kAuto;
-        for (const package::EffectInfo& info : package::kEffects) {
-            request.named |= word == kAll || word == info.name ? std::uint32_t{info.effect} : 0U;
+        if (word == kAuto || word == kAll || word == kNone) {
+            request.automatic = request.automatic || word == kAuto;
+            request.named |= word == kAll ? package::kAllEffects : 0U;
+        } else if (const package::Effect effect = builtinEffects({word}); effect != 0) {
+            request.named |= effect;
+        } else {
+            request.ofPacks.emplace_back(word);
         }
     });
 }
@@ -220,8 +227,10 @@ inline void setEffects(Settings& settings, std::string_view text) {
 inline std::vector<SettingWord> effectWords() {
     std::vector<SettingWord> words{
         {std::string(kAuto), ""}, {std::string(kNone), "no effect"}, {std::string(kAll), "every effect"}};
-    for (const package::EffectInfo& info : package::kEffects) {
-        words.push_back({std::string(info.name), ""});
+    for (const EffectDeclaration& effect : builtinMaterialModel().effects) {
+        std::string what = effect.about.substr(0, effect.about.size() - 1);
+        what.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(what.front())));
+        words.push_back({effect.name, what + (effect.refines.empty() ? "" : "; has to be named")});
     }
     return words;
 }
@@ -332,13 +341,14 @@ inline constexpr SettingValues kBindings{
         "list of NAME=N, with the names scene-set, tlas, textures, samplers, environment-set, "
         "environment and push-offset"};
 
-inline constexpr SettingValues kEffects{
-    .form = ValueForm::List,
-    .text = effectsOf,
-    .set = setEffects,
-    .words = effectWords,
-    .automatic = "shadow, reflection and refraction, where the scenes call for them",
-    .type = "auto|none|all|LIST"};
+inline constexpr SettingValues kEffects{.form = ValueForm::List,
+                                        .text = effectsOf,
+                                        .set = setEffects,
+                                        .words = effectWords,
+                                        .automatic = "those that the scenes call for",
+                                        .type = "auto|none|all|LIST",
+                                        .accepts = isEffectName,
+                                        .further = "effects of packs (--materials)"};
 
 inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
                                          .text = hitLobesOf,

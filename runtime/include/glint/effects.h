@@ -1,89 +1,92 @@
-// The effects that a package may have, that is, what rays add to a picture. A table has one row for each
-// effect; compiler, loader and renderer all read it.
+// The effects of packages, that is, what rays add to a picture. Each is declared by a folder of
+// shaders/effects or of a pack (docs/effects.md); a package says which it has.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <string_view>
 
 namespace glint::package {
 
-// Effects as bits of a set.
-enum Effect : std::uint32_t {
-    kEffectShadow = 1,            // shadows of punctual lights
-    kEffectAmbientOcclusion = 2,  // occlusion of the sky's light on primary surfaces
-    kEffectReflection = 4,
-    kEffectRefraction = 8,
-    kEffectIndirectDiffuse = 16,  // one bounce, which replaces the sky's light
-    kAllEffects = 31,
+// One bit of a set of effects. The compiler numbers the effects, and a package keeps the numbers. Effects of
+// Glint's own have the same bit in every package. Package::effects() gives their names.
+using Effect = std::uint32_t;
+
+inline constexpr std::uint32_t kMostEffects = 32;
+inline constexpr std::uint32_t kAllEffects = 0xFFFFFFFFU;
+
+enum class EffectKind : std::uint32_t {
+    Light = 0,    // decides how much of a light reaches a surface, primary or hit
+    Surface = 1,  // decides how much of the sky's light reaches a primary surface
+    Rays = 2,     // sends rays from primary surfaces whose hits the package shades
 };
 
-enum class EffectKind : std::uint8_t {
-    Light,    // decides how much of a light reaches a surface, primary or hit
-    Surface,  // decides how much of the sky's light reaches a primary surface
-    Rays,     // sends rays from primary surfaces whose hits the package shades
+// What the renderer does for an effect beyond its kind, as bits of a set.
+enum EffectAbility : std::uint32_t {
+    kEffectStartsOnScreen = 1,  // its rays may find their end in the picture: it keeps positions of pixels
+    kEffectWalks = 2,           // a pass of its own follows its rays before the list takes them
+    kAllEffectAbilities = 3,
 };
 
+// An effect of a package.
 struct EffectInfo {
-    Effect effect;
-    EffectKind kind;
-    bool screenStart;       // its rays start with a march in screen space: FILE_start.glsl
-    std::string_view name;  // name on the command line, in the manifest and of passes
-    // Parts of the names of files (in shaders/effects/) and of functions.
-    std::string_view file;
-    std::string_view function;
+    Effect effect = 0;
+    EffectKind kind = EffectKind::Rays;
+    std::uint32_t abilities = 0;  // EffectAbility bits
+    std::string_view name{};      // on the command line, in the manifest and of passes
 };
 
-// The effects in the order of their bits. To add an effect, add a row here, its bit in
-// shaders/interop/frame.h, a rule in tool/plan/effects.cpp and its files in shaders/effects. docs/effects.md
-// shows an example.
-inline constexpr EffectInfo kEffects[] = {
-    {kEffectShadow, EffectKind::Light, false, "shadow", "shadow", "Shadow"},
-    {kEffectAmbientOcclusion, EffectKind::Surface, false, "ambient-occlusion", "ambient_occlusion",
-     "AmbientOcclusion"},
-    {kEffectReflection, EffectKind::Rays, true, "reflection", "reflection", "Reflection"},
-    {kEffectRefraction, EffectKind::Rays, false, "refraction", "refraction", "Refraction"},
-    {kEffectIndirectDiffuse, EffectKind::Rays, false, "indirect-diffuse", "indirect_diffuse",
-     "IndirectDiffuse"},
-};
-inline constexpr std::uint32_t kEffectCount = 5;
+// The effects of a package as sets of bits, by what is done for them.
+struct EffectSet {
+    std::uint32_t all = 0;
+    // Those of each kind.
+    std::uint32_t lights = 0;
+    std::uint32_t surfaces = 0;
+    std::uint32_t rays = 0;
+    // Those of each ability.
+    std::uint32_t screenStarts = 0;
+    std::uint32_t walks = 0;
 
-// Returns the index of an effect in kEffects, which is the number of its bit. `effect` must be one bit of
-// kAllEffects.
+    constexpr void add(const EffectInfo& info) {
+        all |= info.effect;
+        (info.kind == EffectKind::Light     ? lights
+         : info.kind == EffectKind::Surface ? surfaces
+                                            : rays) |= info.effect;
+        screenStarts |= (info.abilities & kEffectStartsOnScreen) != 0 ? info.effect : 0U;
+        walks |= (info.abilities & kEffectWalks) != 0 ? info.effect : 0U;
+    }
+    // Whether a pass other than those that shade hits traces rays.
+    constexpr bool tracesAtSurfaces() const {
+        return (lights | surfaces) != 0;
+    }
+    friend bool operator==(const EffectSet&, const EffectSet&) = default;
+};
+
+// Returns the number of an effect's bit.
 constexpr std::uint32_t effectNumber(Effect effect) {
-    std::uint32_t number = 0;
-    while ((std::uint32_t{1} << number) != effect) {
-        ++number;
+    return static_cast<std::uint32_t>(std::countr_zero(effect));
+}
+
+// effectSlot() is the index of an effect that sends rays among those of the package. effectSlots() is their
+// number.
+constexpr std::uint32_t effectSlot(const EffectSet& effects, Effect effect) {
+    return static_cast<std::uint32_t>(std::popcount(effects.rays & (effect - 1U)));
+}
+constexpr std::uint32_t effectSlots(const EffectSet& effects) {
+    return static_cast<std::uint32_t>(std::popcount(effects.rays));
+}
+
+// The number of effects that have counters: up to the last one of the package.
+constexpr std::uint32_t countedEffects(const EffectSet& effects) {
+    return static_cast<std::uint32_t>(std::bit_width(effects.all));
+}
+
+// Calls `visit` with the number of each effect of a set, ascending.
+template <typename Visit>
+constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
+    for (std::uint32_t rest = effects; rest != 0; rest &= rest - 1) {
+        visit(effectNumber(rest));
     }
-    return number;
-}
-
-constexpr const EffectInfo& effectInfo(Effect effect) {
-    return kEffects[effectNumber(effect)];
-}
-
-constexpr std::string_view nameOf(Effect effect) {
-    return effectInfo(effect).name;
-}
-
-// Returns the bits of `effects` that send rays whose hits are shaded.
-constexpr std::uint32_t rayEffects(std::uint32_t effects) {
-    std::uint32_t result = 0;
-    for (const EffectInfo& info : kEffects) {
-        result |= info.kind == EffectKind::Rays ? effects & info.effect : 0U;
-    }
-    return result;
-}
-
-// rayEffectCount() says how many of `effects` send rays. effectSlot() is the index of one effect among them.
-constexpr std::uint32_t rayEffectCount(std::uint32_t effects) {
-    std::uint32_t count = 0;
-    for (std::uint32_t rest = rayEffects(effects); rest != 0; rest &= rest - 1) {
-        ++count;
-    }
-    return count;
-}
-constexpr std::uint32_t effectSlot(std::uint32_t effects, Effect effect) {
-    return rayEffectCount(effects & (effect - 1U));
 }
 
 }  // namespace glint::package

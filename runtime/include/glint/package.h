@@ -93,6 +93,10 @@ public:
     std::span<const package::ModuleEntry> modules() const;
     // The attributes of vertices that shaders read beside those of glTF's core, in the order of their values.
     std::span<const package::AttributeEntry> attributes() const;
+    // The effects that the package has, by ascending bits. Their names are valid as long as the package.
+    std::span<const package::EffectInfo> effects() const;
+    // Returns the bit of the effect of that name, or 0 if the package lacks it.
+    package::Effect effect(std::string_view name) const;
     // Returns the number of scenes, which is at least 1.
     std::uint32_t sceneCount() const;
     // Scenes are in the order in which the compiler got them. `index` must be below sceneCount().

@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 8;
+inline constexpr std::uint32_t kVersion = 9;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -110,7 +110,6 @@ struct PackageHeader {
     HitRecordFormat hitRecord;
     std::uint32_t environmentMap;  // 1: the sky is an environment map, 0: a gradient
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
-    std::uint32_t effects;         // Effect bits
     std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
     ShadingPrecision precision;
     // A record of a material ends with its gpu::TextureRecords, and the runtime knows nothing else of it.
@@ -119,7 +118,6 @@ struct PackageHeader {
     Passes passes;
     HitAnswer answer;
     Bindings bindings;
-    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -132,6 +130,7 @@ enum class SectionKind : std::uint32_t {
     Cases = 7,       // CaseEntry
     Scenes = 8,      // SceneEntry
     Attributes = 9,  // AttributeEntry: attributes of vertices that packs declare
+    Effects = 10,    // EffectEntry, by ascending bits
 };
 
 struct PackageSection {
@@ -172,14 +171,14 @@ enum class ModuleRole : std::uint32_t {
     HitCase = 22,     // closest-hit shader, one entry for each case
     HitUnknown = 23,  // closest-hit shader for geometries whose shader ID no case has
     HitMiss = 24,
-    RefractionWalk = 25,
-    Deform = 26,  // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
+    EffectWalk = 25,  // one entry for each effect that follows its rays
+    Deform = 26,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
 };
 
 struct ModuleEntry {
     ModuleRole role;
     std::uint32_t index;   // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
-                           // EffectRays: effectNumber(); 0 otherwise
+                           // EffectRays and EffectWalk: effectNumber(); 0 otherwise
     std::uint32_t tracer;  // the Tracer that it traces with; 0: it traces no rays
     std::uint32_t pad;
     StringRef file;  // relative to the package's folder; several entries may name one file
@@ -240,6 +239,15 @@ struct AttributeEntry {
     std::uint64_t feature;  // the bit of keys whose shaders read it
 };
 
+// An effect that the package has.
+struct EffectEntry {
+    StringRef name;
+    Effect effect;  // one bit
+    EffectKind kind;
+    std::uint32_t abilities;  // EffectAbility bits
+    std::uint32_t pad;
+};
+
 struct SamplerEntry {
     std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
     std::uint32_t wrapV;
@@ -249,7 +257,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 128);
+static_assert(sizeof(PackageHeader) == 120);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);
@@ -258,5 +266,6 @@ static_assert(sizeof(PrimitiveEntry) == 32);
 static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
 static_assert(sizeof(AttributeEntry) == 40);
+static_assert(sizeof(EffectEntry) == 24);
 
 }  // namespace glint::package

@@ -4,6 +4,7 @@
 
 #include <glint/names.h>
 #include <glint/package_format.h>
+#include <glint/strategies.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -19,7 +20,7 @@ struct PackageShape {
     std::uint32_t strategies = kStrategyUber | kStrategyVisibility;  // Strategy bits
     std::uint32_t tracers = kTracerRayQuery;                         // Tracer bits
     ShadowPlacement shadows = ShadowPlacement::Inline;
-    std::uint32_t effects = kEffectShadow | kEffectReflection;  // Effect bits
+    EffectSet effects{};
     bool alphaTested = false;
     std::uint32_t caseCount = 0;
     std::vector<std::uint32_t> retired{};  // ascending shader IDs below caseCount that have no modules
@@ -49,16 +50,16 @@ enum class ShaderKind : std::uint8_t {
     Miss,
 };
 
-enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect };
+enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk };
 
 // Which packages have a role.
 enum class Purpose : std::uint8_t {
-    Picture,     // packages that draw a frame
-    Hits,        // packages that shade hits: for a host, or with an effect that sends rays
-    Shadows,     // those among them that defer shadow rays
-    Refraction,  // packages with refraction
-    Tracing,     // packages in which a ray tracing pipeline traces
-    Motion,      // packages with meshes that follow skins or morph targets
+    Picture,  // packages that draw a frame
+    Hits,     // packages that shade hits: for a host, or with an effect that sends rays
+    Shadows,  // those among them that defer shadow rays
+    Walks,    // packages with effects that follow their rays in a pass of their own
+    Tracing,  // packages in which a ray tracing pipeline traces
+    Motion,   // packages with meshes that follow skins or morph targets
 };
 
 struct RoleInfo {
@@ -72,14 +73,6 @@ struct RoleInfo {
 };
 
 // Names on the command line and in the manifest.
-inline constexpr Named<Strategy> kStrategyNames[] = {
-    {kStrategyUber, "uber", "one dispatch traces and shades, with a switch over the shaders"},
-    {kStrategyVisibility, "visibility",
-     "hits are sorted by shader first, then there is one dispatch for each shader"},
-    {kStrategySortedUber, "sorted-uber",
-     "hits are sorted, then there is one dispatch, whose switch is uniform in each workgroup"},
-    {kStrategyHitShaders, "hit-shaders", "a ray tracing pipeline with a closest-hit shader for each case"},
-};
 inline constexpr Named<Tracer> kTracerNames[] = {
     {kTracerRayQuery, "ray-query", "compute shaders trace"},
     {kTracerRayPipeline, "ray-pipeline", "ray generation shaders trace, for devices without ray queries"},
@@ -163,10 +156,7 @@ constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
     return precision == ShadingPrecision::Single ? 32 : 16;
 }
 
-inline constexpr auto kStrategies = valuesOf(kStrategyNames);
 inline constexpr auto kTracers = valuesOf(kTracerNames);
-
-inline constexpr std::uint32_t kOrderedStrategies = kStrategyVisibility | kStrategySortedUber;
 
 // Every role, in the order of the list of modules.
 inline constexpr RoleInfo kRoles[] = {
@@ -201,7 +191,8 @@ inline constexpr RoleInfo kRoles[] = {
      Repeated::ByCase},
     {ModuleRole::HitUnknown, kStrategyHitShaders, "HitUnknown", ShaderKind::ClosestHit},
     {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
-    {ModuleRole::RefractionWalk, kAllStrategies, "RefractionWalk", ShaderKind::Tracing, Purpose::Refraction},
+    {ModuleRole::EffectWalk, kAllStrategies, "EffectWalk", ShaderKind::Tracing, Purpose::Walks,
+     Repeated::ByWalk},
     {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
 };
 
@@ -220,34 +211,29 @@ constexpr std::string_view roleName(ModuleRole role) {
     return info == nullptr ? std::string_view("unknown") : info->name;
 }
 
-// Returns the Tracer bits that strategies use. hit-shaders uses the ray tracing pipeline; the others use the
-// package's tracers.
+// Returns the Tracer bits that strategies use. Those with a pipeline of their own use the ray tracing
+// pipeline; the others use the package's tracers.
 constexpr std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers) {
-    const bool others = (strategies & ~kStrategyHitShaders) != 0;
-    const bool hitShaders = (strategies & kStrategyHitShaders) != 0;
-    return (others ? tracers : 0U) | (hitShaders ? std::uint32_t{kTracerRayPipeline} : 0U);
-}
-
-// Whether a pass other than those of the strategy traces rays.
-constexpr bool tracesPrimary(std::uint32_t effects) {
-    return (effects & (kEffectShadow | kEffectAmbientOcclusion)) != 0;
+    const bool others = (strategies & ~kPipelineStrategies) != 0;
+    const bool pipelines = (strategies & kPipelineStrategies) != 0;
+    return (others ? tracers : 0U) | (pipelines ? std::uint32_t{kTracerRayPipeline} : 0U);
 }
 
 // Whether a package of this shape needs modules with this purpose.
 constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     const bool frame = shape.passes == Passes::Frame;
-    const bool hits = !frame || rayEffects(shape.effects) != 0;
+    const bool hits = !frame || shape.effects.rays != 0;
     switch (purpose) {
         case Purpose::Picture:
             return frame;
         case Purpose::Hits:
             return hits;
         case Purpose::Shadows:
-            return hits && (shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Deferred;
-        case Purpose::Refraction:
-            return frame && (shape.effects & kEffectRefraction) != 0;
+            return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
+        case Purpose::Walks:
+            return frame && shape.effects.walks != 0;
         case Purpose::Tracing:
-            return hits || tracesPrimary(shape.effects);
+            return hits || shape.effects.tracesAtSurfaces();
         case Purpose::Motion:
             return frame && shape.deforms;
     }
@@ -257,9 +243,9 @@ constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
 // Whether a module traces, given that modules of its kind may do so.
 constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
     if (info.role == ModuleRole::Lighting) {
-        return tracesPrimary(shape.effects);
+        return shape.effects.tracesAtSurfaces();
     }
-    return !info.shades || ((shape.effects & kEffectShadow) != 0 && shape.shadows == ShadowPlacement::Inline);
+    return !info.shades || (shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Inline);
 }
 
 // Returns the Tracer values that the modules of a role have: several, one, or {0} if the role traces no rays.
@@ -314,11 +300,10 @@ inline std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const Pack
             }
             break;
         case Repeated::ByEffect:
-            for (const EffectInfo& effect : kEffects) {
-                if ((rayEffects(shape.effects) & effect.effect) != 0) {
-                    indices.push_back(effectNumber(effect.effect));
-                }
-            }
+            forEachEffect(shape.effects.rays, [&](std::uint32_t number) { indices.push_back(number); });
+            break;
+        case Repeated::ByWalk:
+            forEachEffect(shape.effects.walks, [&](std::uint32_t number) { indices.push_back(number); });
             break;
     }
     return indices;

@@ -118,7 +118,7 @@ enum class Pass : std::uint32_t {
     Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
     Gbuffer,
     Lighting,
-    RefractionWalk,
+    EffectWalk,
     EffectRays,
     RayDispatch,
     Uber,
@@ -145,11 +145,13 @@ struct PassTiming {
 
 // The counters of one effect in one sample.
 struct EffectCounters {
-    package::Effect effect{};
+    package::Effect effect = 0;
+    package::EffectKind kind = package::EffectKind::Rays;
+    std::string name;
     std::uint32_t rays = 0;  // rays traced to their end: those of the list, or to lights and occluders
     std::uint32_t hits = 0;
     std::uint32_t misses = 0;      // also rays to a light with nothing in their way
-    std::uint32_t segments = 0;    // refraction: rays from one interface to the next
+    std::uint32_t segments = 0;    // rays on their way before the one that joins the list
     std::uint32_t screenHits = 0;  // hits found in screen space, without a ray
     // Pixels, or lights of pixels, that sent no ray. Each counter belongs to the gate that stopped them.
     std::uint32_t skippedSky = 0;
@@ -158,7 +160,7 @@ struct EffectCounters {
     std::uint32_t skippedBlack = 0;   // the sample would bring no light
     std::uint32_t skippedAbsent = 0;  // the material has no such lobe
     std::uint32_t skippedFaint = 0;   // below FrameOptions::faintWeight
-    std::uint32_t skippedFacing = 0;  // shadow: the surface faces away from the light
+    std::uint32_t skippedFacing = 0;  // the surface faces away from the light
     std::uint32_t skippedRange = 0;
     std::uint32_t skippedCone = 0;
     // Misses, then hits by shader ID. Filled if hits are ordered and effects are not batched.
@@ -238,7 +240,7 @@ public:
     Result<FrameCounters> counters();
     // Says for each pixel how it got the light of an effect that sends rays, row by row from the top. Waits
     // for the device. Error "effect-missing" if the package lacks the effect.
-    Result<std::vector<PixelPath>> readCoverage(package::Effect effect = package::kEffectReflection);
+    Result<std::vector<PixelPath>> readCoverage(package::Effect effect);
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
     // by row from the top. Waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();

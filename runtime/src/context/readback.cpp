@@ -3,6 +3,7 @@
 #include "renderer/pass_dependencies.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -108,9 +109,8 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    if ((package::rayEffects(state_->size.effects) & effect) == 0) {
-        return makeError("effect-missing", "",
-                         "the package has no effect " + std::string(package::nameOf(effect)) + " with rays",
+    if (!std::has_single_bit(effect) || (state_->size.effects.rays & effect) == 0) {
+        return makeError("effect-missing", "", "the package has no such effect with rays",
                          "compile the package with that effect");
     }
     Result<CommandRunner> runner = CommandRunner::create(state_->context);

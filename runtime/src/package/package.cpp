@@ -106,6 +106,15 @@ std::span<const package::AttributeEntry> Package::attributes() const {
     return state_->attributes;
 }
 
+std::span<const package::EffectInfo> Package::effects() const {
+    return state_->effects;
+}
+
+package::Effect Package::effect(std::string_view name) const {
+    const auto found = std::ranges::find(state_->effects, name, &package::EffectInfo::name);
+    return found == state_->effects.end() ? 0 : found->effect;
+}
+
 std::span<const package::ModuleEntry> Package::modules() const {
     return state_->modules;
 }

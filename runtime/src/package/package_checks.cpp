@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -91,9 +92,6 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     }
     if (header.tracers == 0 || header.tracers > package::kAllTracers) {
         return outside("the set of tracers", header.tracers);
-    }
-    if (header.effects > package::kAllEffects) {
-        return outside("the set of effects", header.effects);
     }
     if (header.alphaTested > 1) {
         return outside("the alpha policy", header.alphaTested);
@@ -282,12 +280,31 @@ Status checkAttributes(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+Status checkEffects(const Package::State& state, const std::string& where) {
+    package::Effect last = 0;
+    for (const package::EffectEntry& entry : state.effectEntries) {
+        const bool isNext = std::has_single_bit(entry.effect) && entry.effect > last;
+        const bool isKnown = entry.kind <= package::EffectKind::Rays &&
+                             (entry.abilities & ~std::uint32_t{package::kAllEffectAbilities}) == 0;
+        // Only rays are followed.
+        const bool fits = entry.abilities == 0 || entry.kind == package::EffectKind::Rays;
+        if (!inStrings(state, entry.name) || entry.name.length == 0 || !isNext || !isKnown || !fits) {
+            return altered(where, "an effect is not well formed");
+        }
+        last = entry.effect;
+    }
+    return okStatus();
+}
+
 }  // namespace
 
 package::PackageShape shapeOf(const Package::State& state) {
     const package::PackageHeader& header = state.header;
-    package::PackageShape shape{header.strategies, header.tracers,          header.shadows,
-                                header.effects,    header.alphaTested != 0, header.caseCount};
+    package::PackageShape shape{header.strategies,       header.tracers,  header.shadows, {},
+                                header.alphaTested != 0, header.caseCount};
+    for (const package::EffectInfo& effect : state.effects) {
+        shape.effects.add(effect);
+    }
     for (std::uint32_t id = 0; id < state.cases.size(); ++id) {
         if (state.cases[id].keyCount == 0) {
             shape.retired.push_back(id);
@@ -298,7 +315,13 @@ package::PackageShape shapeOf(const Package::State& state) {
     return shape;
 }
 
-Status checkTables(const Package::State& state, const std::string& where) {
+Status checkTables(Package::State& state, const std::string& where) {
+    if (Status status = checkEffects(state, where); !status) {
+        return status;
+    }
+    for (const package::EffectEntry& entry : state.effectEntries) {
+        state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
+    }
     for (const auto check :
          {checkHeader, checkCases, checkModules, checkScenes, checkSamplers, checkAttributes}) {
         if (Status status = check(state, where); !status) {

@@ -33,6 +33,8 @@ struct Package::State {
     std::span<const package::CaseEntry> cases;
     std::span<const package::SceneEntry> scenes;
     std::span<const package::AttributeEntry> attributes;
+    std::span<const package::EffectEntry> effectEntries;
+    std::vector<package::EffectInfo> effects;  // the same, with their names
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };
@@ -44,8 +46,9 @@ package::PackageShape shapeOf(const Package::State& state);
 // "package-foreign" (not a package), "package-version", "package-truncated", "package-altered".
 Status readTables(Package::State& state, const std::string& where);
 
-// Checks every index, reference and promise of the tables. Error "package-altered" says what is wrong.
-Status checkTables(const Package::State& state, const std::string& where);
+// Checks every index, reference and promise of the tables, and fills state.effects. Error "package-altered"
+// says what is wrong.
+Status checkTables(Package::State& state, const std::string& where);
 
 // The source of a package's files.
 class PackageFiles {

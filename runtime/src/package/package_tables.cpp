@@ -123,6 +123,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.scenes);
         case package::SectionKind::Attributes:
             return readSection(state, section, where, state.attributes);
+        case package::SectionKind::Effects:
+            return readSection(state, section, where, state.effectEntries);
     }
     return makeError(
         "package-altered", where,
@@ -155,7 +157,7 @@ Status readTables(Package::State& state, const std::string& where) {
             return status;
         }
     }
-    constexpr std::size_t kSectionKinds = 9;
+    constexpr std::size_t kSectionKinds = 10;
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
                          "the package has " + std::to_string(seen.size()) + " of " +

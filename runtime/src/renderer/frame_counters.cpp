@@ -10,29 +10,23 @@ namespace glint {
 
 namespace {
 
-using Counters = std::array<std::uint32_t, gpu::kCounterCount>;
-
-// The shaders' constants must equal those of the table.
-static_assert(gpu::kEffectShadow == package::kEffectShadow);
-static_assert(gpu::kEffectAmbientOcclusion == package::kEffectAmbientOcclusion);
-static_assert(gpu::kEffectReflection == package::kEffectReflection);
-static_assert(gpu::kEffectRefraction == package::kEffectRefraction);
-static_assert(gpu::kEffectIndirectDiffuse == package::kEffectIndirectDiffuse);
-static_assert(gpu::kEffectCount == package::kEffectCount);
-
-EffectCounters countersOf(const Counters& values, package::Effect effect) {
+// hit/count.glsl says where the counters are.
+EffectCounters countersOf(const std::vector<std::uint32_t>& values, const package::EffectSet& all,
+                          const EffectName& effect) {
     const auto count = [&](std::uint32_t kind) {
-        constexpr std::uint32_t kCountersOfCopy = gpu::kEffectCount * gpu::kCountsOfEffect;
+        const std::uint32_t countersOfCopy = package::countedEffects(all) * gpu::kCountsOfEffect;
         std::uint32_t place =
-            gpu::kCounterEffects + gpu::kCountsOfEffect * package::effectNumber(effect) + kind;
+            gpu::kCounterEffects + gpu::kCountsOfEffect * package::effectNumber(effect.effect) + kind;
         std::uint32_t sum = 0;
-        for (std::uint32_t copy = 0; copy < gpu::kCounterCopies; ++copy, place += kCountersOfCopy) {
+        for (std::uint32_t copy = 0; copy < gpu::kCounterCopies; ++copy, place += countersOfCopy) {
             sum += values[place];
         }
         return sum;
     };
     EffectCounters counters;
-    counters.effect = effect;
+    counters.effect = effect.effect;
+    counters.kind = effect.kind;
+    counters.name = effect.name;
     counters.rays = count(gpu::kRaySent) + count(gpu::kRayEnded);
     counters.hits = count(gpu::kCountHits);
     counters.misses = count(gpu::kCountMisses);
@@ -91,13 +85,11 @@ Result<FrameCounters> Renderer::counters() {
         return frameNotRecorded();
     }
     const std::uint8_t* const bytes = state_->frame.readback.mapped;
-    Counters values{};
-    std::memcpy(values.data(), bytes, sizeof(values));
+    std::vector<std::uint32_t> values(counterBytes(state_->size) / sizeof(std::uint32_t));
+    std::memcpy(values.data(), bytes, values.size() * sizeof(values[0]));
     FrameCounters counters;
-    for (const package::EffectInfo& info : package::kEffects) {
-        if ((state_->size.effects & info.effect) != 0) {
-            counters.effects.push_back(countersOf(values, info.effect));
-        }
+    for (const EffectName& effect : state_->effects) {
+        counters.effects.push_back(countersOf(values, state_->size.effects, effect));
     }
     counters.orderErrors = values[gpu::kCounterOrderErrors];
     counters.unknownShader = values[gpu::kCounterUnknownShader];

@@ -26,9 +26,15 @@ std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
     return std::min<std::uint64_t>(width, limits.rayPipeline.maxRayDispatchInvocationCount);
 }
 
+VkDeviceSize counterBytes(const FrameSize& size) {
+    const VkDeviceSize ofEffects =
+        VkDeviceSize{gpu::kCounterCopies} * gpu::kCountsOfEffect * package::countedEffects(size.effects);
+    return sizeof(std::uint32_t) * (gpu::kCounterEffects + ofEffects);
+}
+
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
     const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
-    return kCounterBytes + round * (kRoundCounterBytes + buckets);
+    return counterBytes(size) + round * (kRoundCounterBytes + buckets);
 }
 
 Status checkFrameSize(const Context::State& context, const FrameSize& size) {
@@ -61,7 +67,7 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
 namespace {
 
 bool hasImage(const FrameSize& size, std::uint32_t binding) {
-    return binding != gpu::kBindingPosition || (size.effects & package::kEffectReflection) != 0;
+    return binding != gpu::kBindingPosition || size.effects.screenStarts != 0;
 }
 
 Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
@@ -146,7 +152,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         {frame.bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
         {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.counters, kCounterBytes, kCleared, MemoryUse::Device},
+        {frame.counters, counterBytes(size), kCleared, MemoryUse::Device},
         {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
          MemoryUse::Readback},
     };

@@ -5,6 +5,8 @@
 #include "interop/frame.h"
 #include "sky/environment_state.h"
 
+#include <glint/effects.h>
+
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -16,7 +18,6 @@ inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 // The layout of what counters() reads: the counters first, then for each round of rays the counters of its
 // lists and its buckets.
-inline constexpr VkDeviceSize kCounterBytes = sizeof(std::uint32_t) * gpu::kCounterCount;
 inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 
 // Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
@@ -74,7 +75,7 @@ struct FrameSize {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::uint32_t bucketCount = 0;
-    std::uint32_t effects = 0;  // Effect bits
+    package::EffectSet effects;
     // The number of samples of a pixel, and how many of them have their rays in the list at once.
     std::uint32_t sampleCount = 0;
     std::uint32_t batchCount = 0;
@@ -92,6 +93,9 @@ struct FrameSize {
         return batchCount > 0 ? sampleCount / batchCount : 0;
     }
 };
+
+// Returns the size of the counters.
+VkDeviceSize counterBytes(const FrameSize& size);
 
 // Returns the offset at which a round of rays is read back. For the number of rounds it returns the end.
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);

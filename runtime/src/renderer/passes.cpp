@@ -31,7 +31,7 @@ public:
         passes_.bindSets(sets);
         passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
         passes_.barrier(dependencies().passToPass);
-        recordEffects(frame.effects & state_.size.effects);
+        recordEffects(frame.effects & state_.size.effects.rays);
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
@@ -48,9 +48,9 @@ private:
         return state_.pipelines.passes.at(role);
     }
 
-    void fill(const Buffer& buffer, VkDeviceSize bytes, std::uint32_t value) {
-        if (buffer.bytes > 0) {
-            vk_.CmdFillBuffer(commands_, buffer.handle.get(), 0, bytes, value);
+    void fill(const Buffer& buffer, VkDeviceSize bytes, std::uint32_t value, VkDeviceSize from = 0) {
+        if (buffer.bytes > from) {
+            vk_.CmdFillBuffer(commands_, buffer.handle.get(), from, bytes, value);
         }
     }
 
@@ -60,11 +60,14 @@ private:
     }
 
     void clear(const FrameOptions& frame) {
-        // The last counter belongs to the accumulated picture, so it is reset with the picture only.
-        static_assert(gpu::kCounterNonFinite + 1 == gpu::kCounterCount);
-        const bool starts = frame.sampleIndex == 0 || !state_.recorded;
-        fill(state_.frame.counters,
-             starts ? VK_WHOLE_SIZE : VkDeviceSize{gpu::kCounterNonFinite} * sizeof(std::uint32_t), 0);
+        // This counter belongs to the accumulated picture, so it is reset with the picture only.
+        constexpr VkDeviceSize kKept = gpu::kCounterNonFinite * sizeof(std::uint32_t);
+        if (frame.sampleIndex == 0 || !state_.recorded) {
+            fill(state_.frame.counters, VK_WHOLE_SIZE, 0);
+        } else {
+            fill(state_.frame.counters, kKept, 0);
+            fill(state_.frame.counters, VK_WHOLE_SIZE, 0, kKept + sizeof(std::uint32_t));
+        }
         clearLists();
     }
 
@@ -76,12 +79,11 @@ private:
     }
 
     // Records the rays of all effects that are on, either together or effect by effect.
-    void recordEffects(std::uint32_t effects) {
-        const std::uint32_t withRays = package::rayEffects(effects);
+    void recordEffects(std::uint32_t withRays) {
         std::vector<std::uint32_t>& rounds = state_.rounds;
         rounds.clear();
         std::uint32_t listed = 0;  // effects whose rays are in the list
-        for (const package::EffectInfo& info : package::kEffects) {
+        for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
@@ -128,15 +130,17 @@ private:
         }
     }
 
-    void recordRays(const package::EffectInfo& info) {
-        const std::string name(info.name);
-        if (info.effect == package::kEffectRefraction) {
-            passes_.dispatchPixels({name + " walk", Pass::RefractionWalk}, pass(ModuleRole::RefractionWalk));
+    void recordRays(const EffectName& info) {
+        const std::uint32_t number = package::effectNumber(info.effect);
+        const auto& passes = state_.pipelines.effectPasses;
+        if ((state_.size.effects.walks & info.effect) != 0) {
+            passes_.dispatchPixels({info.name + " walk", Pass::EffectWalk},
+                                   passes.at({ModuleRole::EffectWalk, number}));
             passes_.barrier(dependencies().passToPass);
         }
         // Effects append to the same list in any order, so they need no barrier among themselves.
-        passes_.dispatchPixels({name + " rays", Pass::EffectRays},
-                               state_.pipelines.effectRays[package::effectNumber(info.effect)]);
+        passes_.dispatchPixels({info.name + " rays", Pass::EffectRays},
+                               passes.at({ModuleRole::EffectRays, number}));
     }
 
     Renderer::State& state_;

@@ -192,16 +192,22 @@ void addComputePasses(const Package& package, const PipelinePlan& plan, Pipeline
         if (key.role == ModuleRole::ShadeCase) {
             pipelines.cases.resize(package.caseCount());
             pipelines.cases[key.index] = pass;
-        } else if (key.role == ModuleRole::EffectRays) {
-            pipelines.effectRays.resize(package::kEffectCount);
-            pipelines.effectRays[key.index] = pass;
         } else {
-            pipelines.passes[key.role] = pass;
+            pipelines.add(key, pass);
         }
     }
 }
 
 }  // namespace
+
+void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
+    const package::Repeated repeated = package::findRole(key.role)->repeated;
+    if (repeated == package::Repeated::ByEffect || repeated == package::Repeated::ByWalk) {
+        effectPasses[{key.role, key.index}] = pass;
+    } else {
+        passes[key.role] = pass;
+    }
+}
 
 package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice) {
     package::PackageShape shape = package.shape();
@@ -226,7 +232,8 @@ std::string pipelineName(const Package& package, const package::ModuleKey& key) 
         case package::Repeated::ByOrdering:
             return name + " " + std::string(nameOf(static_cast<package::Ordering>(key.index)));
         case package::Repeated::ByEffect:
-            for (const package::EffectInfo& effect : package::kEffects) {
+        case package::Repeated::ByWalk:
+            for (const package::EffectInfo& effect : package.effects()) {
                 if (package::effectNumber(effect.effect) == key.index) {
                     return name + " " + std::string(effect.name);
                 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -48,12 +49,16 @@ struct Pipelines {
     VkShaderStageFlags pushStages = 0;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
-    std::vector<PassPipeline> effectRays;  // indexed by package::effectNumber()
-    std::vector<PassPipeline> cases;       // indexed by shader ID; cases that share a module share a pipeline
+    // Those of one effect, by role and package::effectNumber().
+    std::map<std::pair<package::ModuleRole, std::uint32_t>, PassPipeline> effectPasses;
+    std::vector<PassPipeline> cases;  // indexed by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
     std::uint32_t threads = 0;  // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
+
+    // Sets the pipeline of a role, and of the effect if each has one of its own.
+    void add(const package::ModuleKey& key, const PassPipeline& pass);
 };
 
 // A layout that the caller has, or the sets of one to make.

@@ -57,7 +57,7 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
 RayPass planCases(const Package& package) {
     RayPass pass;
     pass.name = std::string(package::roleName(ModuleRole::ShadeCase));
-    pass.role = ModuleRole::ShadeCase;
+    pass.key = {ModuleRole::ShadeCase, 0, package::kTracerRayPipeline};
     std::vector<SpirvWords> shaders;
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
@@ -94,7 +94,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         }
         RayPass pass;
         pass.name = pipelineName(package, key);
-        pass.role = key.role;
+        pass.key = key;
         pass.source = key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
                                                        : tracingSource(package, {package.spirv(key)});
         passes.push_back(std::move(pass));
@@ -127,13 +127,13 @@ Status addRayPass(Context::State& context, const Package& package, const RayPass
     const auto passOf = [&](std::size_t shader) {
         return PassPipeline{pipeline, true, table->rayGeneration[shader], table->miss, table->hit};
     };
-    if (pass.role == ModuleRole::ShadeCase) {
+    if (pass.key.role == ModuleRole::ShadeCase) {
         pipelines.cases.resize(package.caseCount());
         for (const auto& [shaderId, shader] : pass.shaderOfCase) {
             pipelines.cases[shaderId] = passOf(shader);
         }
     } else {
-        pipelines.passes[pass.role] = passOf(0);
+        pipelines.add(pass.key, passOf(0));
     }
     pipelines.tables.push_back(std::move(table->buffer));
     return okStatus();

@@ -16,7 +16,7 @@ namespace glint {
 // The parts of a ray tracing pipeline, and the pass that it serves.
 struct RayPass {
     std::string name;  // for reports
-    package::ModuleRole role{};
+    package::ModuleKey key;
     RayPipelineSource source;
     // For cases, which share a pipeline: the source's ray generation shader by shader ID. Retired shader IDs
     // have none.

@@ -78,7 +78,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.mirrorRoughness = options.mirrorRoughness;
     constants.maxReflectionRoughness = options.maxReflectionRoughness;
     constants.faintWeight = options.faintWeight;
-    constants.effects = options.effects & state.size.effects;
+    constants.effects = options.effects & state.size.effects.all;
     constants.countsLight = options.countsLight ? 1 : 0;
     constants.shadowSamples = options.shadowSamples;
     constants.occlusionSamples = options.occlusionSamples;
@@ -119,13 +119,17 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
     }
-    Result<Timer> timer = Timer::create(contextState, kMaxRounds * (kMaxFixedPasses + package.caseCount()));
+    const std::uint32_t rounds = std::max(package::effectSlots(size.effects), 1U);
+    Result<Timer> timer = Timer::create(contextState, rounds * (kMaxFixedPasses + package.caseCount()));
     if (!timer) {
         return timer.error();
     }
     auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
     state->choice = *choice;
     state->size = size;
+    for (const package::EffectInfo& effect : package.effects()) {
+        state->effects.push_back({effect.effect, effect.kind, std::string(effect.name)});
+    }
     for (const package::CaseEntry& entry : package.cases()) {
         state->caseNames.emplace_back(package.string(entry.name));
     }

@@ -129,18 +129,21 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.bucketCount = package.bucketCount();
     size.effects = package.shape().effects;
     size.hostRays = package.passes() == package::Passes::Steps;
-    size.sampleCount = size.hostRays ? 1 : package::rayEffectCount(size.effects);
+    size.sampleCount = size.hostRays ? 1 : package::effectSlots(size.effects);
     size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
     size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;
-    size.bucketAlignment = choice.strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
+    size.bucketAlignment =
+        (choice.strategy & package::strategiesThat(&package::StrategyInfo::fillsWorkgroups)) != 0
+            ? gpu::kRayGroupSize
+            : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
     // This agrees with order/bucket_key.glsl.
     size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
     size.environmentMap = package.environmentMap();
-    size.deferredShadows = (size.effects & package::kEffectShadow) != 0 &&
-                           package.shape().shadows == package::ShadowPlacement::Deferred;
+    size.deferredShadows =
+        size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     return size;
 }

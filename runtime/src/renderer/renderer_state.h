@@ -8,19 +8,25 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace glint {
 
-// The largest number of rounds: one for each effect with rays.
-inline constexpr std::uint32_t kMaxRounds = package::rayEffectCount(package::kAllEffects);
+// An effect of the package.
+struct EffectName {
+    package::Effect effect = 0;
+    package::EffectKind kind = package::EffectKind::Rays;
+    std::string name;
+};
 
 struct Renderer::State : PassState {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
         : PassState(contextState, std::move(passTimer)), scene(sceneState) {}
 
     GpuScene::State& scene;
+    std::vector<EffectName> effects;
     // The environment in set 1. It stays alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
     std::vector<std::uint32_t> rounds;  // Effect bits of each round of rays of the last recording

@@ -151,7 +151,7 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.sampleIndex = batch.sampleIndex;
     constants.seed = batch.seed;
     constants.time = batch.time;
-    constants.effects = state.size.effects;
+    constants.effects = state.size.effects.all;
     constants.lightCount = state.scene.lightCount;
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
     fillOutside(outsideOf(batch), constants);
@@ -227,9 +227,10 @@ void RaySteps::shade(VkCommandBuffer commands) {
         state_->context.vk.CmdCopyBuffer(commands, source.handle.get(), state_->frame.readback.handle.get(),
                                          1, &region);
     };
-    copy(state_->frame.counters, kCounterBytes, 0);
+    copy(state_->frame.counters, counterBytes(state_->size), 0);
     if (state_->size.ordered) {
-        copy(state_->frame.bucketCounts, sizeof(std::uint32_t) * state_->size.bucketCount, kCounterBytes);
+        copy(state_->frame.bucketCounts, sizeof(std::uint32_t) * state_->size.bucketCount,
+             counterBytes(state_->size));
     }
     passes.barrier(kCopyToHost);
     passes.endLabel();
@@ -260,8 +261,9 @@ Result<RayStepsCounters> RaySteps::counters() {
     result.shadowRays = counter(gpu::kCounterShadowRays);
     result.unknownShader = counter(gpu::kCounterUnknownShader);
     result.orderErrors = counter(gpu::kCounterOrderErrors);
+    const auto buckets = static_cast<std::uint32_t>(counterBytes(state_->size) / sizeof(std::uint32_t));
     for (std::uint32_t i = 0; state_->size.ordered && i < state_->size.bucketCount; ++i) {
-        result.bucketCounts.push_back(counter(gpu::kCounterCount + i));
+        result.bucketCounts.push_back(counter(buckets + i));
     }
     return result;
 }

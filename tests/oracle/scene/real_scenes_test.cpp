@@ -5,6 +5,7 @@
 #include "oracle/scene/report.h"
 #include "oracle/scene/texels.h"
 #include "render/harness.h"
+#include "support/effect_bits.h"
 #include "support/models.h"
 #include "support/temporary_folder.h"
 

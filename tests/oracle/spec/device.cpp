@@ -1,5 +1,6 @@
 #include "oracle/spec/device.h"
 
+#include "support/effect_bits.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>

@@ -295,8 +295,9 @@ TEST(AnimationPlanning, TheSmoothestMomentCountsForReflections) {
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/roughnessFactor", {1, 0.125F}, 1);
     const Scene scene = pointed.import();
     const SceneList list(std::span(&scene, 1));
-    EXPECT_TRUE(sendsRays(package::kEffectReflection, list.materials()[0], list.primitives()[0], 0.125F));
-    EXPECT_FALSE(sendsRays(package::kEffectReflection, list.materials()[0], list.primitives()[0], 0.12F));
+    const EffectDeclaration& reflection = builtinMaterialModel().effects[2];
+    EXPECT_TRUE(sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.125F));
+    EXPECT_FALSE(sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.12F));
 }
 
 }  // namespace

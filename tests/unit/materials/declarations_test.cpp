@@ -83,12 +83,13 @@ TEST(Declarations, OneFileAddsAFeature) {
     material["metallicFactor"] = 0.0F;
     PrimitiveInputs primitive;
     primitive.hasTexCoords0 = true;
+    const EffectDeclaration& reflection = builtinMaterialModel().effects[2];
     EXPECT_EQ(makeKey(material, primitive, {}) & wet, 0U);
-    EXPECT_FALSE(sendsRays(package::kEffectReflection, material, primitive, 0.3F));
+    EXPECT_FALSE(sendsRays(reflection, material, primitive, 0.3F));
     material["wetness"] = 0.5F;
     material.texture("wetTexture").texture = 0;
     EXPECT_EQ(makeKey(material, primitive, {}), wet | model->mask("wetTexture") | model->mask("texCoord0"));
-    EXPECT_TRUE(sendsRays(package::kEffectReflection, material, primitive, 0.3F));
+    EXPECT_TRUE(sendsRays(reflection, material, primitive, 0.3F));
     // Existing features keep their bits.
     for (const Feature& feature : builtinMaterialModel().features) {
         EXPECT_EQ(model->mask(feature.name), feature.mask()) << feature.name;
@@ -126,6 +127,67 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
                   .find("there is no parameter \"damp\""),
               std::string::npos);
     EXPECT_NE(refusal(std::string(2000, '[')).find("nests too deep"), std::string::npos);
+}
+
+constexpr std::string_view kGlow = R"({
+    "name": "glow",
+    "about": "It glows.",
+    "kind": "rays",
+    "glsl": { "sample": "glow.glsl" },
+    "calledFor": { "by": "emits", "otherwise": "nothing glows" },
+    "coherence": 0.5
+})";
+
+// Returns the text of kGlow with a part of it changed.
+std::string glowWith(std::string_view part, std::string_view other) {
+    std::string text(kGlow);
+    const std::size_t place = text.find(part);
+    EXPECT_NE(place, std::string::npos) << part;
+    return text.replace(place, part.size(), other);
+}
+
+TEST(Declarations, OfEffectsAreRead) {
+    const DeclarationFile file{"packs/glow/glow.json", kGlow, true};
+    const Result<MaterialModel> model = readDeclarations({&file, 1});
+    ASSERT_TRUE(model) << toString(model.error());
+    ASSERT_EQ(model->effects.size(), 1U);
+    const EffectDeclaration& glow = model->effects[0];
+    EXPECT_EQ(glow.sample, "packs/glow/glow.glsl");
+    EXPECT_EQ(glow.call.behaviour, Behaviour::Emits);
+    EXPECT_EQ(glow.function(), "Glow");
+    EXPECT_EQ(glow.abilities(), 0U);
+    EffectDeclaration named;
+    named.name = "ambient-occlusion";
+    EXPECT_EQ(named.function(), "AmbientOcclusion");
+    EXPECT_EQ(named.macro(), "AMBIENT_OCCLUSION");
+    EXPECT_EQ(named.file(), "ambient_occlusion");
+}
+
+TEST(Declarations, OfEffectsSayWhatIsWrongAndWhere) {
+    const auto refuses = [](const std::string& text, std::string_view message) {
+        const std::string refused = refusal(text);
+        EXPECT_NE(refused.find(message), std::string::npos) << refused;
+    };
+    EXPECT_TRUE(modelWith(std::string(kGlow)).ok());
+    refuses(glowWith("\"glow\"", "\"Glow\""), "#/name: \"Glow\" must be words");
+    refuses(glowWith("\"glow\"", "\"glow-\""), "#/name: \"glow-\" must be words");
+    refuses(glowWith("\"glow\"", "\"shadow\""), "declared twice");
+    refuses(glowWith("\"glow\"", "\"auto\""), "has another meaning");
+    refuses(glowWith("It glows.", "It glows"), "#/about: must be a sentence");
+    refuses(glowWith("\"rays\"", "\"ray\""), "#/kind: there is no \"ray\"; did you mean");
+    refuses(glowWith("\"rays\"", "\"surface\""), "#/glsl/sample: there is no member");
+    refuses(glowWith("{ \"sample\": \"glow.glsl\" }", "{}"), "#/glsl: has no \"sample\"");
+    refuses(glowWith("glow.glsl", "../glow.glsl"), "beside the declaration");
+    refuses(glowWith("\"glow.glsl\"", "\"glow.glsl\", \"walk\": \"walk.glsl\""),
+            "#/glsl/walk: \"walk.glsl\"");
+    refuses(glowWith("\"otherwise\"", "\"because\""), "#/calledFor: \"because\" stands where");
+    refuses(glowWith("\"emits\"", "\"lit\""), "#/calledFor: \"because\" stands where");
+    refuses(glowWith("0.5", "1.5"), "#/coherence: must be from 0 to 1");
+    refuses(glowWith("\"coherence\"", "\"settings\": [\"spp\"], \"coherence\""), "\"absent\" stands where");
+    refuses(R"({"name": "glow", "about": "", "kind": "light"})", "#/about");
+    refuses(R"({"name": "dim", "about": "It dims.", "kind": "light", "glsl": {"light": "dim.glsl"},
+                "calledFor": {"by": "lit", "because": "is lit"}})",
+            "one effect of the kind light");
 }
 
 // Damaged declarations are refused, or read; they never crash.

@@ -39,6 +39,7 @@ BenchFacts rich() {
     facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
+    facts.sendsRays = true;
     facts.white = 2.0;
     return facts;
 }

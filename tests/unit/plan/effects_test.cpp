@@ -2,6 +2,7 @@
 #include "plan/effects.h"
 
 #include "plan/plan.h"
+#include "support/effect_bits.h"
 #include "support/features.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ std::uint32_t effectsOf(const std::vector<Material>& materials, const SceneLight
     for (std::size_t i = 0; i < materials.size(); ++i) {
         primitives.push_back(primitiveOf(static_cast<int>(i)));
     }
-    return decideEffects(materials, primitives, lights, request).effects;
+    return decideEffects(materials, primitives, lights, request).effects.all;
 }
 
 std::string reasonOf(const Material& material, Effect effect, const EffectRequest& request = kAuto,
@@ -92,7 +93,7 @@ TEST(Effects, ATextureThatCannotBeReadChangesNothing) {
     material.texture("metallicRoughnessTexture").texture = 0;
     PrimitiveInputs primitive;
     const auto effects = [&] {
-        return decideEffects({&material, 1}, {&primitive, 1}, kLit, kAuto).effects &
+        return decideEffects({&material, 1}, {&primitive, 1}, kLit, kAuto).effects.all &
                (kEffectRefraction | kEffectReflection);
     };
     EXPECT_EQ(effects(), 0U);
@@ -149,34 +150,49 @@ TEST(Effects, RefinementsAreThereWhenNamed) {
     EXPECT_EQ(effectsOf({rough()}, kDark, {true, kEffectAmbientOcclusion}), kEffectAmbientOcclusion);
     EXPECT_EQ(effectsOf({rough()}, kDark, {false, kEffectIndirectDiffuse}), kEffectIndirectDiffuse);
     EXPECT_EQ(effectsOf({rough()}, kLit, {false, 0}), 0U);
-    EXPECT_EQ(effectsOf({rough()}, kLit, {true, kAllEffects}), kAllEffects);
+    EXPECT_EQ(effectsOf({rough()}, kLit, {true, kAllEffects}), kBuiltinEffects);
 }
 
 TEST(Effects, WhatIsAskedForIsThereEvenIfUnusable) {
     const Material material = rough();
     const PrimitiveInputs primitive = primitiveOf(0);
     const EffectPlan plan = decideEffects({&material, 1}, {&primitive, 1}, kDark, {false, kEffectRefraction});
-    EXPECT_EQ(plan.effects, kEffectRefraction);
-    ASSERT_EQ(plan.decisions.size(), kEffectCount);
+    EXPECT_EQ(plan.effects.all, kEffectRefraction);
+    EXPECT_EQ(plan.effects.walks, kEffectRefraction);
+    ASSERT_EQ(plan.decisions.size(), builtinMaterialModel().effects.size());
     const EffectDecision& decision = plan.decisions[effectNumber(kEffectRefraction)];
     EXPECT_TRUE(decision.chosen);
     EXPECT_FALSE(decision.usable);
     EXPECT_EQ(decision.reason, "asked for, though no material transmits light");
     for (const EffectDecision& each : plan.decisions) {
-        EXPECT_FALSE(each.reason.empty()) << nameOf(each.effect);
+        EXPECT_FALSE(each.reason.empty()) << each.name;
     }
 }
 
 TEST(Effects, SlotsCountEffectsWithRays) {
-    constexpr std::uint32_t kSome = kEffectShadow | kEffectReflection | kEffectIndirectDiffuse;
-    EXPECT_EQ(rayEffects(kSome), kEffectReflection | kEffectIndirectDiffuse);
-    EXPECT_EQ(rayEffectCount(kSome), 2U);
-    EXPECT_EQ(effectSlot(kSome, kEffectReflection), 0U);
-    EXPECT_EQ(effectSlot(kSome, kEffectIndirectDiffuse), 1U);
-    EXPECT_EQ(effectSlot(kAllEffects, kEffectIndirectDiffuse), 2U);
-    for (std::uint32_t number = 0; number < kEffectCount; ++number) {
-        EXPECT_EQ(effectNumber(kEffects[number].effect), number);
-    }
+    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    const EffectSet some = effectSetOf(effects, kEffectShadow | kEffectReflection | kEffectIndirectDiffuse);
+    EXPECT_EQ(some.lights, kEffectShadow);
+    EXPECT_EQ(some.rays, kEffectReflection | kEffectIndirectDiffuse);
+    EXPECT_EQ(some.screenStarts, kEffectReflection);
+    EXPECT_EQ(some.walks, 0U);
+    EXPECT_EQ(effectSlots(some), 2U);
+    EXPECT_EQ(effectSlot(some, kEffectReflection), 0U);
+    EXPECT_EQ(effectSlot(some, kEffectIndirectDiffuse), 1U);
+    EXPECT_EQ(effectSlot(effectSetOf(effects, kAllEffects), kEffectIndirectDiffuse), 2U);
+    EXPECT_EQ(countedEffects(some), 5U);
+    EXPECT_EQ(countedEffects(effectSetOf(effects, kEffectReflection)), 3U);
+}
+
+TEST(Effects, BitsAreThoseOfTheDeclarations) {
+    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    EXPECT_EQ(findEffect(effects, "shadow"), kEffectShadow);
+    EXPECT_EQ(findEffect(effects, "ambient-occlusion"), kEffectAmbientOcclusion);
+    EXPECT_EQ(findEffect(effects, "reflection"), kEffectReflection);
+    EXPECT_EQ(findEffect(effects, "refraction"), kEffectRefraction);
+    EXPECT_EQ(findEffect(effects, "indirect-diffuse"), kEffectIndirectDiffuse);
+    EXPECT_EQ(findEffect(effects, "glow"), 0U);
+    EXPECT_EQ(effectSetOf(effects, kAllEffects).all, kBuiltinEffects);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "package_builder.h"
 
 #include "package/interop_hash.h"
+#include "support/effect_bits.h"
 
 #include <xxhash.h>
 
@@ -39,7 +40,18 @@ constexpr NamedRole kRoles[] = {
     {ModuleRole::OrderCheck, "compose.comp"},
 };
 
-constexpr std::uint32_t kEffects = package::kEffectShadow | package::kEffectReflection;
+const package::EffectInfo kEffects[] = {
+    {package::kEffectShadow, package::EffectKind::Light, 0, "shadow"},
+    {package::kEffectReflection, package::EffectKind::Rays, package::kEffectStartsOnScreen, "reflection"},
+};
+
+package::EffectSet effectSet() {
+    package::EffectSet set;
+    for (const package::EffectInfo& effect : kEffects) {
+        set.add(effect);
+    }
+    return set;
+}
 
 // This is a module only by its header.
 const std::vector<std::uint32_t> kEmptyModule{0x07230203, 0x00010500, 0, 1, 0};
@@ -49,9 +61,12 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     spec.interopHash = interopHash();
     spec.caseCount = 1;
     for (const package::ModuleKey& key :
-         package::requiredModules({spec.strategies, spec.tracers, {}, kEffects, false, 1, {}})) {
+         package::requiredModules({spec.strategies, spec.tracers, {}, effectSet(), false, 1, {}})) {
         const NamedRole& named = *std::ranges::find(kRoles, key.role, &NamedRole::role);
         spec.modules.push_back({key, std::string(named.name) + ".spv", wordsOf(named.name)});
+    }
+    for (const package::EffectInfo& effect : kEffects) {
+        spec.effects.push_back({{}, effect.effect, effect.kind, effect.abilities, 0});
     }
     spec.cases = {{0, 0, "Plain"}};
     spec.materials.resize(1);
@@ -157,6 +172,11 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
         cases.push_back({entry.always, entry.sometimes, addString(strings, entry.name), entry.keyCount, 0});
     }
     const std::vector<package::SceneEntry> scenes = makeScenes(spec, strings);
+    std::vector<package::EffectEntry> effects = spec.effects;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        effects[i].name =
+            addString(strings, i < std::size(kEffects) ? std::string(kEffects[i].name) : "further");
+    }
     Writer writer;
     writer.add(package::SectionKind::Modules, modules);
     writer.add(package::SectionKind::Scenes, scenes);
@@ -167,6 +187,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     writer.add(package::SectionKind::Strings, strings);
     writer.add(package::SectionKind::Cases, cases);
     writer.add(package::SectionKind::Attributes, spec.attributes);
+    writer.add(package::SectionKind::Effects, effects);
 
     package::PackageHeader header{};
     std::memcpy(header.magic, package::kMagic, sizeof(header.magic));
@@ -176,7 +197,6 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.tracers = spec.tracers;
     header.alphaTested = spec.alphaTested;
     header.precision = spec.precision;
-    header.effects = kEffects;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;
     header.materialTextureOffset = offsetof(TestMaterial, textures);

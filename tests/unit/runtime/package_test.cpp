@@ -129,6 +129,42 @@ TEST_F(PackageTest, RefusesScenesThatDoNotDivideTheTables) {
               "package-altered");
 }
 
+TEST_F(PackageTest, SaysWhichEffectsItHas) {
+    write(test::makeSpec());
+    const Result<Package> package = Package::load(folder_.path());
+    ASSERT_TRUE(package) << toString(package.error());
+    ASSERT_EQ(package->effects().size(), 2U);
+    EXPECT_EQ(package->effects()[0].name, "shadow");
+    EXPECT_EQ(package->effect("reflection"), package::Effect{4});
+    EXPECT_EQ(package->effect("glow"), package::Effect{0});
+    EXPECT_EQ(package->shape().effects.all, 5U);
+    EXPECT_EQ(package->shape().effects.screenStarts, 4U);
+}
+
+TEST_F(PackageTest, RefusesEffectsThatAreNotWellFormed) {
+    const auto refused = [&](const auto& change) {
+        PackageSpec spec = test::makeSpec();
+        change(spec.effects);
+        write(spec);
+        return load();
+    };
+    using Effects = std::vector<package::EffectEntry>;
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 6; }), "package-altered");  // two bits
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 0; }), "package-altered");
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 1; }), "package-altered");  // twice
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].kind = package::EffectKind{3}; }), "package-altered");
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].abilities = 4; }), "package-altered");
+    EXPECT_EQ(refused([](Effects& effects) { effects[0].abilities = package::kEffectWalks; }),
+              "package-altered");  // lights have no rays to follow
+    // Its modules would be missing.
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].abilities |= package::kEffectWalks; }),
+              "package-altered");
+    EXPECT_EQ(refused([](Effects& effects) {
+                  effects.push_back({{}, 8, package::EffectKind::Rays, 0, 0});
+              }),
+              "package-altered");
+}
+
 // A lock file keeps this shader ID for keys that are gone.
 TEST_F(PackageTest, RetiredCasesNeedNoModules) {
     PackageSpec spec = test::makeSpec();

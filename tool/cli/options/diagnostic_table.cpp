@@ -100,6 +100,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"draco-size", kError, "Draco data claims more triangles or attributes than its bytes can hold."},
     {"effect-absent", kNote, "The picture has a light, but the package has no effect `shadow`."},
     {"effect-missing", kError, "The runtime was asked for the rays of an effect that the package lacks."},
+    {"effect-unknown", kError, "`--effects` names an effect that neither Glint nor a pack has."},
     {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
     {"engine-scene", kError,
      "A scene of a host's own (`EngineScene`) has a number out of range, or lacks something that the package "

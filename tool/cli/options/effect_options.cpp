@@ -10,15 +10,12 @@ namespace glint {
 
 std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings) {
     std::vector<Diagnostic> warnings;
-    if (settings.effects.named == package::kAllEffects) {
-        return warnings;  // "all" asks for none of them by name
-    }
     for (const EffectDecision& decision : planEffects(scenes, settings).decisions) {
-        if ((settings.effects.named & decision.effect) != 0 && !decision.usable) {
-            warnings.push_back(makeWarning(
-                "effect-unused", scenes.path(),
-                fmt::format("the effect {} is {}", package::nameOf(decision.effect), decision.reason),
-                "leave it out of --effects: its passes cost time and change nothing"));
+        if (decision.isNamed && !decision.usable) {
+            warnings.push_back(
+                makeWarning("effect-unused", scenes.path(),
+                            fmt::format("the effect {} is {}", decision.name, decision.reason),
+                            "leave it out of --effects: its passes cost time and change nothing"));
         }
     }
     return warnings;
@@ -31,8 +28,7 @@ EffectPlan automaticEffects(const SceneList& scenes) {
 std::string effectsText(const EffectPlan& plan) {
     std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
     for (const EffectDecision& decision : plan.decisions) {
-        rows.push_back(
-            {std::string(package::nameOf(decision.effect)), decision.chosen ? "yes" : "no", decision.reason});
+        rows.push_back({decision.name, decision.chosen ? "yes" : "no", decision.reason});
     }
     return formatTable(rows);
 }

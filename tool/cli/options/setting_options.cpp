@@ -1,5 +1,6 @@
 #include "cli/options/setting_options.h"
 
+#include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
 #include "materials/packs.h"
@@ -91,6 +92,16 @@ const CLI::Option* givenOption(const CLI::App& command, const std::string& name)
     return option != nullptr && option->count() > 0 ? option : nullptr;
 }
 
+// Refuses names that only a pack could give.
+void refuseNames(std::string_view setting, const std::vector<std::string>& names) {
+    if (!names.empty()) {
+        Descriptor row = *sweptSetting(setting);
+        row.values.accepts = nullptr;
+        row.values.further = {};
+        throw CLI::ValidationError("--" + std::string(setting), complaintAbout(row, names.front()));
+    }
+}
+
 }  // namespace
 
 void addSettings(CLI::App& command, SettingCommand which, Settings& settings) {
@@ -112,22 +123,20 @@ void settleSettings(const CLI::App& command, const Settings& settings) {
             }
         }
     }
-    if (!settings.packLobes.empty() && settings.materials.empty()) {
-        Descriptor row = *sweptSetting("hit-lobes");
-        row.values.accepts = nullptr;
-        row.values.further = {};
-        throw CLI::ValidationError("--hit-lobes", complaintAbout(row, settings.packLobes.front()));
+    if (settings.materials.empty()) {
+        refuseNames("hit-lobes", settings.packLobes);
+        refuseNames("effects", settings.compile.effects.ofPacks);
     }
     if (settings.frame.occlusionFalloff &&
         settings.frame.occlusionRadius == std::numeric_limits<float>::infinity()) {
         throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");
     }
-    if (settings.strategy == package::kStrategyHitShaders &&
+    if (settings.strategy && (*settings.strategy & package::kPipelineStrategies) != 0 &&
         settings.renderer.tracer == package::kTracerRayQuery) {
         throw CLI::ValidationError(
-            "--tracer",
-            "ray-query can't run --strategy hit-shaders, which is a ray tracing pipeline: "
-            "leave out --tracer, or use --strategy uber");
+            "--tracer", fmt::format("ray-query can't run --strategy {}, which is a ray tracing pipeline: "
+                                    "leave out --tracer, or use --strategy uber",
+                                    package::nameOf(*settings.strategy)));
     }
 }
 
@@ -169,8 +178,8 @@ void addReadingOptions(CLI::App& command, Settings& settings) {
     addFlag(command, "--strict-paths", settings.strictPaths,
             "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
     addTexts(command, "--materials", settings.materials, "DIR",
-             "add the material features that this folder declares\n"
-             "(docs/material_features.md); may be repeated")
+             "add the material features and effects that this folder declares\n"
+             "(docs/material_features.md, docs/effects.md); may be repeated")
         .allow_extra_args(false);
 }
 
@@ -185,6 +194,18 @@ Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages)
     const Result<const MaterialModel*> model = loadMaterialModel(settings.materials);
     if (!model) {
         return model.error();
+    }
+    for (const std::string& name : settings.compile.effects.ofPacks) {
+        if (findEffect((*model)->effects, name) == 0) {
+            std::vector<std::string> names;
+            for (const EffectDeclaration& effect : (*model)->effects) {
+                names.push_back(effect.name);
+            }
+            return makeError(
+                "effect-unknown", "",
+                fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name, suggestion(name, names)),
+                "correct --effects, or add the pack by --materials");
+        }
     }
     ImportOptions options;
     options.decodeImages = decodeImages;

@@ -51,6 +51,9 @@ public:
         }
         report_.start.rendererMs = millisecondsSince(onDevice);
         renderer_ = std::move(*renderer);
+        // The effect whose rays may end on the screen; there is one of Glint's own.
+        const std::uint32_t onScreen = package.shape().effects.screenStarts;
+        onScreen_ = onScreen & (0U - onScreen);
         report_.tracer = std::string(package::nameOf(renderer_->tracer()));
         if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
             report_.ordering = std::string(package::nameOf(renderer_->ordering()));
@@ -172,7 +175,7 @@ private:
         report_.passes = std::move(*passes);
         report_.counters = std::move(*counters);
         if (!setup_.arguments.coverage.empty()) {
-            Result<std::vector<PixelPath>> paths = renderer_->readCoverage();
+            Result<std::vector<PixelPath>> paths = renderer_->readCoverage(onScreen_);
             if (!paths) {
                 return paths.error();
             }
@@ -187,6 +190,7 @@ private:
     RenderReport& report_;
     CameraView camera_;
     scene_view::SkyChoice sky_;
+    package::Effect onScreen_ = 0;  // for --coverage
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
     bool begun_ = false;  // a sample is complete

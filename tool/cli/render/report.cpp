@@ -109,7 +109,7 @@ Json effectsToJson(const FrameCounters& counters) {
         for (const Gate& gate : kGates) {
             skipped[gate.name] = effect.*gate.count;
         }
-        list.push_back({{"name", package::nameOf(effect.effect)},
+        list.push_back({{"name", effect.name},
                         {"rays", effect.rays},
                         {"hits", effect.hits},
                         {"misses", effect.misses},
@@ -280,10 +280,10 @@ std::string toText(const RenderReport& report, Detail detail) {
     rows.push_back({"first sample", toText(report.start)});
     rows.push_back({"render", formatMilliseconds(report.renderMs)});
     for (const EffectCounters& effect : counters.effects) {
-        if (!report.countsLight && package::effectInfo(effect.effect).kind != package::EffectKind::Rays) {
+        if (!report.countsLight && effect.kind != package::EffectKind::Rays) {
             continue;  // not counted
         }
-        rows.push_back({std::string(package::nameOf(effect.effect)), effectText(effect)});
+        rows.push_back({effect.name, effectText(effect)});
     }
     rows.push_back(
         {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),

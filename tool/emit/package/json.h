@@ -69,18 +69,18 @@ inline nlohmann::ordered_json strategyChoiceToJson(const StrategyAdvice& advice)
 }
 
 // Names one of a case's modules by its purpose.
-constexpr std::string_view stageName(const package::ModuleKey& key) {
-    if (key.role == package::ModuleRole::HitCase) {
-        return "hit-shaders";
-    }
-    return key.tracer == package::kTracerRayPipeline ? "visibility, ray-pipeline" : "visibility";
+inline std::string stageName(const package::ModuleKey& key) {
+    const auto strategy = static_cast<package::Strategy>(package::findRole(key.role)->strategies);
+    const bool alone = (strategy & package::kPipelineStrategies) != 0;
+    const std::string name(package::nameOf(strategy));
+    return alone || key.tracer != package::kTracerRayPipeline ? name : name + ", ray-pipeline";
 }
 
 // Lists every effect, chosen or not.
 inline nlohmann::ordered_json effectsToJson(const EffectPlan& plan) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const EffectDecision& decision : plan.decisions) {
-        list.push_back({{"name", package::nameOf(decision.effect)},
+        list.push_back({{"name", decision.name},
                         {"chosen", decision.chosen},
                         {"usable", decision.usable},
                         {"reason", decision.reason}});

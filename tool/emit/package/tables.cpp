@@ -134,6 +134,15 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
     return entries;
 }
 
+std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
+    std::vector<EffectEntry> entries;
+    package::forEachEffect(plan.effects.effects.all, [&](std::uint32_t number) {
+        const package::EffectInfo info = infoOf(plan.model->effects[number], number);
+        entries.push_back({strings.add(std::string(info.name)), info.effect, info.kind, info.abilities, 0});
+    });
+    return entries;
+}
+
 std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
     std::vector<SamplerEntry> entries;
     for (const Sampler& sampler : scene.samplers) {
@@ -232,6 +241,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     }
 
     const std::vector<AttributeEntry> attributes = makeAttributes(plan, strings);
+    const std::vector<EffectEntry> effects = makeEffects(plan, strings);
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
     writer.add(SectionKind::Materials, layout.bytes, tables.materials);
@@ -242,6 +252,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     writer.add(SectionKind::Strings, strings.bytes());
     writer.add(SectionKind::Cases, cases);
     writer.add(SectionKind::Attributes, attributes);
+    writer.add(SectionKind::Effects, effects);
 
     PackageHeader header{};
     std::memcpy(header.magic, kMagic, sizeof header.magic);
@@ -258,7 +269,6 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.bindings = settings.bindings;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
-    header.effects = plan.effects.effects;
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());

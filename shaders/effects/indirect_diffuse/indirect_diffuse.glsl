@@ -24,6 +24,7 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
         back = surface.bsdf.diffuseTransmitted * base;
     }
     sky.diffuse = 0.0;
+    sky.behind = 0.0;
     float total = luminance(front) + luminance(back);
     if (total <= 0.0) {
         return noSample(kRayAbsent);

@@ -1,6 +1,6 @@
 #version 460
 // A hit whose shader ID no case has.
-#include "hit/hit_shader.glsl"
+#include "strategies/hit_shaders/hit_shader.glsl"
 
 void main() {
     atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);

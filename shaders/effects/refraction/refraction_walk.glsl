@@ -223,7 +223,7 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media.count = 0u;
-    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in effects/refraction.glsl
+    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
     bool meets = true;  // the ray meets a surface that affects it

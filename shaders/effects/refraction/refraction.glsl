@@ -1,5 +1,5 @@
 // The effect refraction: decides which surfaces let light through. The walk finds where their rays go
-// (passes/refraction_walk.comp).
+// (refraction_walk.comp).
 #include "effects/sample.glsl"
 #include "effects/sky_shares.glsl"
 #include "hit/surface.glsl"

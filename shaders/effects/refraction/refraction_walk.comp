@@ -9,7 +9,7 @@
 #define GLINT_MODULE_ALWAYS_INPUTS (GLINT_ALWAYS_INPUTS)
 #define GLINT_MODULE_ANY_LOBES ((GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES) & kWalkedLobes)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED)
-#include "effects/refraction_walk.glsl"
+#include "effects/refraction/refraction_walk.glsl"
 
 GLINT_PIXEL_WORKGROUP
 

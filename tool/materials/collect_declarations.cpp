@@ -1,0 +1,279 @@
+// Collects what has a name in declarations: features, parameters, textures, attributes.
+#include "materials/model_builder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+// "clearcoatRoughnessTexture" becomes "CLEARCOAT_ROUGHNESS_TEXTURE", and "texCoord0" "TEX_COORD_0".
+std::string macroCase(std::string_view name) {
+    std::string macro;
+    bool wasDigit = false;
+    for (const char c : name) {
+        const bool isDigit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+        const bool begins = std::isupper(static_cast<unsigned char>(c)) != 0 || (isDigit && !wasDigit);
+        macro += begins ? "_" : "";
+        macro += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        wasDigit = isDigit;
+    }
+    return macro;
+}
+
+}  // namespace
+
+int ModelBuilder::addFeature(const Members& members, Feature feature, bool isLit) {
+    feature.macro = "GLINT" + macroCase("_" + feature.name);
+    feature.about = members.text("about", "");
+    std::string capital = feature.name;
+    capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
+    feature.shortName = members.text("short", capital);
+    readNeeds(members, feature);
+    if (members.has("cost")) {
+        const Members cost(members["cost"], members.at("cost"), {"instructions", "fetches"});
+        feature.cost = {cost.number("instructions", 0.0), cost.number("fetches", 0.0)};
+    }
+    pending_.push_back(
+        {std::move(feature), members.number("order", kNoOrder), members.where(), isLit, isOfPack_});
+    return static_cast<int>(pending_.size()) - 1;
+}
+
+void ModelBuilder::readNeeds(const Members& members, Feature& feature) {
+    if (!members.has("needs")) {
+        return;
+    }
+    const std::vector<std::string> needs =
+        members["needs"].is_array() ? members.texts("needs") : std::vector{members.text("needs")};
+    for (const std::string& need : needs) {
+        if (need == "tangents") {
+            feature.needsTangents = true;
+        } else if (need == "texCoord0" || need == "texCoord1") {
+            feature.needsTexCoord = need == "texCoord1" ? 1 : 0;
+        } else {
+            failAt(members.at("needs"),
+                   fmt::format("\"{}\" is none of \"tangents\", \"texCoord0\" and \"texCoord1\"", need));
+        }
+    }
+}
+
+void ModelBuilder::collect(File& file) {
+    isOfPack_ = file.isOfPack;
+    const Members members = membersOf(file);
+    const std::string name = newName(members);
+    const std::string stageName = members.text("stage");
+    const Stage stage = choose(kStages, members, "stage", stageName).stage;
+    if (members.has("extension") && members.has("object")) {
+        failAt(members.at("object"), "a feature has an extension or an object of the core, not both");
+    }
+    file.object = members.has("extension") ? addObject(members.text("extension"), true)
+                  : members.has("object")  ? addObject(members.text("object"), false)
+                                           : 0;
+    const bool hasOwn = members.has("short") || members.has("neutral") || members.has("extension");
+    if (hasOwn) {
+        Feature feature;
+        feature.name = name;
+        feature.stage = stage;
+        feature.object = members.has("extension") ? file.object : -1;
+        feature.gltf = members.text("gltf", gltfPlace(file.object, ""));
+        feature.isOfBase = members.flag("ofBase", false);
+        file.mainFeature = addFeature(members, std::move(feature), members.flag("lit", true));
+    }
+    for (const auto& [json, where] : members.list("parameters")) {
+        const Members parameter(*json, where, kParameterMembers);
+        if (!parameter.has("is")) {
+            addParameter(file, parameter);
+        }
+    }
+    for (const auto& [json, where] : members.list("textures")) {
+        const Members texture(*json, where, kTextureMembers);
+        if (!texture.has("is")) {
+            addTexture(file, texture);
+        }
+    }
+    for (const auto& [json, where] : members.list("attributes")) {
+        addAttribute(file, Members(*json, where, kAttributeMembers));
+    }
+    for (const auto& [json, where] : members.list("features")) {
+        const Members further(*json, where, kFeatureMembers);
+        Feature feature;
+        feature.name = newName(further);
+        feature.stage = further.has("stage") ? choose(kStages, further, "stage", further.text("stage")).stage
+                        : stage == Stage::Layer ? Stage::Surface
+                                                : stage;
+        feature.gltf = further.text("gltf");
+        addFeature(further, std::move(feature), true);
+    }
+}
+
+Parameter ModelBuilder::makeParameter(const File& file, const Members& members, const std::string& name,
+                                      int channels) {
+    Parameter parameter;
+    parameter.name = name;
+    parameter.object = file.object;
+    parameter.place = members.text("at", name);
+    parameter.unit = members.text("unit", "");
+    parameter.about = members.text("about", "");
+    parameter.isAngle = parameter.unit == "radians";
+    parameter.channels = channels;
+    parameter.inRecord = members.flag("record", true);
+    parameter.low = -kLargestFloat;
+    parameter.high = kLargestFloat;
+    if (members.has("range")) {
+        const auto range = members.list("range");
+        if (range.size() != 2) {
+            failAt(members.at("range"), "must be the least and the greatest value; null means no limit");
+        }
+        parameter.low =
+            range[0].first->is_null() ? -kLargestFloat : Members::toNumber(*range[0].first, range[0].second);
+        parameter.high =
+            range[1].first->is_null() ? kLargestFloat : Members::toNumber(*range[1].first, range[1].second);
+        if (!(parameter.low <= parameter.high)) {
+            failAt(members.at("range"), "the least value is above the greatest");
+        }
+    }
+    if (members.has("also")) {
+        const auto also = members.list("also");
+        if (also.size() != 1) {
+            failAt(members.at("also"), "must be one further value");
+        }
+        parameter.also = Members::toNumber(*also[0].first, also[0].second);
+    }
+    readDefault(members, parameter);
+    return parameter;
+}
+
+void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
+    const DeclarationJson& fallback = members["default"];
+    const bool isList = fallback.is_array();
+    if (isList ? fallback.size() != static_cast<std::size_t>(parameter.channels) : parameter.channels != 1) {
+        failAt(members.at("default"), fmt::format("must have {} numbers", parameter.channels));
+    }
+    for (int i = 0; i < parameter.channels; ++i) {
+        const DeclarationJson& value = isList ? fallback[static_cast<std::size_t>(i)] : fallback;
+        const double number = Members::toNumber(value, members.at("default"));
+        if (number != parameter.also && !(number >= parameter.low && number <= parameter.high)) {
+            failAt(members.at("default"), "is outside of the range");
+        }
+        parameter.fallback[static_cast<std::size_t>(i)] = static_cast<float>(number);
+    }
+}
+
+void ModelBuilder::addParameter(const File& file, const Members& members) {
+    // A parameter may be called as its feature is: "dispersion".
+    std::string name = members.text("name");
+    if (name != file.json["name"]) {
+        name = newName(members);
+    }
+    const auto& type = choose(kTypes, members, "type", members.text("type"));
+    Parameter parameter = makeParameter(file, members, name, type.channels);
+    parameter.type = type.glsl;
+    parameter.first = model_.valueCount;
+    model_.valueCount += parameter.channels;
+    if (model_.findParameter(name) >= 0) {
+        failAt(members.at("name"), fmt::format("\"{}\" is declared twice", name));
+    }
+    model_.parameters.push_back(std::move(parameter));
+}
+
+void ModelBuilder::addAttribute(const File& file, const Members& members) {
+    VertexAttribute attribute;
+    attribute.name = newName(members);
+    attribute.gltf = members.text("at");
+    attribute.about = members.text("about", "");
+    const auto& type = choose(kTypes, members, "type", members.text("type"));
+    attribute.type = type.glsl;
+    attribute.channels = type.channels;
+    attribute.feature = file.mainFeature;
+    if (file.mainFeature < 0) {
+        failAt(members.where(), "needs a feature that reads it: give the declaration \"neutral\"");
+    }
+    // Attributes of an application begin with an underscore: glTF 2.0, section 3.7.2.1.
+    if (attribute.gltf.size() < 2 || attribute.gltf.front() != '_') {
+        failAt(members.at("at"),
+               fmt::format("\"{}\" must begin with an underscore, as glTF wants it of attributes "
+                           "that are not its own",
+                           attribute.gltf));
+    }
+    if (members.has("default")) {
+        Parameter value;
+        value.channels = attribute.channels;
+        value.low = -kLargestFloat;
+        value.high = kLargestFloat;
+        readDefault(members, value);
+        attribute.fallback = value.fallback;
+    }
+    for (const VertexAttribute& other : model_.attributes) {
+        if (other.gltf == attribute.gltf && other.channels != attribute.channels) {
+            failAt(members.at("type"),
+                   fmt::format("{} has {} channels here and {} for \"{}\"", attribute.gltf,
+                               attribute.channels, other.channels, other.name));
+        }
+    }
+    if (model_.attributes.size() == kMostVertexAttributes) {
+        failAt(members.where(),
+               fmt::format("there are more than {} attributes of vertices", kMostVertexAttributes));
+    }
+    model_.attributes.push_back(std::move(attribute));
+}
+
+void ModelBuilder::addTexture(const File& file, const Members& members) {
+    MaterialTexture texture;
+    texture.name = newName(members);
+    texture.places.push_back({file.object, texture.name, members.flag("color", false)});
+    Feature feature;
+    feature.name = texture.name;
+    feature.gltf = gltfPlace(file.object, texture.name);
+    feature.texture = static_cast<int>(model_.textures.size());
+    if (members.has("coordinates")) {
+        if (members.text("coordinates") != "own") {
+            failAt(members.at("coordinates"), "the only other coordinates are \"own\"");
+        }
+        feature.hasOwnCoordinates = true;
+    }
+    texture.feature = addFeature(members, std::move(feature), true);
+    model_.textures.push_back(std::move(texture));
+}
+
+void ModelBuilder::collectAliases(const File& file) {
+    const Members members = membersOf(file);
+    for (const auto& [json, where] : members.list("parameters")) {
+        const Members alias(*json, where, kParameterMembers);
+        if (!alias.has("is")) {
+            continue;
+        }
+        const std::string name = newName(alias);
+        const int target = model_.findParameter(alias.text("is"));
+        if (target < 0) {
+            failAt(alias.at("is"), fmt::format("there is no parameter \"{}\"", alias.text("is")));
+        }
+        const Parameter& original = model_.parameters[static_cast<std::size_t>(target)];
+        Parameter parameter = original;
+        parameter.name = name;
+        parameter.object = file.object;
+        parameter.place = alias.text("at", name);
+        parameter.aliasOf = target;
+        parameter.inRecord = false;
+        readDefault(alias, parameter);
+        model_.parameters.push_back(std::move(parameter));
+    }
+    for (const auto& [json, where] : members.list("textures")) {
+        const Members alias(*json, where, kTextureMembers);
+        if (alias.has("is")) {
+            const std::string name = newName(alias);
+            textureNamed(alias, "is").places.push_back({file.object, name, alias.flag("color", false)});
+        }
+    }
+}
+
+MaterialTexture& ModelBuilder::textureNamed(const Members& members, std::string_view member) {
+    const int found = model_.findTexture(members.text(member));
+    if (found < 0) {
+        failAt(members.at(member), fmt::format("there is no texture \"{}\"", members.text(member)));
+    }
+    return model_.textures[static_cast<std::size_t>(found)];
+}
+
+}  // namespace glint

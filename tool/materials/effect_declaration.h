@@ -1,0 +1,76 @@
+// What rays do in a picture: effects, as shaders/effects/*/*.json and the declarations of packs say.
+#pragma once
+
+#include <glint/effects.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+enum class Behaviour : std::uint8_t;
+
+// Which lit surfaces call for an effect.
+struct EffectCall {
+    bool byAll = false;     // every surface does; otherwise those with the behaviour
+    Behaviour behaviour{};  // what the surface may do with light
+    bool lights = false;    // only where some light shines
+    std::string because{};  // of the surfaces that call for it, where all do: "is lit by the sky"
+    // Why none does; {limit} stands for the roughness limit.
+    std::string otherwise{};
+};
+
+// How alike the hits of neighbouring rays are (Round::coherence), on smooth surfaces and on others.
+struct EffectCoherence {
+    double mirror = 0.1;
+    double glossy = 0.1;
+};
+
+struct EffectDeclaration {
+    std::string name;         // "ambient-occlusion"
+    std::string declaration;  // its file
+    std::string about;        // a sentence
+    package::EffectKind kind = package::EffectKind::Rays;
+    double order = 0.0;
+    bool isOfPack = false;
+    EffectCall call;
+    // It refines this light, which pictures without it have too, so no scene calls for it by itself. Empty: a
+    // scene may.
+    std::string refines{};
+    EffectCoherence coherence{};
+    std::vector<std::string> settings{};  // the settings that only change this effect
+    std::string absent{};                 // why they are not worth trying without it
+    // Names of files as an #include gives them, empty where there are none. Each has a function whose name
+    // ends with function(). light: shaders/hit/ calls it. apply: changes the sky's shares. sample: makes a
+    // ray and its weight. compose: what the found light adds to the pixel; without it, the product with the
+    // weight. start: endsEarly(), before the ray joins the list. walk: a pass over the pixels before that.
+    // hit: changes the sky's shares at a hit.
+    std::string light{};
+    std::string apply{};
+    std::string sample{};
+    std::string compose{};
+    std::string start{};
+    std::string walk{};
+    std::string hit{};
+
+    std::string function() const;  // "AmbientOcclusion"
+    std::string macro() const;     // "AMBIENT_OCCLUSION"
+    std::string file() const;      // "ambient_occlusion": part of names of modules
+    std::uint32_t abilities() const;
+    // Returns the file that every effect of the kind has.
+    const std::string& main() const;
+    std::vector<const std::string*> files() const;
+};
+
+// Whether an effect may have the name: words of small letters and digits, joined by hyphens.
+bool isEffectName(std::string_view name);
+// Returns what a package says of an effect with that number.
+package::EffectInfo infoOf(const EffectDeclaration& effect, std::size_t number);
+// Returns the set of those of `effects` that `bits` has.
+package::EffectSet effectSetOf(const std::vector<EffectDeclaration>& effects, std::uint32_t bits);
+// Returns the bit of the effect of that name, or 0 if there is none.
+package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::string_view name);
+
+}  // namespace glint

@@ -1,0 +1,273 @@
+// Reads the expressions of declarations, and links what they name.
+#include "materials/model_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace glint {
+
+namespace {
+
+constexpr struct {
+    std::string_view name;
+    Behaviour behaviour;
+} kBehaviours[] = {
+    {"reflects", Behaviour::Reflects},
+    {"transmits", Behaviour::Transmits},
+    {"scatters", Behaviour::Scatters},
+    {"emits", Behaviour::Emits},
+};
+
+constexpr struct {
+    std::string_view function;
+    std::string_view name;
+    Fact fact;
+    bool isNumber;
+} kFacts[] = {
+    {"", "NORMAL", Fact::Normal, false},
+    {"", "TANGENT", Fact::Tangent, false},
+    {"", "TEXCOORD_0", Fact::TexCoord0, false},
+    {"", "TEXCOORD_1", Fact::TexCoord1, false},
+    {"", "COLOR_0", Fact::Color, true},
+    {"", "givesColors", Fact::GivesColors, false},
+    {"", "doubleSided", Fact::DoubleSided, false},
+    {"", "MASK", Fact::Mask, false},
+    {"", "BLEND", Fact::Blend, false},
+    {"", "raysTestAlpha", Fact::RaysTestAlpha, false},
+    {"reads", "TEXCOORD_0", Fact::ReadsTexCoord0, false},
+    {"reads", "TEXCOORD_1", Fact::ReadsTexCoord1, false},
+    {"", "movesTextures", Fact::MovesTextures, false},
+    {"", "givesTransforms", Fact::GivesTransforms, false},
+    {"needed", "tangents", Fact::NeedsTangents, false},
+    {"", "changesOpacity", Fact::ChangesOpacity, false},
+};
+
+}  // namespace
+
+std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
+                                            const std::vector<std::string_view>& names) {
+    for (const auto& row : kFacts) {
+        if (row.function == function && names.size() == 1 && row.name == names[0]) {
+            return Symbol{model_.symbolOf(row.fact), !row.isNumber, 1};
+        }
+    }
+    const auto condition = [](int index, int symbol) {
+        return index < 0 ? std::nullopt : std::optional(Symbol{symbol, true, 1});
+    };
+    if (function.empty()) {
+        const int index = model_.findParameter(names[0]);
+        return index < 0 ? std::nullopt
+                         : std::optional(Symbol{index, false,
+                                                model_.parameters[static_cast<std::size_t>(index)].channels});
+    }
+    if (function == "has" && names.size() == 1) {
+        const int index = model_.findFeature(names[0]);
+        return condition(index, model_.symbolOfFeature(index));
+    }
+    if (function == "readable" && names.size() == 1) {
+        const int index = model_.findTexture(names[0]);
+        return condition(index, model_.symbolOfTexture(index));
+    }
+    if (function == "attribute" && names.size() == 1) {
+        const int index = model_.findAttribute(names[0]);
+        return condition(index, model_.symbolOfAttribute(index));
+    }
+    if (function == "same" && names.size() == 2) {
+        const std::array<int, 2> pair{model_.findTexture(names[0]), model_.findTexture(names[1])};
+        if (pair[0] < 0 || pair[1] < 0) {
+            return std::nullopt;
+        }
+        model_.pairs.push_back(pair);
+        return Symbol{model_.symbolOfPair(static_cast<int>(model_.pairs.size()) - 1), true, 1};
+    }
+    return std::nullopt;
+}
+
+Expression ModelBuilder::expression(const DeclarationJson& json, const std::string& where, bool isCondition) {
+    if (!json.is_string()) {
+        failAt(where, "must be an expression, as a text");
+    }
+    ExpressionError error;
+    const auto& text = json.get_ref<const std::string&>();
+    std::optional<Expression> parsed = Expression::parse(
+        text, [this](auto function, const auto& names) { return resolve(function, names); }, error);
+    if (!parsed) {
+        failAt(where, fmt::format("{}, at character {} of \"{}\"", error.message, error.offset + 1, text));
+    }
+    if (parsed->isCondition() != isCondition) {
+        failAt(where, isCondition ? "must be a condition" : "must be a number");
+    }
+    return std::move(*parsed);
+}
+
+void ModelBuilder::linkFeature(const Members& members, int index, int onlyWith) {
+    if (members.has("given")) {
+        featureAt(index).given = expression(members["given"], members.at("given"), true);
+    }
+    for (const auto& [json, where] : members.list("neutral")) {
+        const Members reason(*json, where, {"when", "because"});
+        NeutralReason neutral{expression(reason["when"], reason.at("when"), true), reason.text("because")};
+        neutral.onlyWith = onlyWith;
+        featureAt(index).neutral.push_back(std::move(neutral));
+    }
+}
+
+void ModelBuilder::link(const File& file) {
+    const Members members = membersOf(file);
+    if (file.mainFeature >= 0) {
+        linkFeature(members, file.mainFeature, -1);
+    }
+    for (const auto& [json, where] : members.list("features")) {
+        const Members further(*json, where, kFeatureMembers);
+        linkFeature(further, model_.findFeature(further.text("name")), -1);
+    }
+    for (const auto& [json, where] : members.list("textures")) {
+        const Members texture(*json, where, kTextureMembers);
+        if (!texture.has("is")) {
+            linkTexture(file, texture);
+        }
+    }
+    linkParameters(file, members);
+    for (const auto& [json, where] : members.list("derived")) {
+        linkDerived(file, Members(*json, where, {"name", "type", "value", "unit", "about", "of"}));
+    }
+    linkBase(file, members);
+    for (const auto& [json, where] : members.list("effects")) {
+        linkBehaviour(file,
+                      Members(*json, where, {"does", "when", "roughness", "value", "text", "textureText"}));
+    }
+}
+
+void ModelBuilder::linkTexture(const File& file, const Members& members) {
+    const int slot = model_.findTexture(members.text("name"));
+    const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
+    linkFeature(members, feature, -1);
+    const bool ofLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).isLobe;
+    featureAt(feature).lobe = members.has("of") ? featureNamed(members.text("of"), members.at("of"))
+                              : ofLayer         ? file.mainFeature
+                                                : -1;
+    linkScales(members, slot);
+}
+
+void ModelBuilder::linkAliases(const File& file) {
+    const Members members = membersOf(file);
+    for (const auto& [json, where] : members.list("textures")) {
+        const Members texture(*json, where, kTextureMembers);
+        if (!texture.has("is")) {
+            continue;
+        }
+        const int slot = model_.findTexture(texture.text("is"));
+        const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
+        for (NeutralReason& reason : featureAt(feature).neutral) {
+            reason.onlyWithout = texture.has("neutral") ? file.mainFeature : reason.onlyWithout;
+        }
+        linkFeature(texture, feature, file.mainFeature);
+        linkScales(texture, slot);
+    }
+}
+
+void ModelBuilder::linkScales(const Members& members, int slot) {
+    for (const std::string& name : members.texts("scales")) {
+        const int parameter = model_.findParameter(name);
+        if (parameter < 0) {
+            failAt(members.at("scales"), fmt::format("there is no parameter \"{}\"", name));
+        }
+        model_.parameters[static_cast<std::size_t>(parameter)].scaledBy = slot;
+    }
+}
+
+void ModelBuilder::linkParameters(const File& file, const Members& members) {
+    for (const auto& [json, where] : members.list("parameters")) {
+        const Members row(*json, where, kParameterMembers);
+        Parameter& parameter =
+            model_.parameters[static_cast<std::size_t>(model_.findParameter(row.text("name")))];
+        parameter.feature = row.has("of") ? featureNamed(row.text("of"), row.at("of")) : file.mainFeature;
+    }
+}
+
+void ModelBuilder::linkDerived(const File& file, const Members& members) {
+    DerivedField field;
+    field.name = newName(members);
+    const auto& type = choose(kTypes, members, "type", members.text("type"));
+    field.type = type.glsl;
+    field.count = type.channels;
+    field.unit = members.text("unit", "");
+    field.about = members.text("about", "");
+    field.feature = members.has("of") ? featureNamed(members.text("of"), members.at("of")) : file.mainFeature;
+    if (members["value"].is_array()) {
+        for (const auto& [json, where] : members.list("value")) {
+            field.channels.push_back(expression(*json, where, false));
+        }
+    } else {
+        field.channels.push_back(expression(members["value"], members.at("value"), false));
+    }
+    const bool fits = field.channels.size() == 1
+                          ? field.channels[0].channels() == field.count || field.channels[0].channels() == 1
+                          : field.channels.size() == static_cast<std::size_t>(field.count);
+    if (!fits) {
+        failAt(members.at("value"), fmt::format("must give {} channels", field.count));
+    }
+    model_.derived.push_back(std::move(field));
+}
+
+void ModelBuilder::linkBase(const File& file, const Members& members) {
+    if (members.has("replaces")) {
+        const Members replaces(members["replaces"], members.at("replaces"), {"object", "sets"});
+        const int object = model_.findObject(replaces.text("object"));
+        if (object < 0) {
+            failAt(replaces.at("object"), "no declaration has this object");
+        }
+        MaterialObject& owner = model_.objects[static_cast<std::size_t>(file.object)];
+        owner.replaces = object;
+        if (replaces.has("sets")) {
+            for (const auto& [name, value] : replaces["sets"].items()) {
+                const int parameter = model_.findParameter(name);
+                if (parameter < 0) {
+                    failAt(replaces.at("sets"), fmt::format("there is no parameter \"{}\"", name));
+                }
+                owner.settings.push_back(
+                    {parameter, static_cast<float>(Members::toNumber(value, replaces.at("sets")))});
+            }
+        }
+    }
+    if (members.has("excludes")) {
+        const Members excludes(members["excludes"], members.at("excludes"), {"but", "stage", "because"});
+        Exclusion exclusion{file.mainFeature, 0, excludes.text("because")};
+        std::set<int> kept{file.mainFeature};
+        for (const std::string& name : excludes.texts("but")) {
+            kept.insert(featureNamed(name, excludes.at("but")));
+        }
+        for (std::size_t i = 0; i < model_.features.size(); ++i) {
+            const Feature& feature = model_.features[i];
+            const bool isOfStage =
+                !excludes.has("stage") ||
+                (feature.texture < 0 &&
+                 feature.stage == choose(kStages, excludes, "stage", excludes.text("stage")).stage);
+            exclusion.excluded |= isOfStage && !kept.contains(static_cast<int>(i)) ? feature.mask() : 0;
+        }
+        model_.exclusions.push_back(std::move(exclusion));
+    }
+}
+
+void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
+    BehaviourRule rule{choose(kBehaviours, members, "does", members.text("does")).behaviour, file.object,
+                       expression(members["when"], members.at("when"), true)};
+    if (members.has("roughness")) {
+        rule.roughness = expression(members["roughness"], members.at("roughness"), false);
+    }
+    if (members.has("value")) {
+        rule.value = expression(members["value"], members.at("value"), false);
+    }
+    if ((rule.does == Behaviour::Reflects) != rule.roughness.has_value()) {
+        failAt(members.where(), "\"roughness\" stands where \"does\" is \"reflects\", and there alone");
+    }
+    rule.text = members.text("text", "");
+    rule.textureText = members.text("textureText", "");
+    // The base speaks before the layers.
+    const bool isLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).stage == Stage::Layer;
+    const auto place = isLayer ? model_.behaviours.end() : model_.behaviours.begin() + baseBehaviours_++;
+    model_.behaviours.insert(place, std::move(rule));
+}
+
+}  // namespace glint

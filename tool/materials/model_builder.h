@@ -1,0 +1,152 @@
+// Builds a material model from declarations. The parts of the work are in files of their own.
+#pragma once
+
+#include "materials/declaration_json.h"
+#include "materials/declarations.h"
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+inline constexpr double kNoOrder = 1e6;
+inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+struct NamedStage {
+    std::string_view name;
+    Stage stage;
+};
+inline constexpr NamedStage kStages[] = {
+    {"attributes", Stage::Attributes},
+    {"coordinates", Stage::Coordinates},
+    {"base", Stage::Base},
+    {"surface", Stage::Surface},
+    {"layer", Stage::Layer},
+    {"emission", Stage::Emission},
+    {"opacity", Stage::Opacity},
+};
+
+struct NamedType {
+    std::string_view name;
+    std::string_view glsl;
+    int channels;
+};
+inline constexpr NamedType kTypes[] = {{"float", "float", 1},
+                                       {"vec2", "vec2", 2},
+                                       {"vec3", "vec3", 3},
+                                       {"color", "vec3", 3},
+                                       {"vec4", "vec4", 4}};
+
+// Builds the model in two passes over the files: the first collects what has a name, the second reads the
+// expressions, which may use any of the names.
+class ModelBuilder {
+public:
+    explicit ModelBuilder(std::span<const DeclarationFile> files);
+    MaterialModel build();
+
+private:
+    struct File {
+        std::string name;
+        DeclarationJson json;
+        int object = 0;
+        int mainFeature = -1;  // index into pending_, until bits are assigned
+        bool isOfPack = false;
+    };
+    // A feature before bits are assigned.
+    struct Pending {
+        Feature feature;
+        double order = kNoOrder;
+        std::string where;
+        bool isLit = true;
+        bool isOfPack = false;
+    };
+
+    // Members of the objects of a declaration.
+    static constexpr std::string_view kFileMembers[] = {
+        "$schema", "name",     "about",    "extension", "object",     "stage",   "short",    "order",
+        "needs",   "lit",      "replaces", "excludes",  "parameters", "derived", "textures", "given",
+        "neutral", "features", "effects",  "gltf",      "cost",       "ofBase",  "glsl",     "attributes"};
+    static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
+    static constexpr std::string_view kFeatureMembers[] = {"name",  "about", "stage", "short",   "order",
+                                                           "needs", "gltf",  "given", "neutral", "cost"};
+    static constexpr std::string_view kTextureMembers[] = {"name",  "about",   "short",  "order",
+                                                           "needs", "color",   "scales", "of",
+                                                           "is",    "neutral", "cost",   "coordinates"};
+    static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
+                                                             "unit", "of", "is",   "about",   "record"};
+
+    // declarations.cpp
+
+    // Returns the feature whose object a material has in place of this one, or -1.
+    int replacing(int object) const;
+    void parse(const DeclarationFile& file);
+    // Declarations of effects have a kind; those of features have none.
+    void readEffects();
+    Members membersOf(const File& file) const;
+    int addObject(const std::string& name, bool isExtension);
+    // Every name stands for one thing in the whole model.
+    std::string newName(const Members& members);
+    std::string gltfPlace(int object, std::string_view member) const;
+    Feature& featureAt(int index);
+    int featureNamed(const std::string& name, const std::string& where) const;
+
+    // collect_declarations.cpp: the first pass
+
+    int addFeature(const Members& members, Feature feature, bool isLit);
+    static void readNeeds(const Members& members, Feature& feature);
+    void collect(File& file);
+    Parameter makeParameter(const File& file, const Members& members, const std::string& name, int channels);
+    static void readDefault(const Members& members, Parameter& parameter);
+    void addParameter(const File& file, const Members& members);
+    void addAttribute(const File& file, const Members& members);
+    void addTexture(const File& file, const Members& members);
+    // Parameters and textures that fill those of another base model.
+    void collectAliases(const File& file);
+    MaterialTexture& textureNamed(const Members& members, std::string_view member);
+
+    // feature_bits.cpp
+
+    // Lobes and inputs have words of their own. In each, bits follow the declared order, then the names.
+    void assignBits();
+    static bool isLobe(const Feature& feature);
+    // A feature is evaluated after those that its conditions ask for. What vertices bring comes last, because
+    // all textures and lobes may ask for it.
+    void orderByDependence();
+    // Unlit surfaces read a texture and have an opacity, so packs may change where and how much.
+    void keepPlacesOfUnlit();
+    bool asksForOpacity(const Feature& feature) const;
+    const std::vector<int>& indices(std::size_t count);
+    void addNeeds(const Expression& expression, std::set<int>& needs) const;
+
+    // link_declarations.cpp: the second pass
+
+    std::optional<Symbol> resolve(std::string_view function, const std::vector<std::string_view>& names);
+    Expression expression(const DeclarationJson& json, const std::string& where, bool isCondition);
+    void linkFeature(const Members& members, int index, int onlyWith);
+    void link(const File& file);
+    void linkTexture(const File& file, const Members& members);
+    // In keys of another base model, the texture's reasons are those that this model gives, if it gives any.
+    void linkAliases(const File& file);
+    void linkScales(const Members& members, int slot);
+    void linkParameters(const File& file, const Members& members);
+    void linkDerived(const File& file, const Members& members);
+    void linkBase(const File& file, const Members& members);
+    void linkBehaviour(const File& file, const Members& members);
+
+    MaterialModel model_;
+    bool isOfPack_ = false;  // of the file that collect() reads
+    std::vector<File> files_;
+    std::vector<Pending> pending_;
+    std::map<std::string, std::string> named_;  // where each name is declared
+    std::vector<int> indices_;
+    std::ptrdiff_t baseBehaviours_ = 0;
+};
+
+}  // namespace glint
