@@ -37,6 +37,7 @@ std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count
 KnownRays knownRays(const Scene& scene, const RenderSetup& setup) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kAllTracers;
     settings.plan.merge = MergePolicy::All;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings);
@@ -190,12 +191,24 @@ struct Way {
     package::Strategy strategy;
     package::Tracer tracer;
 };
-constexpr Way kWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
-                         {package::kStrategyUber, package::kTracerRayPipeline},
-                         {package::kStrategyVisibility, package::kTracerRayQuery},
-                         {package::kStrategyVisibility, package::kTracerRayPipeline},
-                         {package::kStrategySortedUber, package::kTracerRayQuery},
-                         {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+constexpr Way kAllWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
+                            {package::kStrategyUber, package::kTracerRayPipeline},
+                            {package::kStrategyVisibility, package::kTracerRayQuery},
+                            {package::kStrategyVisibility, package::kTracerRayPipeline},
+                            {package::kStrategySortedUber, package::kTracerRayQuery},
+                            {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+
+// Those whose tracer the device has.
+std::vector<Way> ways() {
+    std::vector<Way> result;
+    for (const Way& way : kAllWays) {
+        if ((sharedContext().handles().tracers & way.tracer) != 0) {
+            result.push_back(way);
+        }
+    }
+    EXPECT_FALSE(result.empty());
+    return result;
+}
 
 TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
     const Scene scene = roomWithFence();
@@ -208,7 +221,7 @@ TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
         Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
-        for (const Way& way : kWays) {
+        for (const Way& way : ways()) {
             const bool packed = record == package::HitRecordFormat::Packed;
             if (packed && way.strategy != package::kStrategySortedUber) {
                 continue;
@@ -264,7 +277,7 @@ TEST(RaySteps, AnswerWithSurfaces) {
                                       {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
                                       {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
     Host host(loaded, rays, 3, sizeof(EngineSurface));
-    for (const Way& way : kWays) {
+    for (const Way& way : ways()) {
         SCOPED_TRACE(std::string(nameOf(way.strategy)));
         RayStepsOptions options;
         options.strategy = way.strategy;
@@ -304,10 +317,10 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
     const Scene scene = roomWithFence();
     CompileSettings frames;
     frames.strategies = package::kStrategyUber;
+    frames.tracers = package::kAllTracers;
     const LoadedScene framePackage(scene, frames);
     CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
-    settings.tracers = package::kTracerRayQuery;
     const LoadedScene stepPackage(scene, settings);
     ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
     const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
@@ -331,7 +344,6 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
 TEST(EngineScene, NamesWhatIsWrong) {
     CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
-    settings.tracers = package::kTracerRayQuery;
     const LoadedScene loaded(roomWithFence(), settings);
     ASSERT_TRUE(loaded.ok());
     const PackageScene known = loaded.package().scene(0);
