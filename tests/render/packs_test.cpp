@@ -37,8 +37,11 @@ const MaterialModel& packs() {
 }
 
 class ExamplePacks : public ::testing::TestWithParam<std::string> {};
+std::string nameOfFolder(const ::testing::TestParamInfo<std::string>& folder) {
+    return folder.index == 0 ? "Examples" : "Drafts";
+}
 INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks, ::testing::Values("materials", "materials/drafts"),
-                         [](const auto& info) { return info.index == 0 ? "Examples" : "Drafts"; });
+                         nameOfFolder);
 
 TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
     const std::string folder = GLINT_SOURCE_DIR "/examples/" + GetParam();
