@@ -263,6 +263,8 @@ void Engine::State::loadTextures() {
         info.magFilter = info.minFilter = VK_FILTER_LINEAR;
         info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
         info.maxLod = VK_LOD_CLAMP_NONE;
+        info.maxAnisotropy = gpu.anisotropy;
+        info.anisotropyEnable = gpu.anisotropy > 1.0F ? VK_TRUE : VK_FALSE;
         samplers.emplace_back();
         check(vkCreateSampler(gpu.device, &info, nullptr, &samplers.back()), "vkCreateSampler");
         gpu.later([this, sampler = samplers.back(), device = gpu.device] {
@@ -463,7 +465,7 @@ void Engine::State::startGlint() {
     }
     std::vector<glint::EngineSamplerView> filters;
     for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
-        filters.push_back({i});
+        filters.push_back({i, gpu.anisotropy});
     }
     const std::vector<std::array<float, 12>> stored = restTransforms(world);
     glint::EngineSceneView view;

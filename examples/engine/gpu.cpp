@@ -119,8 +119,17 @@ void Gpu::createDevice(std::uint32_t wanted) {
     while (family < count && (families[family].queueFlags & kNeeded) != kNeeded) {
         ++family;
     }
-    // What Glint needs is what the engine needs.
-    const glint::DeviceRequirements requirements(tracers);
+    // What Glint needs is what the engine needs, but for the filter of its textures.
+    glint::DeviceRequirements requirements(tracers);
+    VkPhysicalDeviceFeatures features{};
+    vkGetPhysicalDeviceFeatures(physical, &features);
+    requirements.features.features.samplerAnisotropy = features.samplerAnisotropy;
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    // On a CPU such a filter costs more than all else.
+    if (features.samplerAnisotropy == VK_TRUE && properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
+        anisotropy = std::min(16.0F, properties.limits.maxSamplerAnisotropy);
+    }
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queueInfo{};
     queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -76,6 +76,7 @@ public:
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t family = 0;
     std::uint32_t tracers = 0;  // all that the device has; they are enabled
+    float anisotropy = 1.0F;    // of the filter of textures; 1 for none
     VkCommandPool pool = VK_NULL_HANDLE;
 
     // Runs `destroy` when the Gpu is destroyed, the last one first.
