@@ -7,7 +7,7 @@ usage() {
 usage: scripts/fetch_basisu.sh [--where]
 
 Fetches the source package basis-universal through apt, from the mirror and under the
-key that this machine uses already, and keeps the files that Glint compiles (8 MB) in
+key that this machine uses already, and keeps the files that Glint compiles (4 MB) in
 $GLINT_BASISU_ROOT, else in $XDG_CACHE_HOME/glint-sources/basis-universal, else below
 ~/.cache. Does nothing where they are there. No release of Debian 12, Debian 13 and
 Ubuntu 24.04 has the package, but later ones do. apt's own configuration stays as it is.

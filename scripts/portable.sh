@@ -7,10 +7,11 @@ usage() {
     cat <<'TEXT'
 usage: scripts/portable.sh [--test ROOT]
 
-On Debian 12, builds a release glint, with gallery, glint_numerics and bench_ordering,
-into which everything is linked but the C library, and packs them as
-out/glint-VERSION-linux-ARCHITECTURE.tar.gz with the README, the licences, the example
-scene and its package for every strategy and tracer.
+On Debian 12, builds a release glint, with gallery, glint_numerics, bench_ordering,
+test_ray_steps and the example engine, into which everything is linked but the C library
+and the Vulkan loader, and packs them as out/glint-VERSION-linux-ARCHITECTURE.tar.gz with
+the README, the licences, and the scenes of both examples with their packages for every
+strategy and tracer.
 
 Libraries of which Debian has no static archive are built from Debian's own source
 packages, once, in build/portable/deps. Needs what scripts/setup.sh --portable installs.
@@ -35,7 +36,7 @@ source scripts/apt_mirror.sh
 
 # The newest version of the C library whose symbols may be needed is that of Debian 12. Ubuntu 24.04 has 2.39.
 kNewestGlibc=2.36
-kPrograms=(glint gallery glint_numerics bench_ordering)
+kPrograms=(glint gallery glint_numerics bench_ordering test_ray_steps engine)
 build=$PWD/build/portable
 deps=$build/deps
 jobs=$(nproc)
@@ -120,7 +121,9 @@ is_of_libc() {
 check_program() {
     local program=$1 needed newest
     while read -r needed; do
-        is_of_libc "$needed" || fail "$program needs $needed"
+        # The engine links the Vulkan loader, which the others open themselves.
+        is_of_libc "$needed" || [[ $(basename "$program") == engine && $needed == libvulkan.so.1 ]] ||
+            fail "$program needs $needed"
     done < <(objdump -p "$program" | sed -n 's/^ *NEEDED *//p')
     newest=$(objdump -T "$program" | sed -n 's/.*(\{0,1\}GLIBC_\([0-9.]*\))\{0,1\}.*/\1/p' | sort -V | tail -n 1)
     [[ -n $newest ]] || fail "$program: found no version of the C library"
@@ -164,6 +167,10 @@ pack() {
     "$folder/bin/gallery" "$folder/example" > /dev/null
     "$folder/bin/glint" compile "$folder/example/gallery.gltf" -o "$folder/example/gallery.glint" --strategy all \
         --tracer all --cache none --quiet
+    mkdir "$folder/engine"
+    cp examples/engine/scene/engine.gltf "$folder/engine/"
+    cp -r "$build/examples/engine/glint/engine" "$folder/engine/engine.glint"
+    cp -r "$build/examples/engine/shaders" "$folder/engine/shaders"
     archive=out/$name.tar.gz
     tar --create --gzip --file "$archive" --directory "$build/pack" --owner=0 --group=0 --numeric-owner --sort=name "$name"
     say "$archive, $(du -h "$archive" | cut -f 1)"
@@ -196,6 +203,15 @@ test_in() {
     chroot "$root" env -i PATH=/usr/bin:/bin "/$name/bin/glint" compare /tmp/uber.exr /tmp/hit-shaders.exr --max-error 0.01
     chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp "/$name/bin/glint" render "/$name/example/gallery.gltf" --size 96x54 \
         -o /tmp/compiled.exr --quiet
+    local tracer
+    for tracer in ray-query ray-pipeline; do
+        chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp "/$name/bin/engine" "/$name/engine/engine.gltf" \
+            "/$name/engine/engine.glint" "/$name/engine/shaders" /tmp/engine.exr --size 96x54 --tracer "$tracer"
+        chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp "/$name/bin/glint" render "/$name/engine/engine.gltf" --size 96x54 \
+            --tracer "$tracer" --sky 1 --max-roughness 1 --mirror-roughness 1 -o /tmp/glint.exr --quiet
+        chroot "$root" env -i PATH=/usr/bin:/bin "/$name/bin/glint" compare /tmp/engine.exr /tmp/glint.exr --max-error 1e-4
+    done
+    chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp GLINT_TESTS_UNVALIDATED=1 "/$name/bin/test_ray_steps"
     chroot "$root" sh -c "! command -v cc && ! ls /usr/lib/*/libstdc++.so" > /dev/null || fail "$root has a compiler"
 }
 

@@ -5,10 +5,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/test.sh [--sanitize]
+usage: scripts/test.sh [--werror] [--sanitize]
 
-Installs what is missing, builds Glint and runs every test.
+Installs what is missing, builds Glint and runs every test. What scripts/demo.sh built before is not built again.
 
+  --werror    treat the compiler's warnings as errors, as continuous integration does; this builds everything again
+              where it was built without the option
   --sanitize  run scripts/sanitize.sh first: a build of its own and every command over every scene with
               AddressSanitizer and UndefinedBehaviorSanitizer; a finding ends the run
 TEXT
@@ -16,8 +18,10 @@ TEXT
 
 setup=(--browser)
 sanitize=false
+werror=()
 for argument in "$@"; do
     case $argument in
+        --werror) werror=(-DGLINT_WARNINGS_AS_ERRORS=ON) ;;
         --sanitize)
             setup+=(--sanitize)
             sanitize=true
@@ -37,7 +41,7 @@ scripts/setup.sh "${setup[@]}"
 if [[ $sanitize == true ]]; then
     scripts/sanitize.sh
 fi
-cmake --preset release -DGLINT_WARNINGS_AS_ERRORS=ON
+cmake --preset release "${werror[@]}"
 cmake --build --preset release
 status=0
 ctest --preset release -j2 --output-on-failure --no-tests=error || status=$?

@@ -1,5 +1,7 @@
 #include "frame.h"
 
+#include "pipelines.h"
+
 #include <glint/context.h>
 #include <glint/ray_steps.h>
 
@@ -146,7 +148,8 @@ struct Engine::State {
     VkDescriptorSetLayout imageLayout = VK_NULL_HANDLE, worldLayout = VK_NULL_HANDLE;
     VkDescriptorSet imageSet = VK_NULL_HANDLE, worldSet = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    VkPipeline gbuffer = VK_NULL_HANDLE, primary = VK_NULL_HANDLE, compose = VK_NULL_HANDLE;
+    VkPipeline gbuffer = VK_NULL_HANDLE, compose = VK_NULL_HANDLE;
+    std::optional<PrimaryPass> primary;
 
     std::unique_ptr<glint::Context> context;
     std::unique_ptr<glint::EngineScene> scene;
@@ -165,7 +168,6 @@ struct Engine::State {
     std::vector<glint::LightView> lights() const;
     void record(std::uint32_t slot, const std::vector<std::array<float, 12>>& stored);
     void draw(VkCommandBuffer commands, const Slot& slot);
-    VkPipeline computePipeline(const std::string& name);
 };
 
 void Engine::State::buildMeshes() {
@@ -428,84 +430,11 @@ void Engine::State::makeSets() {
     gpu.later([device = gpu.device, made = layout] { vkDestroyPipelineLayout(device, made, nullptr); });
 }
 
-VkPipeline Engine::State::computePipeline(const std::string& name) {
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = gpu.shader(shaders + "/" + name + ".spv");
-    info.stage.pName = "main";
-    info.layout = layout;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(gpu.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-          "vkCreateComputePipelines");
-    gpu.later([device = gpu.device, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
-    return pipeline;
-}
-
 void Engine::State::makePipelines() {
-    primary = computePipeline("primary.comp");
-    compose = computePipeline("compose.comp");
-    VkPipelineShaderStageCreateInfo stages[2]{};
-    for (VkPipelineShaderStageCreateInfo& stage : stages) {
-        const bool vertex = &stage == stages;
-        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stage.stage = vertex ? VK_SHADER_STAGE_VERTEX_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
-        stage.module = gpu.shader(shaders + (vertex ? "/gbuffer.vert.spv" : "/gbuffer.frag.spv"));
-        stage.pName = "main";
-    }
-    VkPipelineVertexInputStateCreateInfo input{};
-    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    VkPipelineInputAssemblyStateCreateInfo assembly{};
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    const VkViewport viewport{0, 0, static_cast<float>(settings.width), static_cast<float>(settings.height),
-                              0, 1};
-    const VkRect2D scissor{{0, 0}, {settings.width, settings.height}};
-    VkPipelineViewportStateCreateInfo view{};
-    view.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    view.viewportCount = view.scissorCount = 1;
-    view.pViewports = &viewport;
-    view.pScissors = &scissor;
-    VkPipelineRasterizationStateCreateInfo raster{};
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.cullMode = VK_CULL_MODE_BACK_BIT;
-    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.lineWidth = 1.0F;
-    VkPipelineMultisampleStateCreateInfo samples{};
-    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineDepthStencilStateCreateInfo depthState{};
-    depthState.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depthState.depthTestEnable = depthState.depthWriteEnable = VK_TRUE;
-    depthState.depthCompareOp = VK_COMPARE_OP_GREATER;
-    VkPipelineColorBlendAttachmentState attachment{};
-    attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
-    VkPipelineColorBlendStateCreateInfo blend{};
-    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
-    blend.pAttachments = &attachment;
-    VkPipelineRenderingCreateInfo rendering{};
-    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    rendering.colorAttachmentCount = 1;
-    rendering.pColorAttachmentFormats = &seen.format;
-    rendering.depthAttachmentFormat = depth.format;
-    VkGraphicsPipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.pNext = &rendering;
-    info.stageCount = 2;
-    info.pStages = stages;
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &view;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pDepthStencilState = &depthState;
-    info.pColorBlendState = &blend;
-    info.layout = layout;
-    check(vkCreateGraphicsPipelines(gpu.device, VK_NULL_HANDLE, 1, &info, nullptr, &gbuffer),
-          "vkCreateGraphicsPipelines");
-    gpu.later([device = gpu.device, made = gbuffer] { vkDestroyPipeline(device, made, nullptr); });
+    gbuffer =
+        gbufferPipeline(gpu, layout, shaders, {settings.width, settings.height}, seen.format, depth.format);
+    primary.emplace(gpu, layout, shaders, settings.tracer);
+    compose = computePipeline(gpu, layout, shaders + "/compose.comp.spv");
 }
 
 std::vector<glint::LightView> Engine::State::lights() const {
@@ -524,7 +453,7 @@ void Engine::State::startGlint() {
     handles.device = gpu.device;
     handles.queue = gpu.queue;
     handles.queueFamily = gpu.family;
-    handles.tracers = glint::deviceTracers(gpu.physical);
+    handles.tracers = gpu.tracers;
     context = expect(glint::Context::adopt(handles));
     const glint::PackageScene known = package.scene(0);
     std::vector<glint::EngineTextureView> images;
@@ -661,8 +590,7 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     }
     const Pushed pushed{slot.frame.address, 0};
     vkCmdPushConstants(commands, layout, kStages, 0, 12, &pushed);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, primary);
-    vkCmdDispatch(commands, (settings.width + 7) / 8, (settings.height + 7) / 8, 1);
+    primary->record(commands, {settings.width, settings.height});
 
     glint::RayBatch batch;
     batch.rays = rays.address;

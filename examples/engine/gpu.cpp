@@ -35,9 +35,9 @@ void check(VkResult result, const char* call) {
     }
 }
 
-Gpu::Gpu(bool validation) {
+Gpu::Gpu(bool validation, std::uint32_t wanted) {
     createInstance(validation);
-    createDevice();
+    createDevice(wanted);
     VkCommandPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -98,19 +98,19 @@ void Gpu::createInstance(bool validation) {
     });
 }
 
-void Gpu::createDevice() {
+void Gpu::createDevice(std::uint32_t wanted) {
     std::uint32_t count = 0;
     vkEnumeratePhysicalDevices(instance, &count, nullptr);
     std::vector<VkPhysicalDevice> devices(count);
     vkEnumeratePhysicalDevices(instance, &count, devices.data());
-    // The engine's own shader traces by ray queries, so they are needed whichever tracer Glint's steps use.
-    const auto found = std::ranges::find_if(devices, [](VkPhysicalDevice candidate) {
-        return (glint::deviceTracers(candidate) & glint::package::kTracerRayQuery) != 0;
+    const auto found = std::ranges::find_if(devices, [wanted](VkPhysicalDevice candidate) {
+        return (glint::deviceTracers(candidate) & wanted) != 0;
     });
     if (found == devices.end()) {
         fail("no device has what Glint and this example need");
     }
     physical = *found;
+    tracers = glint::deviceTracers(physical);
     std::vector<VkQueueFamilyProperties> families;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     families.resize(count);
@@ -120,7 +120,7 @@ void Gpu::createDevice() {
         ++family;
     }
     // What Glint needs is what the engine needs.
-    const glint::DeviceRequirements requirements(glint::deviceTracers(physical));
+    const glint::DeviceRequirements requirements(tracers);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queueInfo{};
     queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -146,6 +146,12 @@ void Gpu::createDevice() {
     load(buildSizes_, "vkGetAccelerationStructureBuildSizesKHR");
     load(cmdBuild_, "vkCmdBuildAccelerationStructuresKHR");
     load(structureAddress_, "vkGetAccelerationStructureDeviceAddressKHR");
+}
+
+std::string Gpu::name() const {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    return properties.deviceName;
 }
 
 VkDeviceMemory Gpu::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted) {

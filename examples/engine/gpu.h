@@ -1,6 +1,8 @@
 // The engine's own layer over Vulkan: as much as the example needs. An error ends the program with a message.
 #pragma once
 
+#include <glint/package_format.h>
+
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
@@ -40,7 +42,8 @@ struct AccelerationStructure {
 // Instance, device and queue. Everything that it made is destroyed with it.
 class Gpu {
 public:
-    explicit Gpu(bool validation);
+    // Takes the first device that has one of the tracers (package::Tracer bits) and what Glint needs.
+    explicit Gpu(bool validation, std::uint32_t tracers = glint::package::kAllTracers);
     ~Gpu();
     Gpu(const Gpu&) = delete;
     Gpu& operator=(const Gpu&) = delete;
@@ -65,12 +68,14 @@ public:
     std::uint32_t messages() const {
         return messages_;
     }
+    std::string name() const;
 
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t family = 0;
+    std::uint32_t tracers = 0;  // all that the device has; they are enabled
     VkCommandPool pool = VK_NULL_HANDLE;
 
     // Runs `destroy` when the Gpu is destroyed, the last one first.
@@ -81,7 +86,7 @@ public:
 private:
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted);
     void createInstance(bool validation);
-    void createDevice();
+    void createDevice(std::uint32_t wanted);
 
     std::vector<std::function<void()>> destroyers_;
     std::uint32_t messages_ = 0;

@@ -2,26 +2,80 @@
 // frame.
 #include "frame.h"
 #include "gpu.h"
+#include "picture.h"
 #include "world.h"
-
-#include <stb_image_write.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
 
-// Reinhard's curve and the sRGB transfer function.
-std::uint8_t display(float linear) {
-    const float mapped = std::max(linear, 0.0F) / (1.0F + std::max(linear, 0.0F));
-    const float coded =
-        mapped <= 0.0031308F ? 12.92F * mapped : 1.055F * std::pow(mapped, 1.0F / 2.4F) - 0.055F;
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(coded, 0.0F, 1.0F)));
+constexpr std::string_view kUsage =
+    "usage: engine SCENE.gltf PACKAGE SHADERS OUTPUT.png|.exr [OPTION VALUE]...\n"
+    "Renders frames of a scene, in which all but the floor turns, and writes the last.\n"
+    "\n"
+    "  --format full|compact   how vertices are stored (full)\n"
+    "  --frames N              frames (1)\n"
+    "  --size WIDTHxHEIGHT     of the picture (640x360)\n"
+    "  --strategy NAME         of Glint's steps: uber, visibility, sorted-uber, hit-shaders (visibility)\n"
+    "  --tracer NAME           ray-query or ray-pipeline (ray-query where the device has it)\n"
+    "  --validation on|off     with the validation layers; their messages are an error (off)\n";
+
+struct Options {
+    std::string scene, package, shaders, output;
+    engine::FrameSettings frame;
+    std::optional<glint::package::Tracer> tracer;
+    engine::Format format = engine::Format::Full;
+    int frames = 1;
+    bool validation = false;
+};
+
+bool setOption(Options& options, const std::string& name, const std::string& value) {
+    if (name == "--format") {
+        options.format = value == "compact" ? engine::Format::Compact : engine::Format::Full;
+        return value == "compact" || value == "full";
+    }
+    if (name == "--frames") {
+        options.frames = std::atoi(value.c_str());
+        return options.frames > 0;
+    }
+    if (name == "--size") {
+        return std::sscanf(value.c_str(), "%ux%u", &options.frame.width, &options.frame.height) == 2 &&
+               options.frame.width - 1 < 16384 && options.frame.height - 1 < 16384;
+    }
+    if (name == "--strategy") {
+        const auto strategy = glint::valueNamed<glint::package::Strategy>(value);
+        options.frame.strategy = strategy.value_or(options.frame.strategy);
+        return strategy.has_value();
+    }
+    if (name == "--tracer") {
+        options.tracer = glint::valueNamed<glint::package::Tracer>(value);
+        return options.tracer.has_value();
+    }
+    options.validation = value == "on";
+    return name == "--validation" && (value == "on" || value == "off");
+}
+
+std::optional<Options> parse(const std::vector<std::string>& words) {
+    if (words.size() < 4 || words.size() % 2 != 0) {
+        return std::nullopt;
+    }
+    Options options{words[0], words[1], words[2], words[3], {}, {}};
+    for (std::size_t i = 4; i < words.size(); i += 2) {
+        if (!setOption(options, words[i], words[i + 1])) {
+            return std::nullopt;
+        }
+    }
+    return options;
 }
 
 // Turns all instances but the first, which is the floor, about their own vertical axis.
@@ -42,46 +96,44 @@ std::vector<std::array<float, 12>> turned(const engine::World& world, float angl
     return transforms;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    if (argc < 5) {
-        std::cerr << "usage: engine SCENE.gltf PACKAGE SHADERS OUTPUT.png [full|compact] [FRAMES]\n"
-                     "Renders frames of a scene, in which all but the floor turns, and writes the last.\n";
-        return 2;
-    }
-    const auto format =
-        argc > 5 && std::string(argv[5]) == "compact" ? engine::Format::Compact : engine::Format::Full;
-    const int frames = argc > 6 ? std::max(std::atoi(argv[6]), 1) : 1;
-    const glint::Result<glint::Package> package = glint::Package::load(std::filesystem::path(argv[2]));
+engine::Picture render(engine::Gpu& gpu, const Options& options) {
+    const glint::Result<glint::Package> package =
+        glint::Package::load(std::filesystem::path(options.package));
     if (!package) {
         engine::fail(toString(package.error()));
     }
-    engine::FrameSettings settings;
-    engine::Gpu gpu(false);
-    const engine::World world = engine::readGltf(
-        argv[1], format, static_cast<float>(settings.width) / static_cast<float>(settings.height));
-    engine::Picture picture;
-    {
-        engine::Engine engine(gpu, *package, world, argv[3], settings);
-        const auto begin = std::chrono::steady_clock::now();
-        for (int i = 0; i < frames; ++i) {
-            engine.frame(turned(world, 0.05F * static_cast<float>(i)));
-        }
-        picture = engine.picture();
-        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
-        std::cout << frames << " frames, " << elapsed.count() / frames << " ms each, " << engine.rays()
-                  << " reflection rays\n";
+    engine::FrameSettings settings = options.frame;
+    settings.tracer = options.tracer.value_or((gpu.tracers & glint::package::kTracerRayQuery) != 0
+                                                  ? glint::package::kTracerRayQuery
+                                                  : glint::package::kTracerRayPipeline);
+    const engine::World world =
+        engine::readGltf(options.scene, options.format,
+                         static_cast<float>(settings.width) / static_cast<float>(settings.height));
+    engine::Engine engine(gpu, *package, world, options.shaders, settings);
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < options.frames; ++i) {
+        engine.frame(turned(world, 0.05F * static_cast<float>(i)));
     }
-    std::vector<std::uint8_t> bytes;
-    for (const auto& pixel : picture.pixels) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            bytes.push_back(display(pixel[i]));
-        }
+    engine::Picture picture = engine.picture();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+    std::cout << gpu.name() << ", " << nameOf(settings.strategy) << ", " << nameOf(settings.tracer) << ": "
+              << options.frames << " frames, " << elapsed.count() / options.frames << " ms each, "
+              << engine.rays() << " reflection rays\n";
+    return picture;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::optional<Options> options = parse({argv + 1, argv + argc});
+    if (!options) {
+        std::cerr << kUsage;
+        return 2;
     }
-    const auto width = static_cast<int>(picture.width);
-    if (stbi_write_png(argv[4], width, static_cast<int>(picture.height), 3, bytes.data(), 3 * width) == 0) {
-        engine::fail(std::string("cannot write ") + argv[4]);
+    engine::Gpu gpu(options->validation, options->tracer.value_or(glint::package::kAllTracers));
+    engine::writePicture(render(gpu, *options), options->output);
+    if (gpu.messages() != 0) {
+        engine::fail(std::to_string(gpu.messages()) + " messages of the validation layers");
     }
     return 0;
 }

@@ -1,43 +1,20 @@
 #!/usr/bin/env python3
-"""Writes a scene of spheres on a floor in two rows, one with each of the example materials.
+"""Writes a scene of spheres on a floor, one with each of the example materials, or several with each of the
+drafts.
 
-usage: make_scene.py OUTPUT.gltf
+usage: make_scene.py [--drafts] OUTPUT.gltf
 """
 
-import base64
-import json
 import math
-import struct
+import pathlib
 import sys
 
-SEGMENTS = 32
-RINGS = 16
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from scene_parts import Buffer, png, sphere, write_scene
 
+SEGMENTS, RINGS = 32, 16
 
-def sphere():
-    """Returns positions, normals, tangents, UVs and indices of a unit sphere."""
-    positions, normals, tangents, uvs, indices = [], [], [], [], []
-    for ring in range(RINGS + 1):
-        theta = math.pi * ring / RINGS
-        for segment in range(SEGMENTS + 1):
-            phi = 2 * math.pi * segment / SEGMENTS
-            n = (math.sin(theta) * math.cos(phi), math.cos(theta), -math.sin(theta) * math.sin(phi))
-            positions += n
-            normals += n
-            tangents += (-math.sin(phi), 0.0, -math.cos(phi), 1.0)
-            uvs += (segment / SEGMENTS, ring / RINGS)
-    for ring in range(RINGS):
-        for segment in range(SEGMENTS):
-            a = ring * (SEGMENTS + 1) + segment
-            b = a + SEGMENTS + 1
-            if ring > 0:
-                indices += (a, b, a + 1)
-            if ring < RINGS - 1:
-                indices += (a + 1, b, b + 1)
-    return positions, normals, tangents, uvs, indices
-
-
-# Spheres of the front row; the others stand behind.
+# Spheres of the front row; the others stand behind, in its middle.
 FRONT = 6
 
 MATERIALS = [
@@ -74,32 +51,43 @@ MATERIALS = [
     {"name": "Flowing bricks",
      "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0, "roughnessFactor": 0.6},
      "extensions": {"EXAMPLE_materials_flow": {"flowVelocity": [0.05, 0], "flowRipple": 0.03, "flowWaves": 3}}},
+]
+
+# The textures are those of TEXTURES.
+DRAFTS = [
     {"name": "Varnished wood",
      "pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.3, 0.14, 1], "metallicFactor": 0, "roughnessFactor": 0.7},
      "extensions": {"KHR_materials_coat": {"coatFactor": 1, "coatColorFactor": [1, 0.8, 0.55],
                                            "coatRoughnessFactor": 0.1, "coatIor": 1.6}}},
+    {"name": "Worn varnish",
+     "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0, "roughnessFactor": 0.8},
+     "normalTexture": {"index": 1},
+     "extensions": {"KHR_materials_coat": {"coatFactor": 1, "coatTexture": {"index": 2},
+                                           "coatColorFactor": [1, 0.9, 0.8], "coatColorTexture": {"index": 3},
+                                           "coatRoughnessFactor": 0.5, "coatRoughnessTexture": {"index": 3}}}},
+    {"name": "Brushed lacquer",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.01, 0.02, 1], "metallicFactor": 0, "roughnessFactor": 0.6},
+     "extensions": {"KHR_materials_coat": {"coatFactor": 1, "coatRoughnessFactor": 0.25, "coatAnisotropyStrength": 0.9,
+                                           "coatAnisotropyRotation": 0.6, "coatAnisotropyTexture": {"index": 4},
+                                           "coatNormalTexture": {"index": 1, "scale": 0.4}}}},
     {"name": "Fuzzy cloth",
      "pbrMetallicRoughness": {"baseColorFactor": [0.05, 0.08, 0.2, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
      "extensions": {"KHR_materials_fuzz": {"fuzzFactor": 0.9, "fuzzColorFactor": [0.7, 0.8, 1],
                                            "fuzzRoughnessFactor": 0.5}}},
+    {"name": "Patched velvet",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.12, 0.02, 0.05, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
+     "extensions": {"KHR_materials_fuzz": {"fuzzFactor": 1, "fuzzTexture": {"index": 2},
+                                           "fuzzColorTexture": {"index": 3}, "fuzzRoughnessFactor": 0.8,
+                                           "fuzzRoughnessTexture": {"index": 5}}}},
     {"name": "Clay",
      "pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.3, 0.2, 1], "metallicFactor": 0, "roughnessFactor": 0.9},
-     "extensions": {"KHR_materials_diffuse_roughness": {"diffuseRoughnessFactor": 1}}},
-    {"name": "Floor",
-     "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0, "roughnessFactor": 0.9}},
+     "extensions": {"KHR_materials_diffuse_roughness": {"diffuseRoughnessFactor": 1,
+                                                        "diffuseRoughnessTexture": {"index": 5}}}},
 ]
 
-
-def png(width, height, pixel):
-    """Returns a PNG of 8-bit RGB whose pixels are pixel(x, y)."""
-    import zlib
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+FLOOR = {"name": "Floor",
+         "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0,
+                                  "roughnessFactor": 0.9}}
 
 
 def brick(x, y):
@@ -134,57 +122,58 @@ def terrain_shares(positions):
     return shares
 
 
+def grooves(x, y):
+    """The anisotropy of a texel: around a point in columns of 16, with the strength in blue."""
+    angle = 2 * math.pi * (x % 16) / 16
+    return round(127.5 + 127.5 * math.cos(angle)), round(127.5 + 127.5 * math.sin(angle)), 255 if y % 32 < 24 else 60
+
+
+TEXTURES = [
+    brick_color,
+    brick_normal,
+    lambda x, y: (255,) * 3 if brick(x, y)[0] >= 2 else (20,) * 3,
+    lambda x, y: ((255, 120, 60), (90, 180, 255), (230, 230, 120), (160, 255, 160))[brick(x, y)[1] % 4],
+    grooves,
+    lambda x, y: (255, 255, 255, 60 + 24 * brick(x, y)[1]),
+]
+
+
 def main():
-    if len(sys.argv) != 2:
+    drafts = sys.argv[1:2] == ["--drafts"]
+    if len(sys.argv) != 2 + drafts:
         sys.exit(__doc__.strip())
-    positions, normals, tangents, uvs, indices = sphere()
-    floor = [-12, 0, 6, 12, 0, 6, 12, 0, -9, -12, 0, -9]
-    data = b""
-    views, accessors = [], []
-
-    def add(values, form, kind, size, component, **more):
-        nonlocal data
-        packed = struct.pack(f"<{len(values)}{form}", *values)
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
-        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(values) // size,
-                          "type": kind, **more})
-        data += packed + b"\0" * (-len(packed) % 4)
-        return len(accessors) - 1
-
-    ball = {"POSITION": add(positions, "f", "VEC3", 3, 5126, min=[-1, -1, -1], max=[1, 1, 1]),
-            "NORMAL": add(normals, "f", "VEC3", 3, 5126), "TANGENT": add(tangents, "f", "VEC4", 4, 5126),
-            "TEXCOORD_0": add(uvs, "f", "VEC2", 2, 5126)}
-    hills = {**ball, "_TERRAIN": add(terrain_shares(positions), "f", "VEC3", 3, 5126)}
-    faces = add(indices, "H", "SCALAR", 1, 5123)
-    ground = {"POSITION": add(floor, "f", "VEC3", 3, 5126, min=[-12, 0, -9], max=[12, 0, 6])}
-    ground_faces = add([0, 1, 2, 0, 2, 3], "H", "SCALAR", 1, 5123)
-    count = len(MATERIALS)
+    materials = (DRAFTS if drafts else MATERIALS) + [FLOOR]
+    textures = TEXTURES if drafts else TEXTURES[:2]
+    positions, normals, tangents, uvs, indices = sphere(SEGMENTS, RINGS)
+    buffer = Buffer()
+    ball = {"POSITION": buffer.add(positions, 3, min=[-1, -1, -1], max=[1, 1, 1]),
+            "NORMAL": buffer.add(normals, 3), "TANGENT": buffer.add(tangents, 4), "TEXCOORD_0": buffer.add(uvs, 2)}
+    if not drafts:
+        hills = {**ball, "_TERRAIN": buffer.add(terrain_shares(positions), 3)}
+    faces = buffer.add_indices(indices)
+    ground = {"POSITION": buffer.add([-12, 0, 6, 12, 0, 6, 12, 0, -9, -12, 0, -9], 3, min=[-12, 0, -9], max=[12, 0, 6])}
+    ground_faces = buffer.add_indices([0, 1, 2, 0, 2, 3])
+    count = len(materials) - 1
     meshes = [{"primitives": [{"attributes": hills if m["name"] == "Terrain" else ball, "indices": faces,
-                               "material": i}]} for i, m in enumerate(MATERIALS[:-1])]
-    meshes.append({"primitives": [{"attributes": ground, "indices": ground_faces, "material": count - 1}]})
+                               "material": i}]} for i, m in enumerate(materials[:-1])]
+    meshes.append({"primitives": [{"attributes": ground, "indices": ground_faces, "material": count}]})
 
     def place(i):
         row, column = (0, i) if i < FRONT else (1, i - FRONT)
-        return [2.3 * (column - (FRONT - 1) / 2), 1, 1.2 - 3.2 * row]
+        columns = FRONT if row == 0 else count - FRONT
+        return [2.3 * (column - (columns - 1) / 2), 1, 1.2 - 3.2 * row]
 
-    nodes = [{"mesh": i, "translation": place(i)} for i in range(count - 1)]
-    nodes.append({"mesh": count - 1})
+    nodes = [{"mesh": i, "translation": place(i)} for i in range(count)]
+    nodes.append({"mesh": count})
     nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}},
                   "rotation": [-0.5, 0.2, 0.1, 0.83666]})
     nodes.append({"camera": 0, "translation": [0, 8.4, 16], "rotation": [-0.21644, 0, 0, 0.9763]})
-    images = [{"mimeType": "image/png", "uri": "data:image/png;base64," + base64.b64encode(png(64, 64, f)).decode()}
-              for f in (brick_color, brick_normal)]
-    names = sorted({name for m in MATERIALS for name in m.get("extensions", {})} | {"KHR_lights_punctual"})
-    scene = {"asset": {"version": "2.0", "generator": "make_scene.py"}, "extensionsUsed": names, "scene": 0,
-             "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes, "materials": MATERIALS,
-             "images": images, "textures": [{"source": 0}, {"source": 1}],
-             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.284, "znear": 0.1, "aspectRatio": 3}}],
-             "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2.5}]}},
-             "accessors": accessors, "bufferViews": views,
-             "buffers": [{"byteLength": len(data),
-                          "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}
-    with open(sys.argv[1], "w", encoding="utf-8") as file:
-        json.dump(scene, file)
+    names = sorted({name for m in materials for name in m.get("extensions", {})} | {"KHR_lights_punctual"})
+    write_scene(sys.argv[-1], names, nodes, buffer, meshes=meshes, materials=materials,
+                images=[{"uri": png(64, 64, pixel)} for pixel in textures],
+                textures=[{"source": i} for i in range(len(textures))],
+                cameras=[{"type": "perspective", "perspective": {"yfov": 0.284, "znear": 0.1, "aspectRatio": 3}}],
+                extensions={"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2.5}]}})
 
 
 if __name__ == "__main__":

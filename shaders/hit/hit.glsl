@@ -75,7 +75,13 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
     hit.position = position;
 #if GLINT_ANSWERS_SURFACE
     hit.shaderId = geometry.shaderId;
-    hit.previousPosition = transformPoint(hostPreviousInstance(geometry).objectToWorld, objectPosition);
+    vec3 previousPosition = objectPosition;
+#ifdef GLINT_HOST_PREVIOUS_POSITIONS
+    previousPosition = weights.x * hostPreviousPosition(geometry, corner.x) +
+                       weights.y * hostPreviousPosition(geometry, corner.y) +
+                       weights.z * hostPreviousPosition(geometry, corner.z);
+#endif
+    hit.previousPosition = transformPoint(hostPreviousInstance(geometry).objectToWorld, previousPosition);
 #endif
     hit.edges[0] = transformVector(instance.objectToWorld, e1);
     hit.edges[1] = transformVector(instance.objectToWorld, e2);

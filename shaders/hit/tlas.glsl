@@ -1,4 +1,4 @@
-// The acceleration structure of the scene.
+// The acceleration structure of the scene: a host's descriptor, or the address that a host gives.
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
@@ -9,5 +9,10 @@
 #endif
 
 #if GLINT_TRACER != 0
+#if GLINT_TLAS_BY_ADDRESS
+#define GLINT_TLAS accelerationStructureEXT(GLINT_FRAME.tlasAddress)
+#else
 layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TLAS) uniform accelerationStructureEXT sceneTlas[];
+#define GLINT_TLAS sceneTlas[pushed.tlasIndex]
+#endif
 #endif

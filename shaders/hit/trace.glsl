@@ -43,7 +43,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 // Returns the closest hit of a ray.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
+    rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
                           ray.direction, kFarDistance);
     GLINT_PROCEED(query);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
@@ -64,7 +64,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 // Returns whether nothing stands between `origin` and a light. Both sides of a surface cast shadows.
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
+    rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
                           GLINT_RAY_MASK, origin, 0.0, direction, distance);
     GLINT_PROCEED(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
@@ -73,7 +73,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 // Returns the distance to the closest surface within `most`, seen from either side, or `most` if there is none.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], kOpacityFlags, GLINT_RAY_MASK, origin, 0.0, direction, most);
+    rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, origin, 0.0, direction, most);
     GLINT_PROCEED(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT
                ? most
@@ -96,7 +96,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 
 // Does the same as the function for ray queries above.
 HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
-    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags | flags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
+    traceRayEXT(GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
                 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? missRecord(ray, rayIndex) : hitRecord(ray, rayIndex, traced);
 }
@@ -104,7 +104,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     // A ray that hits leaves this value unchanged.
     traced.geometry = 0u;
-    traceRayEXT(sceneTlas[pushed.tlasIndex],
+    traceRayEXT(GLINT_TLAS,
                 kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, GLINT_RAY_MASK, 0u, 0u,
                 GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry;
@@ -112,7 +112,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 
 // Does the same as the function for ray queries above.
 float closestDistance(vec3 origin, vec3 direction, float most) {
-    traceRayEXT(sceneTlas[pushed.tlasIndex], kOpacityFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
+    traceRayEXT(GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
                 direction, most, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? most : traced.distance;
 }

@@ -257,6 +257,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Uint) firstRecords;           // see kRecordsBy*
     uint recordsBy;
     uint rayMask;  // instances that share no bit with it are not hit
+    uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
 };
 
 GLINT_INTEROP_END

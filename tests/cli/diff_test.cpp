@@ -27,10 +27,13 @@ protected:
         CommandTest::SetUp();
         scene_ = writeTinyScene(path("")).string();
     }
-    void compile(const std::string& folder, std::vector<std::string> more) const {
-        more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility"});
+    // Returns how many modules were compiled and not taken from the test's cache, or -1.
+    int compile(const std::string& folder, std::vector<std::string> more) const {
+        more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility", "--cache",
+                                   "cache", "--json"});
         const Outcome outcome = run(more);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return outcome.exit == 0 ? outcome.json().at("modules").at("compiled").get<int>() : -1;
     }
     Json diff() const {
         const Outcome outcome = run({"diff", "a", "b", "--json"});
@@ -176,11 +179,14 @@ TEST_F(Diff, FoldersThatAreNoPackagesAreRefused) {
 
 // A change of a pack's GLSL changes the modules that have it; a change of its values changes keys.
 TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
+    compile("plain", {"--merge", "none"});
     addMud(scene_, 0.5);
     writeMudPack(path("pack"), 0.25);
-    compile("a", {"--materials", "pack", "--merge", "none"});
+    const int all = compile("a", {"--materials", "pack", "--merge", "none"});
     writeMudPack(path("pack"), 0.5);
-    compile("b", {"--materials", "pack", "--merge", "none"});
+    // The case of the floor, and the shader that lights every primary surface.
+    EXPECT_EQ(compile("b", {"--materials", "pack", "--merge", "none"}), 2);
+    EXPECT_GT(all, 2);
     const Json changed = diff();
     EXPECT_EQ(changed.at("differ"), true);
     EXPECT_TRUE(changed.at("shaders").empty()) << changed.at("shaders");
@@ -191,6 +197,12 @@ TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
     std::ranges::sort(roles);
     EXPECT_EQ(roles, (std::vector<std::string>{"Lighting", "ShadeCase"})) << changed.at("modules");
     EXPECT_EQ(changed.at("modules").size(), 2U);
+    EXPECT_TRUE(changed.at("settings").empty()) << changed.at("settings");
+    const Json added = run({"diff", "plain", "a", "--json"}).json().at("settings");
+    EXPECT_EQ(added, Json::parse(R"([{"name": "packs", "before": "none", "after": "mud"}])"));
+    EXPECT_EQ(run({"inspect", "a", "--json"}).json().at("packs"), Json::array({"mud"}));
+    EXPECT_TRUE(has(run({"inspect", "a"}).out, "packs                mud\n"));
+    EXPECT_TRUE(has(run({"inspect", "plain"}).out, "packs                none\n"));
 
     addMud(scene_, 0.0);
     compile("b", {"--materials", "pack", "--merge", "none"});

@@ -50,6 +50,8 @@ TEST_F(HostCommand, IsAnInputOfThePackage) {
     EXPECT_TRUE(has(readText(path("package.d")), kSkyFile));
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("host"), nlohmann::json::array({"sky.glsl"}));
+    EXPECT_EQ(run({"inspect", "package", "--json"}).json().at("host"), manifest.at("host"));
+    EXPECT_TRUE(has(run({"inspect", "package"}).out, "host                 sky.glsl\n"));
     EXPECT_TRUE(compile(options).json().at("upToDate").get<bool>());
     std::string other = kSky;
     other.replace(other.find("0.25"), 4, "0.75");
@@ -58,7 +60,13 @@ TEST_F(HostCommand, IsAnInputOfThePackage) {
     EXPECT_FALSE(changed.at("upToDate").get<bool>());
     EXPECT_GT(changed.at("modules").at("compiled"), 0);
     // Without it, another package is made.
+    std::filesystem::copy(path("package"), path("hosted"), std::filesystem::copy_options::recursive);
     ASSERT_EQ(compile({}).exit, 0);
+    const nlohmann::json changes = run({"diff", "hosted", "package", "--json"}).json().at("settings");
+    ASSERT_EQ(changes.size(), 1U) << changes;
+    EXPECT_EQ(changes[0].at("name"), "host");
+    EXPECT_EQ(changes[0].at("before"), "sky.glsl");
+    EXPECT_TRUE(has(run({"inspect", "package"}).out, "host                 Glint's own\n"));
     EXPECT_TRUE(nlohmann::json::parse(readText(path("package/manifest.json"))).at("host").empty());
 }
 

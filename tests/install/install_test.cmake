@@ -11,16 +11,56 @@ macro(expect_output text)
   endif()
 endmacro()
 
+# Writes the scene, the pack of materials and the host of the package "own". The sky's radiance is `sky`, and is in a file that
+# the host's includes.
+set(own "${WORK}/own")
+function(write_sky sky)
+  file(WRITE "${own}/host/game/sky_radiance.glsl" "const vec3 kSkyRadiance = vec3(${sky});\n")
+endfunction()
+function(write_own)
+  file(READ "${WORK}/scenes/cubes.gltf" scene)
+  string(REPLACE "\"name\": \"Velvet\"" "\"name\": \"Velvet\", \"extras\": { \"wet\": 0.5 }" wet_scene "${scene}")
+  if(wet_scene STREQUAL scene)
+    message(FATAL_ERROR "the scene has no Velvet")
+  endif()
+  file(WRITE "${WORK}/scenes/own.gltf" "${wet_scene}")
+  write_sky(0.25)
+  file(WRITE "${own}/host/sky.glsl"
+       "#include \"host/resources.glsl\"\n#include \"game/sky_radiance.glsl\"\n"
+       "vec3 hostSky(vec3 direction) { return kSkyRadiance; }\n"
+       "vec3 hostSkyAround(vec3 direction, float roughness) { return kSkyRadiance; }\n"
+       "vec3 hostSkyIrradianceOverPi(vec3 normal) { return kSkyRadiance; }\n")
+  file(WRITE "${own}/pack/wet.json"
+       "{ \"name\": \"wet\", \"object\": \"extras\", \"stage\": \"surface\", \"glsl\": { \"surface\": \"wet.glsl\" },\n"
+       "  \"parameters\": [{ \"name\": \"wetness\", \"at\": \"wet\", \"type\": \"float\", \"default\": 0, \"range\": [0, 1] }],\n"
+       "  \"neutral\": [{ \"when\": \"wetness == 0\", \"because\": \"it is dry\" }] }\n")
+  file(WRITE "${own}/pack/wet.glsl"
+       "#include \"hit/surface_values.glsl\"\n"
+       "void wetSurface(Hit hit, Features features, inout SurfaceValues values) {\n"
+       "    values.roughness *= 1.0 - GLINT_MATERIAL_WETNESS(hit);\n}\n")
+endfunction()
+
+# Builds again, and expects that only the package "own" is made, and that its shader is another one or not.
+macro(expect_own_alone change)
+  file(SHA256 "${build}/glint/own/uber.spv" before)
+  run(${CMAKE_COMMAND} --build "${build}")
+  file(SHA256 "${build}/glint/own/uber.spv" after)
+  if(NOT output MATCHES "materials of own" OR output MATCHES "materials of (both|cubes)" OR before STREQUAL after)
+    message(FATAL_ERROR "${change}: not the package that it is for, or the same shader\n${output}")
+  endif()
+endmacro()
+
 set(prefix "${WORK}/prefix")
 set(build "${WORK}/build")
 file(REMOVE_RECURSE "${WORK}")
 file(COPY "${SCENES}/" DESTINATION "${WORK}/scenes")
 file(COPY_FILE "${WORK}/scenes/cubes.gltf" "${WORK}/scenes/copy.gltf")
 
+write_own()
 run(${CMAKE_COMMAND} --install "${GLINT_BUILD}" --prefix "${prefix}")
 run("${prefix}/bin/glint" --version)
 run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
-    "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" "-DSCENES=${WORK}/scenes")
+    "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" "-DSCENES=${WORK}/scenes" "-DOWN=${own}")
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
@@ -46,4 +86,33 @@ file(REMOVE "${build}/cubes.lock")
 run(${CMAKE_COMMAND} --build "${build}")
 if(NOT EXISTS "${build}/cubes.lock" OR output MATCHES "materials of both")
   message(FATAL_ERROR "the lock was not made again, or more than its package\n${output}")
+endif()
+
+# So do the files of a host, those that they include, and those of a pack.
+file(READ "${build}/glint/own/manifest.json" manifest)
+string(JSON hosts GET "${manifest}" host)
+string(JSON packs GET "${manifest}" packs)
+if(NOT hosts MATCHES "sky.glsl" OR NOT packs MATCHES "wet")
+  message(FATAL_ERROR "the manifest names the host's files ${hosts} and the packs ${packs}")
+endif()
+write_sky(0.75)
+expect_own_alone("a file that the host includes")
+file(READ "${own}/host/sky.glsl" text)
+string(REPLACE "float roughness) { return" "float roughness) { return 0.5 *" text "${text}")
+file(WRITE "${own}/host/sky.glsl" "${text}")
+expect_own_alone("a file of the host")
+file(READ "${own}/pack/wet.glsl" text)
+string(REPLACE "1.0 -" "1.0 - 0.5 *" text "${text}")
+file(WRITE "${own}/pack/wet.glsl" "${text}")
+expect_own_alone("a pack")
+
+# A file that is new in the host's folder replaces Glint's own.
+file(WRITE "${own}/host/random.glsl"
+     "float hostRandom(uint target, uint dimension) { return 0.5; }\n"
+     "vec2 hostRandomPair(uint target, uint pair) { return vec2(0.5); }\n")
+expect_own_alone("a new file of the host")
+file(READ "${build}/glint/own/manifest.json" manifest)
+string(JSON hosts GET "${manifest}" host)
+if(NOT hosts MATCHES "random.glsl")
+  message(FATAL_ERROR "the host's new file is not in the package: ${hosts}")
 endif()

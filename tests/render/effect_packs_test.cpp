@@ -160,6 +160,7 @@ TEST_F(EffectOfThePage, ErrorsOfGlslNameTheFileTheLineAndTheEffect) {
     ASSERT_TRUE(writeFile(path,
                           "#include \"effects/sample.glsl\"\n"
                           "#include \"effects/sky_shares.glsl\"\n"
+                          "#include \"hit/surface.glsl\"\n"
                           "EffectSample sampleTranslucency(Hit hit, Surface surface, Features features,\n"
                           "                                inout SkyShares sky) {\n"
                           "    return nonsense;\n"
@@ -168,7 +169,7 @@ TEST_F(EffectOfThePage, ErrorsOfGlslNameTheFileTheLineAndTheEffect) {
         compilePackage(sheetAndPanel(model()), settingsWith({"translucency"}));
     ASSERT_FALSE(package);
     EXPECT_EQ(package.error().id, "glsl");
-    EXPECT_EQ(package.error().where, path.string() + ":5");
+    EXPECT_EQ(package.error().where, path.string() + ":6");
     EXPECT_NE(package.error().message.find("effect translucency"), std::string::npos)
         << package.error().message;
 }

@@ -71,7 +71,7 @@ protected:
         EXPECT_TRUE(package) << toString(package.error());
         const engine::World world =
             engine::readGltf(kScene, format, static_cast<float>(kWidth) / static_cast<float>(kHeight));
-        engine::Gpu gpu(true);
+        engine::Gpu gpu(true, tracer);
         engine::Picture picture;
         {
             const std::string shaders = GLINT_ENGINE_SHADERS;
@@ -103,11 +103,14 @@ TEST_F(EngineExample, ShowsWhatGlintsRendererShows) {
         package::Strategy strategy;
         package::Tracer tracer;
     };
+    // The engine's own shader traces by the same means.
     for (const Way& way : {Way{package::kStrategyVisibility, package::kTracerRayQuery},
+                           Way{package::kStrategyVisibility, package::kTracerRayPipeline},
                            Way{package::kStrategyHitShaders, package::kTracerRayPipeline}}) {
         const Difference found = difference(render(engine::Format::Full, way.strategy, way.tracer, 3));
         EXPECT_LE(found.largest, 1e-4) << nameOf(way.strategy) << ", " << found.pixelsAbove << " pixels";
-        RecordProperty(std::string(nameOf(way.strategy)), std::to_string(found.largest));
+        RecordProperty(std::string(nameOf(way.strategy)) + "_" + std::string(nameOf(way.tracer)),
+                       std::to_string(found.largest));
     }
     expectNoValidationMessages();
 }

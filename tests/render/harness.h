@@ -1,4 +1,4 @@
-// Renders scenes in process, always with the validation layers.
+// Renders scenes in process, with the validation layers unless GLINT_TESTS_UNVALIDATED is in the environment.
 #pragma once
 
 #include "emit/compile.h"

@@ -23,18 +23,32 @@ using namespace glint::testing;
 namespace fs = std::filesystem;
 
 const std::string kPacks = GLINT_SOURCE_DIR "/examples/materials";
+const std::string kDrafts = kPacks + "/drafts";
 
-const MaterialModel& packs() {
-    static const Result<const MaterialModel*> kModel = loadMaterialModel(std::vector{kPacks});
-    EXPECT_TRUE(kModel) << toString(kModel.error());
-    return **kModel;
+const MaterialModel& modelOf(const std::string& folder) {
+    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder});
+    EXPECT_TRUE(model) << toString(model.error());
+    return **model;
 }
 
-TEST(Packs, StrategiesAndMergePoliciesGiveOneImage) {
+const MaterialModel& packs() {
+    static const MaterialModel& model = modelOf(kPacks);
+    return model;
+}
+
+class ExamplePacks : public ::testing::TestWithParam<std::string> {};
+std::string nameOfFolder(const ::testing::TestParamInfo<std::string>& folder) {
+    return folder.index == 0 ? "Examples" : "Drafts";
+}
+INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks, ::testing::Values("materials", "materials/drafts"),
+                         nameOfFolder);
+
+TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
+    const std::string folder = GLINT_SOURCE_DIR "/examples/" + GetParam();
     ImportOptions import;
     import.decodeImages = true;
-    import.materialModel = &packs();
-    const Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+    import.materialModel = &modelOf(folder);
+    const Result<Scene> scene = importScene(folder + "/scene.gltf", import);
     ASSERT_TRUE(scene) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
     RenderSetup setup = defaultSetup(*scene, 75, 30);
@@ -143,6 +157,42 @@ TEST(Packs, FibresAreThoseOfDoublePrecision) {
     for (int channel = 0; channel < 3; ++channel) {
         EXPECT_NEAR(pixel[static_cast<std::size_t>(channel)], expected, 1e-4 * expected);
     }
+}
+
+TEST(Packs, AGroovedCoatIsThatOfDoublePrecision) {
+    static const MaterialModel& model = modelOf(kDrafts);
+    Material material = blackMaterial(model);
+    material.give("KHR_materials_coat");
+    material["coatFactor"] = 0.75F;
+    material["coatRoughnessFactor"] = 0.5F;
+    material["coatIor"] = 1.6F;
+    material["coatAnisotropyStrength"] = 0.6F;
+    material["coatAnisotropyRotation"] = 0.4F;
+    const Pixel pixel = litWall(material, kTilt, kLight);
+    // Vectors along the grooves and across them.
+    const auto turned = [](const Direction& d) {
+        return Direction{std::cos(0.4) * d.x + std::sin(0.4) * d.y, std::cos(0.4) * d.y - std::sin(0.4) * d.x,
+                         d.z};
+    };
+    const Direction v = turned(toWall({0, 0, 1}, kTilt));
+    const Direction l = turned(toWall({-kLight[0], -kLight[1], -kLight[2]}, kTilt));
+    // glTF 2.0, appendix B, with the alphas of KHR_materials_anisotropy.
+    const double across = 0.25;
+    const double along = across + (1.0 - across) * 0.36;
+    const double size = std::sqrt(std::pow(v.x + l.x, 2) + std::pow(v.y + l.y, 2) + std::pow(v.z + l.z, 2));
+    const Direction h{(v.x + l.x) / size, (v.y + l.y) / size, (v.z + l.z) / size};
+    const double stretched = std::pow(h.x / along, 2) + std::pow(h.y / across, 2) + h.z * h.z;
+    const double d = 1.0 / (std::numbers::pi * along * across * stretched * stretched);
+    const auto projection = [&](const Direction& w) {
+        return std::sqrt(std::pow(along * w.x, 2) + std::pow(across * w.y, 2) + w.z * w.z);
+    };
+    const double visibility = 0.5 / (l.z * projection(v) + v.z * projection(l));
+    const double f0 = std::pow(0.6 / 2.6, 2);
+    const double fresnel = f0 + (1.0 - f0) * std::pow(1.0 - 0.5 * size, 5);
+    const double expected = 2.0 * 0.75 * fresnel * d * visibility * l.z;
+    ASSERT_GT(expected, 1e-3);
+    EXPECT_NEAR(pixel[0], expected, 1e-4 * expected);
+    EXPECT_NEAR(pixel[2], expected, 1e-4 * expected);
 }
 
 // The page's lobe is added by the three files that it prints, and by nothing else.

@@ -1,14 +1,18 @@
 // The steps that a host records for rays of its own.
+#include "base/files.h"
 #include "context/commands.h"
 #include "context/readback.h"
+#include "emit/builtin.h"
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "renderer/pass_dependencies.h"
 #include "renderer/renderer_state.h"
+#include "support/temporary_folder.h"
 
 #include <glint/ray_steps.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -37,6 +41,7 @@ std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count
 KnownRays knownRays(const Scene& scene, const RenderSetup& setup) {
     CompileSettings settings;
     settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kAllTracers;
     settings.plan.merge = MergePolicy::All;
     settings.plan.keys.alpha = AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings);
@@ -64,18 +69,24 @@ KnownRays knownRays(const Scene& scene, const RenderSetup& setup) {
 }
 
 // A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and its
-// answers.
+// answers. For a package without textures that takes its structure by address, the layout has no set.
 class Host {
 public:
     Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
          std::size_t answerBytes)
-        : context_(sharedContext().state()), pool_(context_), loaded_(loaded), rays_(rays), slots_(slots) {
+        : context_(sharedContext().state()),
+          pool_(context_),
+          loaded_(loaded),
+          rays_(rays),
+          slots_(slots),
+          hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
+                  !loaded.package().scene(0).textures.empty()) {
         const VkDescriptorSetLayout empty = makeEmptyLayout();
         const VkDescriptorSetLayout sets[] = {empty, empty, loaded.gpuScene().descriptorSetLayout()};
         const VkPushConstantRange range{kStages, 0, 16 + RaySteps::kPushBytes};
         VkPipelineLayoutCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-        info.setLayoutCount = 3;
+        info.setLayoutCount = hasSet_ ? 3 : 0;
         info.pSetLayouts = sets;
         info.pushConstantRangeCount = 1;
         info.pPushConstantRanges = &range;
@@ -111,11 +122,14 @@ public:
         batch.sky = frame.sky;
         batch.sampleIndex = frame.sampleIndex;
         batch.seed = frame.seed;
+        batch.tlas = loaded_.gpuScene().state().tlas.address;
         Result<CommandRunner> runner = CommandRunner::create(context_);
         const Result<VkCommandBuffer> commands = runner->begin();
         const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
+        const VkPipelineBindPoint points[] = {VK_PIPELINE_BIND_POINT_COMPUTE,
+                                              VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR};
         for (const VkPipelineBindPoint point :
-             {VK_PIPELINE_BIND_POINT_COMPUTE, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR}) {
+             hasSet_ ? std::span(points) : std::span<const VkPipelineBindPoint>()) {
             context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
         }
         if (apart) {
@@ -141,9 +155,12 @@ public:
         return read;
     }
 
-private:
+    VkPipelineLayout layout() const {
+        return layout_.get();
+    }
     static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
 
+private:
     VkDescriptorSetLayout makeEmptyLayout() {
         VkDescriptorSetLayoutCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -167,6 +184,7 @@ private:
     const LoadedScene& loaded_;
     const std::vector<EngineRay>& rays_;
     std::size_t slots_;
+    bool hasSet_;
     UniqueSetLayout empty_;
     UniquePipelineLayout layout_;
     Buffer list_;
@@ -190,12 +208,24 @@ struct Way {
     package::Strategy strategy;
     package::Tracer tracer;
 };
-constexpr Way kWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
-                         {package::kStrategyUber, package::kTracerRayPipeline},
-                         {package::kStrategyVisibility, package::kTracerRayQuery},
-                         {package::kStrategyVisibility, package::kTracerRayPipeline},
-                         {package::kStrategySortedUber, package::kTracerRayQuery},
-                         {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+constexpr Way kAllWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
+                            {package::kStrategyUber, package::kTracerRayPipeline},
+                            {package::kStrategyVisibility, package::kTracerRayQuery},
+                            {package::kStrategyVisibility, package::kTracerRayPipeline},
+                            {package::kStrategySortedUber, package::kTracerRayQuery},
+                            {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+
+// Those whose tracer the device has.
+std::vector<Way> ways() {
+    std::vector<Way> result;
+    for (const Way& way : kAllWays) {
+        if ((sharedContext().handles().tracers & way.tracer) != 0) {
+            result.push_back(way);
+        }
+    }
+    EXPECT_FALSE(result.empty());
+    return result;
+}
 
 TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
     const Scene scene = roomWithFence();
@@ -208,7 +238,7 @@ TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
         Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
-        for (const Way& way : kWays) {
+        for (const Way& way : ways()) {
             const bool packed = record == package::HitRecordFormat::Packed;
             if (packed && way.strategy != package::kStrategySortedUber) {
                 continue;
@@ -242,8 +272,8 @@ TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
     expectNoValidationMessages();
 }
 
-// A wall of a known material, seen at an angle, and the sky beside it.
-TEST(RaySteps, AnswerWithSurfaces) {
+// A wall of a known material, and beside it an unlit one.
+Scene wallAndLamp() {
     Scene scene = emptyScene();
     Material paint;
     paint["baseColorFactor"] = {0.5F, 0.25F, 0.125F, 1.0F};
@@ -254,6 +284,12 @@ TEST(RaySteps, AnswerWithSurfaces) {
                 addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
     const Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    return scene;
+}
+
+// The wall is seen at an angle, and the sky beside it.
+TEST(RaySteps, AnswerWithSurfaces) {
+    const Scene scene = wallAndLamp();
     CompileSettings settings = stepSettings();
     settings.answer = package::HitAnswer::Surface;
     settings.plan.merge = MergePolicy::None;
@@ -264,7 +300,7 @@ TEST(RaySteps, AnswerWithSurfaces) {
                                       {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
                                       {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
     Host host(loaded, rays, 3, sizeof(EngineSurface));
-    for (const Way& way : kWays) {
+    for (const Way& way : ways()) {
         SCOPED_TRACE(std::string(nameOf(way.strategy)));
         RayStepsOptions options;
         options.strategy = way.strategy;
@@ -300,14 +336,102 @@ TEST(RaySteps, AnswerWithSurfaces) {
     expectNoValidationMessages();
 }
 
+// A host that keeps the vertices of the frame before, which here lay 0.25 m to the left and 0.5 m below.
+TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
+    const auto own = std::ranges::find(builtinFiles(), "host/geometry.glsl", &BuiltinFile::name);
+    ASSERT_NE(own, builtinFiles().end());
+    const test::TemporaryFolder folder;
+    const std::string text(own->text);
+    ASSERT_TRUE(writeFile(folder.path() / "geometry.glsl",
+                          text + "\n#define GLINT_HOST_PREVIOUS_POSITIONS\n"
+                                 "vec3 hostPreviousPosition(HostGeometry geometry, uint vertex) {\n"
+                                 "    return hostPosition(geometry, vertex) - vec3(0.25, 0.5, 0.0);\n"
+                                 "}\n"));
+    CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    settings.answer = package::HitAnswer::Surface;
+    settings.host = folder.path().string();
+    const LoadedScene loaded(wallAndLamp(), settings);
+    ASSERT_TRUE(loaded.ok());
+    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 0, {0.0F, 0.0F, -1.0F}}};
+    Host host(loaded, rays, 1, sizeof(EngineSurface));
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    const auto answers = host.answers<EngineSurface>(options, {}, false);
+    ASSERT_EQ(answers.size(), 1U);
+    EXPECT_NEAR(answers[0].motion[0], 0.25F, 1e-6F);
+    EXPECT_NEAR(answers[0].motion[1], 0.5F, 1e-6F);
+    EXPECT_NEAR(answers[0].motion[2], 0.0F, 1e-6F);
+    expectNoValidationMessages();
+}
+
+// Without a descriptor, and here without any descriptor set, the answers are those that a descriptor gives.
+TEST(RaySteps, TakeAStructureByItsAddress) {
+    const Scene scene = wallAndLamp();
+    std::vector<EngineRay> rays;
+    for (std::uint32_t slot = 0; slot < 64; ++slot) {
+        const std::array<float, 3> to{-2.0F + 1.1F * static_cast<float>(slot % 8),
+                                      -1.5F + 0.4F * static_cast<float>(slot / 8), -4.0F};
+        const float length = std::hypot(to[0], to[1], to[2]);
+        rays.push_back({{0, 0, 0}, slot, {to[0] / length, to[1] / length, to[2] / length}});
+    }
+    const LoadedScene described(scene, stepSettings());
+    CompileSettings settings = stepSettings();
+    settings.bindings.tlas = package::Bindings::kByAddress;
+    const LoadedScene addressed(scene, settings);
+    ASSERT_TRUE(described.ok() && addressed.ok());
+    Host withSet(described, rays, rays.size(), sizeof(EngineRadiance));
+    Host without(addressed, rays, rays.size(), sizeof(EngineRadiance));
+    for (const Way& way : ways()) {
+        // One way for each form of the shaders that trace: all ways trace by the same functions.
+        const bool byQuery = way.tracer == package::kTracerRayQuery;
+        if (way.strategy != (byQuery ? package::kStrategyUber : package::kStrategyVisibility) &&
+            way.strategy != package::kStrategyHitShaders) {
+            continue;
+        }
+        SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
+        RayStepsOptions options;
+        options.strategy = way.strategy;
+        options.tracer = way.tracer;
+        const auto truth = withSet.answers<EngineRadiance>(options, {}, false);
+        const auto found = without.answers<EngineRadiance>(options, {}, false);
+        ASSERT_EQ(found.size(), truth.size());
+        std::array<std::size_t, 4> paths{};
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            EXPECT_EQ(found[i].path, truth[i].path) << i;
+            ++paths.at(static_cast<std::size_t>(found[i].path));
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                EXPECT_NEAR(found[i].radiance[channel], truth[i].radiance[channel], 1e-6F) << i;
+            }
+        }
+        // Both hits and misses are among them.
+        EXPECT_GT(paths[2], 10U);
+        EXPECT_GT(paths[3], 10U);
+    }
+    const auto shared = EngineScene::share(sharedContext(), addressed.gpuScene());
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    options.maxRays = 1;
+    options.layout = without.layout();
+    options.pushStages = Host::kStages;
+    const auto steps = RaySteps::create(sharedContext(), addressed.package(), **shared, options);
+    ASSERT_TRUE(steps) << toString(steps.error());
+    RayBatch batch;
+    batch.rays = batch.answers = 64;
+    const Status refused = (*steps)->begin(VK_NULL_HANDLE, batch);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(toString(refused.error()).find("RayBatch::tlas is 0"), std::string::npos);
+    expectNoValidationMessages();
+}
+
 TEST(RaySteps, RefuseWhatTheyCannotDo) {
     const Scene scene = roomWithFence();
     CompileSettings frames;
     frames.strategies = package::kStrategyUber;
+    frames.tracers = package::kAllTracers;
     const LoadedScene framePackage(scene, frames);
     CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
-    settings.tracers = package::kTracerRayQuery;
     const LoadedScene stepPackage(scene, settings);
     ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
     const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
@@ -331,7 +455,6 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
 TEST(EngineScene, NamesWhatIsWrong) {
     CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
-    settings.tracers = package::kTracerRayQuery;
     const LoadedScene loaded(roomWithFence(), settings);
     ASSERT_TRUE(loaded.ok());
     const PackageScene known = loaded.package().scene(0);

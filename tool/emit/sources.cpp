@@ -64,8 +64,12 @@ std::string bindingDefines(const package::Bindings& bindings) {
         std::ranges::transform(name, name.begin(), [](char c) {
             return c == '-' ? '_' : c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
         });
-        text += fmt::format("#define GLINT_BINDING_{} {}\n", name, bindings.*one.member);
+        if (bindings.*one.member != package::Bindings::kByAddress) {
+            text += fmt::format("#define GLINT_BINDING_{} {}\n", name, bindings.*one.member);
+        }
     }
+    text += fmt::format("#define GLINT_TLAS_BY_ADDRESS {}\n",
+                        bindings.tlas == package::Bindings::kByAddress ? 1 : 0);
     return text;
 }
 

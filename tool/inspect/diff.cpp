@@ -17,14 +17,14 @@ namespace glint::inspect {
 
 namespace {
 
-// Returns "a, b" for a list, "none" for null, and otherwise the value as it is.
+// Returns "a, b" for a list, "none" for an empty one or null, and otherwise the value as it is.
 std::string valueText(const Json& value) {
     if (value.is_array()) {
         std::vector<std::string> words;
         for (const Json& element : value) {
             words.push_back(valueText(element));
         }
-        return join(words);
+        return words.empty() ? "none" : join(words);
     }
     return value.is_null() ? "none" : value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -34,6 +34,9 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const Json& manifest
     std::vector<std::pair<std::string, std::string>> settings;
     for (const char* name : {"toolVersion", "strategies", "tracers", "merge", "maxShaders", "alpha"}) {
         settings.emplace_back(name, valueText(manifest.at(name)));
+    }
+    for (const char* name : {"host", "packs"}) {
+        settings.emplace_back(name, valueText(manifest.value(name, Json::array())));
     }
     for (const auto& [name, value] : manifest.at("settings").items()) {
         settings.emplace_back(name, valueText(value));

@@ -107,6 +107,8 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
         manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
         manifest.textureLod = settings.at("textureLod").get<std::string>();
+        manifest.host = json.value("host", std::vector<std::string>());
+        manifest.packs = json.value("packs", std::vector<std::string>());
         for (const auto& row : json.at("features")) {
             Feature& feature = manifest.features.features.emplace_back();
             feature.name = row.at("name").get<std::string>();

@@ -25,7 +25,9 @@ struct Manifest {
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
     std::string textureLod;
-    MaterialModel features;  // names and bits of features alone
+    std::vector<std::string> host;   // files that --host replaced
+    std::vector<std::string> packs;  // declarations of packs
+    MaterialModel features;          // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
 };

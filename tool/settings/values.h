@@ -283,11 +283,16 @@ inline std::vector<SettingWord> hitLobeWords() {
     return words;
 }
 
+inline constexpr std::string_view kByAddress = "address";  // instead of the number of `tlas`
+
 // Returns "scene-set=0,tlas=0,…".
 inline std::string textOf(const package::Bindings& bindings) {
     std::vector<std::string> words;
     for (const package::NamedBinding& one : package::kBindingNames) {
-        words.push_back(fmt::format("{}={}", one.name, bindings.*one.member));
+        const std::uint32_t number = bindings.*one.member;
+        words.push_back(fmt::format(
+            "{}={}", one.name,
+            number == package::Bindings::kByAddress ? std::string(kByAddress) : std::to_string(number)));
     }
     return fmt::format("{}", fmt::join(words, ","));
 }
@@ -302,8 +307,12 @@ inline bool parseBindings(std::string_view text, package::Bindings& bindings) {
         const auto* const one =
             std::ranges::find(package::kBindingNames, word.substr(0, sign), &package::NamedBinding::name);
         std::int64_t number = 0;
-        valid = valid && one != std::end(package::kBindingNames) && sign < word.size() &&
-                parseWhole(word.substr(sign + 1), 0, kMost, number);
+        valid = valid && one != std::end(package::kBindingNames) && sign < word.size();
+        if (valid && one->member == &package::Bindings::tlas && word.substr(sign + 1) == kByAddress) {
+            bindings.tlas = package::Bindings::kByAddress;
+            return;
+        }
+        valid = valid && parseWhole(word.substr(sign + 1), 0, kMost, number);
         if (valid) {
             bindings.*one->member = static_cast<std::uint32_t>(number);
         }
@@ -339,7 +348,7 @@ inline constexpr SettingValues kBindings{
         },
     .further =
         "list of NAME=N, with the names scene-set, tlas, textures, samplers, environment-set, "
-        "environment and push-offset"};
+        "environment and push-offset; tlas=address: the engine gives the structure's device address"};
 
 inline constexpr SettingValues kEffects{.form = ValueForm::List,
                                         .text = effectsOf,

@@ -44,8 +44,9 @@ struct EngineSurface {
     float f90 = 0.0F;                 // and at grazing angles
     std::array<float, 3> emission{};  // radiance; of an unlit material, its colour
     float transmission = 0.0F;        // share of the light that passes, specularly or diffusely
-    std::array<float, 3> motion{};    // since the transforms before EngineScene::update(), metres
-    std::uint32_t material = 0;       // index of the material in its file
+    std::array<float, 3> motion{};  // since the transforms before EngineScene::update(), metres; docs/host.md
+                                    // says how it follows vertices that move
+    std::uint32_t material = 0;     // index of the material in its file
 
     static constexpr std::uint32_t kMiss = 0xFFFFFFFF;
     static constexpr std::uint32_t kUnknown = 0xFFFFFFFE;  // no case has the shader ID of what it hit
@@ -80,6 +81,7 @@ struct RayBatch {
     std::uint32_t seed = 0;
     std::uint8_t mask = 0xFF;     // instances that share no bit with it are not hit
     std::uint32_t tlasIndex = 0;  // which of the structures of Bindings::tlas
+    VkDeviceAddress tlas = 0;     // the structure itself, if Bindings::tlas is kByAddress
     // The light that rays find which leave the scene, for answers of light.
     SkyView sky{};
     // With a package that reads an environment map. The host binds Environment's image at

@@ -30,6 +30,7 @@ struct RaySteps::State : PassState {
 
     EngineScene::State& scene;
     std::uint32_t maxRays = 0;
+    bool tlasByAddress = false;
     // These belong to the batch that begin() started.
     Timing timing = Timing::Frame;
     std::uint32_t whole = 0;  // the timer's stretch of it
@@ -46,13 +47,17 @@ Outside outsideOf(const RayBatch& batch) {
     return {batch.sky, batch.environment, batch.environmentRotation, batch.environmentIntensity};
 }
 
-Status checkBatch(const PassState& state, std::uint32_t maxRays, const RayBatch& batch) {
+Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
     if (batch.rays == 0 || batch.answers == 0) {
         return wrongBatch("the address of rays or answers is 0", "give the addresses of both lists");
     }
-    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > maxRays) {
+    if (state.tlasByAddress && batch.tlas == 0) {
+        return wrongBatch("the package takes the acceleration structure by address, and RayBatch::tlas is 0",
+                          "set it, or compile the package with a number for tlas in --bindings");
+    }
+    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > state.maxRays) {
         return wrongBatch(std::to_string(batch.rayCount) + " rays are more than RayStepsOptions::maxRays, " +
-                              std::to_string(maxRays),
+                              std::to_string(state.maxRays),
                           "split the batch, or make the steps for more rays");
     }
     return checkOutside(state.size, outsideOf(batch));
@@ -98,6 +103,7 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     state->size = size;
     state->maxRays = options.maxRays;
     state->pushOffset = package.bindings().pushOffset;
+    state->tlasByAddress = package.bindings().tlas == package::Bindings::kByAddress;
     for (const package::CaseEntry& entry : package.cases()) {
         state->caseNames.emplace_back(package.string(entry.name));
     }
@@ -163,6 +169,8 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.firstRecords = state.scene.addresses.firstRecords;
     constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
     constants.rayMask = batch.mask;
+    constants.tlasAddress = {static_cast<std::uint32_t>(batch.tlas),
+                             static_cast<std::uint32_t>(batch.tlas >> 32)};
     fillLists(state.frame, state.size, constants);
     constants.rays = batch.rays;
     constants.radiance = batch.answers;
@@ -173,7 +181,7 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
 }  // namespace
 
 Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
-    if (Status status = checkBatch(*state_, state_->maxRays, batch); !status) {
+    if (Status status = checkBatch(*state_, batch); !status) {
         return status;
     }
     state_->timed.clear();

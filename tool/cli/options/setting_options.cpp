@@ -178,8 +178,8 @@ void addReadingOptions(CLI::App& command, Settings& settings) {
     addFlag(command, "--strict-paths", settings.strictPaths,
             "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
     addTexts(command, "--materials", settings.materials, "DIR",
-             "add the material features and effects that this folder declares\n"
-             "(docs/material_features.md, docs/effects.md); may be repeated")
+             "add the material features and effects that this folder\n"
+             "declares (docs/material_features.md, docs/effects.md);\nmay be repeated")
         .allow_extra_args(false);
 }
 

@@ -153,6 +153,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, firstRecords),
     GLINT_MEMBER(FrameConstants, recordsBy),
     GLINT_MEMBER(FrameConstants, rayMask),
+    GLINT_MEMBER(FrameConstants, tlasAddress),
 };
 
 constexpr MemberLayout kPushConstants[] = {

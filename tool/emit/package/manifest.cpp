@@ -93,6 +93,17 @@ ManifestJson hostNames(const CompileSettings& settings) {
     return names ? ManifestJson(*names) : ManifestJson::array();
 }
 
+// Returns the names of the declarations of packs.
+ManifestJson packNames(const MaterialModel& model) {
+    std::set<std::string> names;
+    for (const FeatureCode& code : model.code) {
+        if (code.isOfPack) {
+            names.insert(code.name);
+        }
+    }
+    return names;
+}
+
 // Returns the budget of cases, or null if there is none.
 ManifestJson maxShadersOf(const PlanOptions& options) {
     const int budget = budgetOf(options);
@@ -282,6 +293,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
     manifest["maxShaders"] = maxShadersOf(settings.plan);
     manifest["alpha"] = nameOf(settings.plan.keys.alpha);
     manifest["host"] = hostNames(settings);
+    manifest["packs"] = packNames(*package.plan.model);
     manifest["settings"] = settingsOf(*package.plan.model, settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
