@@ -13,7 +13,8 @@ Sets up, builds, and runs all parts, or those that are named:
 
   sweep     test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
-            test_strategies_agree with every merge policy for every scene
+            test_strategies_agree with every merge policy for every scene; test_half with
+            the gallery
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -52,9 +53,10 @@ scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            build test_combinations test_strategies_agree
-            GLINT_NIGHTLY=1 build/release/tests/test_combinations
-            GLINT_NIGHTLY=1 build/release/tests/test_strategies_agree
+            build test_combinations test_strategies_agree test_half
+            for program in test_combinations test_strategies_agree test_half; do
+                GLINT_NIGHTLY=1 "build/release/tests/$program"
+            done
             ;;
         sanitize) scripts/sanitize.sh --all ;;
         spec)

@@ -4,6 +4,7 @@
 #include "render/pixel_test.h"
 #include "render/rooms.h"
 #include "support/effect_bits.h"
+#include "support/nightly.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,9 @@ void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
 }
 
 TEST(Half, TheGalleryIsNearlyTheSame) {
+    if (!test::nightly()) {
+        GTEST_SKIP() << "takes a minute to compile: scripts/nightly.sh runs it";
+    }
     ImportOptions options;
     options.decodeImages = true;
     const Result<Scene> scene = importScene(GLINT_GALLERY_SCENE, options);
