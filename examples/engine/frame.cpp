@@ -41,7 +41,7 @@ struct FrameData {
     Vec3 skyZenith;
     std::uint32_t tlas;
     Vec3 skyHorizon;
-    std::uint32_t pad;
+    float anisotropy;
     Vec3 skyGround;
     std::uint32_t compact;
     VkDeviceAddress geometries, transforms, suns, rays, rayCount, answers, weights, colors, textureSizes,
@@ -522,6 +522,7 @@ void Engine::State::writeSlot(std::uint32_t number, const std::vector<std::array
     data.weights = weights.address;
     data.colors = colors.address;
     data.textureSizes = textureSizes.address;
+    data.anisotropy = gpu.anisotropy;
     data.materials = scene != nullptr ? scene->materials() : 0;
     std::memcpy(slot.frame.mapped, &data, sizeof data);
 }

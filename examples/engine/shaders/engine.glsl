@@ -50,7 +50,7 @@ struct EngineFrame {
     vec3 skyZenith;
     uint tlas;
     vec3 skyHorizon;
-    uint pad;
+    float anisotropy;  // of the filter of textures; 1 for none
     vec3 skyGround;
     uint compact;
     Geometries geometries;

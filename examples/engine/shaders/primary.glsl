@@ -56,7 +56,7 @@ vec4 glintHostTexture(const uint image, const uint filtering, const vec2 uv, con
 
 // The engine's samplers have no anisotropy.
 vec3 glintHostTextureFilter(const uint image, const uint filtering) {
-    return vec3(vec2(FRAME.textureSizes.data[image]), 1.0);
+    return vec3(vec2(FRAME.textureSizes.data[image]), FRAME.anisotropy);
 }
 
 uint glintHostLightCount(const vec3 position) {
