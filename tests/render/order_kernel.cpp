@@ -6,6 +6,7 @@
 #include "emit/modules.h"
 #include "package/shader_modules.h"
 #include "renderer/tile_sort.h"
+#include "support/effect_bits.h"
 #include "support/shared_modules.h"
 
 #include <fmt/format.h>
@@ -52,6 +53,8 @@ Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
         shaderCase.name = fmt::format("Case{}", i);
         plan.cases.push_back(std::move(shaderCase));
     }
+    // Without an effect that sends rays nothing is ordered.
+    plan.effects.effects.add({package::kEffectReflection, package::EffectKind::Rays});
     const Scene scene;
     const SceneList scenes({&scene, 1});
     CompileSettings settings;
