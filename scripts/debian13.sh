@@ -8,9 +8,10 @@ usage() {
 usage: scripts/debian13.sh ROOT [COMMAND…]
 
 Makes a Debian 13 root in the folder ROOT by debootstrap, where there is none, from
-the mirror that apt has here. Copies the commit that is checked out to ROOT/glint,
-with ../shared where it is, and runs COMMAND there, scripts/test.sh if none is given.
-What was built there before is kept, so that a second run builds what changed.
+the mirror that apt has here. Copies the commit that is checked out to ROOT/glint, and
+runs COMMAND there, scripts/test.sh if none is given. Models are those of $GLINT_MODELS,
+else of ../shared/models, where they are. What was built there before is kept, so that a
+second run builds what changed.
 
 Needs root, some 4 GB and the package debootstrap, which it installs.
 TEXT
@@ -79,19 +80,19 @@ copy_commit
 
 # The mounts belong to a namespace that ends with the command. The shell in the middle is that of the new
 # root.
-shared=$(realpath -q ../shared || true)
+models=$(realpath -q "${GLINT_MODELS:-../shared/models}" || true)
 # shellcheck disable=SC2016 # the inner shell expands these
 exec unshare --mount bash -c '
     set -euo pipefail
-    root=$1 shared=$2
+    root=$1 models=$2
     shift 2
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
     cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
-    if [[ -d $shared ]]; then
-        mkdir -p "$root/shared"
-        mount --bind "$shared" "$root/shared"
+    if [[ -d $models ]]; then
+        mkdir -p "$root/shared/models"
+        mount --bind "$models" "$root/shared/models"
     fi
     exec chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
         bash -c "cd /glint && exec \"\$@\"" bash "$@"
-' bash "$root" "$shared" "$@"
+' bash "$root" "$models" "$@"

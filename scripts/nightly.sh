@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs what takes too long for every change: all combinations of settings, every command with sanitizers over every
-# scene, all materials against the specification, the comparison with a viewer that others wrote, clang-tidy, and
-# fuzzing up to a number of executions.
+# scene, all materials against the specification, the comparison with a viewer that others wrote, clang-tidy, the
+# tests on Debian 13, and fuzzing up to a number of executions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -21,17 +21,19 @@ Sets up, builds, and runs all parts, or those that are named:
             out/specification.json and out/specification.md
   viewer    scripts/viewer_compare.sh, which is left out without Chromium, npm or network
   lint      scripts/lint.sh
+  debian13  scripts/debian13.sh: builds and runs every test with the newer compiler and
+            libraries of Debian 13, below build/debian13; needs root
   fuzz      scripts/fuzz.sh --executions 10000000
 TEXT
 }
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize spec viewer lint fuzz)
+    parts=(sweep sanitize spec viewer lint debian13 fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | spec | viewer | lint | fuzz) ;;
+        sweep | sanitize | spec | viewer | lint | debian13 | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -71,6 +73,13 @@ for part in "${parts[@]}"; do
             scripts/viewer_compare.sh
             ;;
         lint) scripts/lint.sh ;;
+        debian13)
+            if [[ $(id -u) -eq 0 ]]; then
+                scripts/debian13.sh build/debian13
+            else
+                printf 'nightly: debian13 is left out: it needs root\n'
+            fi
+            ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;
     esac
 done

@@ -162,9 +162,10 @@ void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
 }
 
 void ModelBuilder::addParameter(const File& file, const Members& members) {
-    // A parameter may be called as its feature is: "dispersion".
+    // A parameter may be called as its feature is: "dispersion". The JSON stands on the left, because
+    // nlohmann-json 3.11.3 (Debian 13) compares it with a string in that order only.
     std::string name = members.text("name");
-    if (name != file.json["name"]) {
+    if (file.json["name"] != name) {
         name = newName(members);
     }
     const auto& type = choose(kTypes, members, "type", members.text("type"));
