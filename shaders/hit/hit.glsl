@@ -5,6 +5,9 @@
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
+#if GLINT_PATHS
+#include "hit/path.glsl"
+#endif
 
 #ifndef GLINT_CORNER
 #define GLINT_CORNER(i) hostPosition(geometry, corner[i])
@@ -32,6 +35,9 @@ struct Hit {
 #endif
 #if GLINT_VERTEX_ATTRIBUTES
     VertexAttributes attributes;  // of packs
+#endif
+#if GLINT_PATHS
+    PathArrival arrival;  // of the hit of a ray
 #endif
 };
 

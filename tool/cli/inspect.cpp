@@ -196,6 +196,8 @@ Json toJson(const inspect::InspectedPackage& inspected) {
               {"precision", package::bitsOf(package.precision())},
               {"shadows", std::string(package::nameOf(package.shape().shadows))},
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+              {"bounces", package.shape().maxBounces},
+              {"bounces", std::to_string(package.shape().maxBounces)},
               {"passes", std::string(package::nameOf(package.passes()))},
               {"answer", std::string(package::nameOf(package.answer()))},
               {"bindings", bindingsOf(package)},

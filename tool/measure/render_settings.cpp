@@ -96,6 +96,7 @@ CompileSettings compileSettings(const Settings& settings, const PlanOptions& pla
 RendererOptions rendererOptions(const Settings& settings) {
     RendererOptions options = settings.renderer;
     options.strategy = settings.strategy.value_or(options.strategy);
+    options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
     return options;
 }

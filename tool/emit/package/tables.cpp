@@ -267,6 +267,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.passes = settings.passes;
     header.answer = settings.answer;
     header.bindings = settings.bindings;
+    header.maxBounces = settings.maxBounces;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
     header.materialTextureOffset = layout.textureOffset;
