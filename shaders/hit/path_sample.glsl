@@ -57,3 +57,14 @@ PathStep nextStep(Hit hit, Surface surface, Features features, vec3 arriving) {
 PathStep straightStep(Hit hit, vec3 arriving) {
     return PathStep(-hit.view, arriving, 0.0, hit.arrival.coneSpread, hit.arrival.medium);
 }
+
+// Keeps the next ray, for the pass that puts it on the list.
+void storePath(Hit hit, PathStep step) {
+    if (step.direction == vec3(0.0)) {
+        endPath(hit.target);
+        return;
+    }
+    GLINT_FRAME.paths.data[hit.target] =
+        PathState(rayOrigin(hit, step.direction), step.medium, step.direction, step.density, step.throughput,
+                  hit.arrival.coneWidth, step.coneSpread, 1u);
+}

@@ -5,9 +5,6 @@
 #include "hit/record.glsl"
 #include "generated/shade.glsl"
 #include "hit/shadow.glsl"
-#if GLINT_PATHS
-#include "hit/path_store.glsl"
-#endif
 
 Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features features) {
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);

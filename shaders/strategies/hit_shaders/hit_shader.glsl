@@ -9,9 +9,6 @@
 #include "hit/payload.glsl"
 #include "hit/geometry_index.glsl"
 #include "generated/shade.glsl"
-#if GLINT_PATHS
-#include "hit/path_store.glsl"
-#endif
 
 layout(location = 0) rayPayloadInEXT HitPayload shaded;
 hitAttributeEXT vec2 hitBarycentrics;
