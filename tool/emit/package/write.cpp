@@ -1,8 +1,8 @@
 #include "base/staged_file.h"
 #include "emit/compile.h"
 #include "emit/package/in_place.h"
-#include "emit/package/swap.h"
 #include "emit/package/manifest.h"
+#include "emit/package/swap.h"
 
 #include <fmt/format.h>
 
