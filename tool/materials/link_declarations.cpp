@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -270,4 +270,4 @@ void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
     model_.behaviours.insert(place, std::move(rule));
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -237,4 +237,4 @@ Certainty MaterialFacts::fact(Fact fact) const {
     return Certainty::Unknown;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

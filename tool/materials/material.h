@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // KHR_texture_transform: uv' = T(offset) R(rotation) S(scale) uv; rotation in radians, counter-clockwise.
 struct TextureTransform {
@@ -195,4 +195,7 @@ private:
     Textures textures_;
 };
 
-}  // namespace glint
+// Found by their arguments from other namespaces.
+using glint::nameOf;
+
+}  // namespace glint::materials

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // A set of features by their bits.
 //
@@ -288,4 +288,4 @@ public:
 // that are embedded in the library, and lives as long as the program.
 const MaterialModel& builtinMaterialModel();
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Values by the name of their setting, which is the name of the command-line option without its dashes. The
 // configuration of a point of a bench holds only what differs from the default.
@@ -39,4 +39,4 @@ Settings withSettings(Settings settings, const Configuration& configuration);
 // Returns the words of a command line: {"--spp", "4"}. A switch that is off is left out.
 std::vector<std::string> wordsOf(const Configuration& configuration);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -2,7 +2,7 @@
 
 #include "settings/values.h"
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -437,4 +437,4 @@ const Descriptor* sweptSetting(std::string_view name) {
     return row == std::end(kRows) ? nullptr : row;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -325,4 +325,4 @@ const DiagnosticInfo* findDiagnostic(std::string_view id) {
     return found != std::end(kTable) && found->id == id ? found : nullptr;
 }
 
-}  // namespace glint
+}  // namespace glint::cli
