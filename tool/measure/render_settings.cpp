@@ -27,7 +27,7 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
                              const compiler::PlanOptions& plan) {
     compiler::BenchFacts facts;
     facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
-        return material.alphaMode == materials::AlphaMode::Mask;
+        return material.alphaMode != materials::AlphaMode::Opaque;
     });
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();

@@ -247,12 +247,12 @@ constexpr Descriptor kRows[] = {
      .commands = kPlanners,
      .stage = SettingStage::Package,
      .group = kShaders,
-     .what = "alpha masks of hits",
-     .values = optional<&Settings::alpha>("tested if the scene has masks"),
-     .bench = approximates("tested", "tested opaque", {},
+     .what = "alpha of hits",
+     .values = optional<&Settings::alpha>("stochastic if the scene has BLEND, tested if it has masks"),
+     .bench = approximates("stochastic", "stochastic tested opaque", {},
                            [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(
-                                   value.empty() && !facts.masks ? "no material has an alpha mask" : "");
+                               return std::string(value.empty() && !facts.masks ? "no material has alpha"
+                                                                                : "");
                            })},
     {.name = "precision",
      .commands = kMakers,

@@ -195,7 +195,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.sectionCount = writer.sectionCount();
     header.strategies = spec.strategies;
     header.tracers = spec.tracers;
-    header.alphaTested = spec.alphaTested;
+    header.alpha = spec.alpha;
     header.precision = spec.precision;
     header.caseCount = spec.caseCount;
     header.interopHash = spec.interopHash;
